@@ -1,0 +1,10 @@
+# Makes a generated decoder refuse hostile lengths before it allocates for them: lcm-gen 1.3.1 resizes to whatever
+# count the message claims, and builds a string of length - 1 from a length of 0. Every element has at least one byte on
+# the wire, so a count above the bytes left is a lie.
+file(READ ${HEADER} text)
+string(REGEX REPLACE
+  "this->([A-Za-z0-9_]+)\\.resize\\(this->([A-Za-z0-9_]+)\\);"
+  "if (this->\\2 < 0 || this->\\2 > maxlen - pos) return -1;\n    this->\\1.resize(this->\\2);" text "${text}")
+string(REGEX REPLACE "if\\((__[a-z0-9_]+_len__|__elem_len) > maxlen - pos\\)"
+  "if(\\1 < 1 || \\1 > maxlen - pos)" text "${text}")
+file(WRITE ${HEADER} "${text}")

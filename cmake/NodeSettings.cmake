@@ -1,0 +1,16 @@
+# Every option and constant of a node is one row of its settings.csv: name, unit, default, min, max, meaning, source.
+# From it come the node's Settings struct, the check of scenes (sim_node) and the table in docs/settings.md.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+# Generates ${node}/settings.gen.h for the node folder that calls it.
+function(tactus_node_settings target)
+  get_filename_component(node ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set(out ${CMAKE_BINARY_DIR}/generated/${node})
+  set(tool ${PROJECT_SOURCE_DIR}/scripts/generate_settings)
+  add_custom_command(OUTPUT ${out}/settings.gen.h
+    COMMAND ${Python3_EXECUTABLE} ${tool} header ${CMAKE_CURRENT_SOURCE_DIR}/settings.csv ${out}/settings.gen.h
+    DEPENDS settings.csv ${tool} VERBATIM COMMENT "settings of ${node}")
+  add_custom_target(${target}_settings DEPENDS ${out}/settings.gen.h)
+  add_dependencies(${target} ${target}_settings)
+  target_include_directories(${target} PUBLIC ${CMAKE_BINARY_DIR}/generated)
+endfunction()

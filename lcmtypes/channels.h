@@ -1,0 +1,33 @@
+// The channels of the bus: their names and their port. README.md says who publishes and who subscribes.
+#pragma once
+
+#include <cstddef>
+
+namespace tactus::channels {
+
+// Real-time port. No message is larger than kMaxMessageBytes: state is paged.
+inline constexpr const char* kTouchModel = "TOUCH_MODEL";        // touch_model_t
+inline constexpr const char* kContactEvents = "CONTACT_EVENTS";  // contact_events_t
+inline constexpr const char* kContacts = "CONTACTS";             // contact_frame_t
+inline constexpr const char* kWorldState = "WORLD_STATE";        // world_state_t
+inline constexpr const char* kToolState = "TOOL_STATE";          // tool_state_t
+inline constexpr const char* kThermalState = "THERMAL_STATE";    // thermal_state_t
+inline constexpr const char* kPresented = "PRESENTED";           // presented_t
+inline constexpr const char* kNodeHealth = "NODE_HEALTH";        // node_health_t
+inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_t
+inline constexpr const char* kMediaClock = "MEDIA_CLOCK";        // media_clock_t
+inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
+
+// Bulk port, so that assets never queue before a force. Receivers listen on both ports: a replayed log has one.
+inline constexpr const char* kSceneManifest = "SCENE_MANIFEST";  // scene_manifest_t
+inline constexpr const char* kAssetRequest = "ASSET_REQUEST";    // asset_request_t
+inline constexpr const char* kAssetChunk = "ASSET_CHUNK";        // asset_chunk_t
+
+// One Ethernet frame less the headers of IP, UDP and LCM: nothing is fragmented, nothing half lost.
+inline constexpr std::size_t kMaxMessageBytes = 1400;
+
+// Multicast group, real-time port and its bulk port (the next one), unless the command line says otherwise.
+inline constexpr const char* kGroup = "239.255.76.67";
+inline constexpr int kDefaultPort = 7667;
+
+}  // namespace tactus::channels

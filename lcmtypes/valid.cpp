@@ -1,0 +1,196 @@
+#include "lcmtypes/valid.h"
+
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+// Farther than any scene and faster than any body: beyond this a number is garbage, though finite.
+constexpr double kMaxMagnitude = 1e9;
+
+bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
+bool sane_not_negative(double x) { return sane(x) && x >= 0; }
+bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // masses of fixed bodies are huge
+bool sane(const vec3_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
+bool sane(const vec3f_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
+
+template <class Q>
+bool rotation(const Q& q) {
+  const double norm = double(q.w) * q.w + double(q.x) * q.x + double(q.y) * q.y + double(q.z) * q.z;
+  return std::isfinite(norm) && std::abs(norm - 1) < 1e-3;
+}
+
+template <class V>
+bool unit(const V& v) {
+  const double norm = double(v.x) * v.x + double(v.y) * v.y + double(v.z) * v.z;
+  return std::isfinite(norm) && std::abs(norm - 1) < 1e-2;
+}
+
+bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
+bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
+bool between(long value, long low, long high) { return value >= low && value <= high; }
+
+bool sane(const header_t& h) {
+  return h.sim_time_ns >= -1 && h.publish_time_ns >= 0 && h.run_id > 0 && h.incarnation > 0 && h.seq >= 0;
+}
+bool sane(const sim_clock_t& c) { return c.sim_ns >= 0 && c.host_ns >= 0 && sane_not_negative(c.rate); }
+
+bool sane(const contact_event_t& e) {
+  return between(e.kind, contact_event_t::BEGIN, contact_event_t::END) && e.time_ns >= 0 && e.body_a >= 0 &&
+         e.body_b >= 0 && e.material_a >= -1 && e.material_b >= -1 && e.tool >= -1 && sane(e.point_m) &&
+         unit(e.normal) && sane_not_negative(e.approach_speed_m_s) && finite_positive(e.effective_mass_kg) &&
+         sane_not_negative(e.curvature_1_m);
+}
+
+bool sane(const contact_t& c) {
+  if (!between(c.kind, contact_t::POINT, contact_t::SURFACE) || c.body_a < 0 || c.body_b < 0 || c.material_a < -1 ||
+      c.material_b < -1 || c.tool < -1 || !unit(c.normal) || !sane(c.depth_m) || !sane_not_negative(c.area_m2) ||
+      !sane_not_negative(c.normal_force_N) || !sane_not_negative(c.impulse_N_s) || !sane(c.sliding_velocity_m_s) ||
+      !sane(c.rolling_velocity_m_s) || !between(c.point_count, 1, 4))
+    return false;
+  for (const contact_point_t& p : c.points)
+    if (!sane(p.a_world_m) || !sane(p.b_world_m) || !sane(p.a_body_m) || !sane(p.b_body_m)) return false;
+  return true;
+}
+
+bool sane(const body_state_t& b) {
+  return b.body >= 0 && sane(b.position_m) && rotation(b.orientation) && sane(b.velocity_m_s) &&
+         sane(b.angular_velocity_rad_s);
+}
+
+bool sane(const touch_plane_t& p) {
+  return p.body >= 0 && p.material >= -1 && sane(p.point_m) && unit(p.normal) && sane(p.point_body_m) &&
+         unit(p.normal_body) && sane(p.velocity_m_s) && sane(p.angular_velocity_rad_s) &&
+         finite_positive(p.effective_mass_kg) && sane_not_negative(p.stiffness_N_m) &&
+         sane_not_negative(p.damping_N_s_m) && sane_not_negative(p.friction_static) &&
+         sane_not_negative(p.friction_dynamic) && sane(p.bump_u_body);
+}
+
+bool sane(const touch_applied_t& a) { return sane(a.impulse_N_s) && sane(a.energy_J); }
+bool sane(const tool_constraint_t& c) {
+  return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
+}
+bool sane(const presentation_t& p) {
+  return between(p.part, presentation_t::WHOLE, presentation_t::TRANSIENT) && p.scheduled_ns >= -1 &&
+         p.presented_ns >= -1 && p.uncertainty_ns >= 0 &&
+         between(p.outcome, presentation_t::PRESENTED, presentation_t::INAUDIBLE);
+}
+bool sane(const histogram_t& h) {
+  for (int bin : h.bins)
+    if (bin < 0) return false;
+  return h.max_ns >= 0;
+}
+bool sane(const input_health_t& i) { return i.age_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0; }
+bool sane(const asset_ref_t& a) {
+  return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF);
+}
+bool sane(const material_def_t& m) {
+  // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
+  return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
+         sane_not_negative(m.rayleigh_alpha_1_s) && sane_not_negative(m.rayleigh_beta_s) &&
+         sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
+         sane_not_negative(m.restitution) && sane_not_negative(m.conductivity_W_mK) &&
+         sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC);
+}
+bool sane(const shape_def_t& s, int bodies, int materials) {
+  return between(s.body, 0, bodies - 1) && between(s.material, -1, materials - 1) && sane(s.pose) &&
+         between(s.kind, shape_def_t::BOX, shape_def_t::MESH) && sane_not_negative(s.size_m.x) &&
+         sane_not_negative(s.size_m.y) && sane_not_negative(s.size_m.z);
+}
+bool sane(const visual_def_t& v) {
+  return sane(v.ambient) && sane(v.diffuse) && sane(v.specular) && sane(v.emissive) && sane_not_negative(v.shininess) &&
+         sane_not_negative(v.alpha);
+}
+bool sane(const light_def_t& l) {
+  return between(l.kind, light_def_t::POINT, light_def_t::SPOT) && sane(l.pose) && unit(l.direction) &&
+         sane(l.diffuse) && sane(l.specular) && sane_not_negative(l.range_m) && sane(l.attenuation_constant) &&
+         sane(l.attenuation_linear) && sane(l.attenuation_quadratic) && sane_not_negative(l.intensity) &&
+         sane_not_negative(l.inner_angle_rad) && sane_not_negative(l.outer_angle_rad) && sane_not_negative(l.falloff);
+}
+bool sane(const waypoint_t& w) { return sane_not_negative(w.time_s) && sane(w.position_m); }
+
+template <class List>
+bool all_sane(const List& list) {
+  for (const auto& item : list)
+    if (!sane(item)) return false;
+  return true;
+}
+
+}  // namespace
+
+bool valid(const contact_events_t& m) {
+  return sane(m.header) && sane(m.clock) && page_of(m.page, m.pages) && all_sane(m.events);
+}
+bool valid(const contact_frame_t& m) {
+  return sane(m.header) && sane(m.clock) && between(m.group, contact_frame_t::TOOL, contact_frame_t::OTHER) &&
+         page_of(m.page, m.pages) && all_sane(m.contacts);
+}
+bool valid(const world_state_t& m) {
+  return sane(m.header) && sane(m.clock) && sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages) &&
+         all_sane(m.bodies);
+}
+bool valid(const touch_model_t& m) {
+  return sane(m.header) && sane(m.clock) && m.tool >= 0 && all_sane(m.planes) && all_sane(m.applied);
+}
+bool valid(const tool_state_t& m) {
+  return sane(m.header) && m.tool >= 0 && sane(m.device) && sane(m.proxy) && sane(m.device_velocity_m_s) &&
+         sane(m.proxy_velocity_m_s) && sane(m.force_N) && sane(m.torque_N_m) && sane(m.transient_N) &&
+         sane(m.energy_J) && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
+}
+bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.reports); }
+bool valid(const node_health_t& m) {
+  return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
+         between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) && sane_not_negative(m.nominal_rate_Hz) &&
+         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && sane(m.tick) && sane(m.wake) &&
+         m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
+}
+bool valid(const log_info_t& m) {
+  return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0;
+}
+bool valid(const media_clock_t& m) {
+  return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
+         between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);
+}
+bool valid(const thermal_state_t& m) {
+  return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&
+         sane_not_negative(m.area_m2) && sane(m.heat_flux_W_m2) && sane(m.skin_degC) && sane(m.commanded_degC);
+}
+bool valid(const sync_report_t& m) { return sane(m.header); }
+bool valid(const scene_manifest_t& m) { return sane(m.header) && page_of(m.page, m.pages) && all_sane(m.assets); }
+bool valid(const asset_request_t& m) {
+  return sane(m.header) && m.first_chunk >= 0 && between(m.chunk_count, 1, 1 << 20);
+}
+bool valid(const asset_chunk_t& m) {
+  return sane(m.header) && page_of(m.chunk, m.chunks) && between(m.size, 1, 1024);
+}
+
+bool valid(const mesh_t& m) {
+  if (m.vertex_floats % 3 != 0 || m.index_count % 3 != 0) return false;
+  for (float x : m.positions_m)
+    if (!sane(x)) return false;
+  for (float x : m.normals)
+    if (!sane(x)) return false;
+  for (int i : m.indices)
+    if (!between(i, 0, m.vertex_floats / 3 - 1)) return false;
+  return true;
+}
+
+bool valid(const scene_t& m) {
+  for (int i = 0; i < m.body_count; ++i) {
+    const body_def_t& b = m.bodies[i];
+    if (b.id != i || !sane(b.pose) || !sane_not_negative(b.mass_kg) || !between(b.tool, -1, m.tool_count - 1))
+      return false;
+  }
+  for (const shape_def_t& s : m.shapes)
+    if (!sane(s, m.body_count, m.material_count)) return false;
+  for (const visual_def_t& v : m.visuals)
+    if (!sane(v.shape, m.body_count, m.material_count) || !sane(v)) return false;
+  for (const tool_def_t& t : m.tools)
+    if (!between(t.body, 0, m.body_count - 1) || !sane_not_negative(t.radius_m) || !finite_positive(t.mass_kg) ||
+        !between(t.material, -1, m.material_count - 1) || !all_sane(t.waypoints))
+      return false;
+  return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) && sane(m.camera) &&
+         sane_not_negative(m.camera_fov_rad) && sane(m.ambient) && sane(m.background) && sane(m.listener);
+}
+
+}  // namespace tactus

@@ -1,0 +1,42 @@
+// What a message must satisfy to be let in: finite numbers, counts and enumerations in range. A renderer behind this
+// border never meets a NaN. Sizes are checked before, by sync/decode.h.
+#pragma once
+
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
+
+namespace tactus {
+
+// True when every field is in the range that its comment in the .lcm file gives.
+bool valid(const asset_chunk_t&);
+bool valid(const asset_request_t&);
+bool valid(const contact_events_t&);
+bool valid(const contact_frame_t&);
+bool valid(const log_info_t&);
+bool valid(const media_clock_t&);
+bool valid(const mesh_t&);
+bool valid(const node_health_t&);
+bool valid(const presented_t&);
+bool valid(const scene_manifest_t&);
+bool valid(const scene_t&);
+bool valid(const sync_report_t&);
+bool valid(const thermal_state_t&);
+bool valid(const tool_state_t&);
+bool valid(const touch_model_t&);
+bool valid(const world_state_t&);
+
+}  // namespace tactus
