@@ -1,0 +1,80 @@
+#include "sync/body_history.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::sync {
+namespace {
+
+// Cubic Hermite between two samples with their velocities; SLERP for the orientation, short way round.
+BodyPose between(const BodyPose& a, const BodyPose& b, double span_s, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  BodyPose p;
+  p.position = (2 * s3 - 3 * s2 + 1) * a.position + (s3 - 2 * s2 + s) * span_s * a.velocity +
+               (3 * s2 - 2 * s3) * b.position + (s3 - s2) * span_s * b.velocity;
+  p.orientation = a.orientation.slerp(s, b.orientation);
+  p.velocity = (1 - s) * a.velocity + s * b.velocity;
+  p.angular_velocity = (1 - s) * a.angular_velocity + s * b.angular_velocity;
+  return p;
+}
+
+BodyPose moved_on(BodyPose p, double dt_s) {
+  p.position += p.velocity * dt_s;
+  const double angle = p.angular_velocity.norm() * dt_s;
+  if (angle > 0) p.orientation = Eigen::AngleAxisd(angle, p.angular_velocity.normalized()) * p.orientation;
+  return p;
+}
+
+BodyPose from_message(const body_state_t& b) {
+  return {to_eigen(b.position_m), to_eigen(b.orientation).normalized(), to_eigen(b.velocity_m_s),
+          to_eigen(b.angular_velocity_rad_s)};
+}
+
+}  // namespace
+
+void BodyHistory::push(const world_state_t& page, HostTime arrival) {
+  switch (follower_.follow(page.header, page.clock, arrival)) {
+    case Follow::kIgnore: return;
+    case Follow::kRestart:
+      bodies_.clear();
+      newest_.reset();
+      break;
+    case Follow::kSame: break;
+  }
+  const SimTime time = sim_time(page.header.sim_time_ns);
+  if (!newest_ || time > *newest_) newest_ = time;
+  for (const body_state_t& b : page.bodies) {
+    auto& samples = bodies_[b.body];
+    // Pages may overtake each other: keep the samples in order of time, one per instant.
+    auto at = std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= time; }).base();
+    if (at != samples.begin() && std::prev(at)->time == time) continue;
+    samples.insert(at, {time, from_message(b)});
+    if (samples.size() > kSamplesPerBody) samples.pop_front();
+  }
+}
+
+How BodyHistory::how(SimTime t) const {
+  if (!newest_) return How::kNone;
+  if (t <= *newest_) return How::kInterpolated;
+  const Nanoseconds past = t - *newest_;
+  return past <= kExtrapolateAtMost ? How::kExtrapolated : past <= kStaleAfter ? How::kHeld : How::kStale;
+}
+
+Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
+  const auto it = bodies_.find(body);
+  if (it == bodies_.end() || it->second.empty()) return {};
+  const auto& samples = it->second;
+  const auto after = std::find_if(samples.begin(), samples.end(), [&](const Stamped& s) { return s.time > t; });
+  if (after == samples.begin()) return {after->pose, How::kHeld};  // older than all that is kept
+  const Stamped& before = *std::prev(after);
+  if (before.time == t) return {before.pose, How::kExact};
+  if (after != samples.end()) {
+    const double span_s = to_seconds(after->time - before.time), s = to_seconds(t - before.time) / span_s;
+    return {between(before.pose, after->pose, span_s, s), How::kInterpolated};
+  }
+  const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
+  return {moved_on(before.pose, dt_s), how(t)};
+}
+
+}  // namespace tactus::sync

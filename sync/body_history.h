@@ -1,0 +1,51 @@
+// Where the bodies are at an instant, from WORLD_STATE: interpolated between snapshots, extrapolated by a bounded time.
+// Pure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <map>
+#include <optional>
+#include <tactus/world_state_t.hpp>
+
+#include "sync/how.h"
+#include "sync/sim_follower.h"
+#include "sync/time.h"
+
+namespace tactus::sync {
+
+struct BodyPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // m/s, world
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, world
+};
+
+class BodyHistory {
+ public:
+  // Past the newest sample a body moves on with its velocity for so long, then it is held, then stale: three snapshots
+  // at 60 Hz may be missed before it stops.
+  static constexpr Nanoseconds kExtrapolateAtMost{50'000'000};
+  static constexpr Nanoseconds kStaleAfter{200'000'000};
+  static constexpr std::size_t kSamplesPerBody = 64;
+
+  explicit BodyHistory(std::int64_t own_run) : follower_(own_run) {}
+
+  void push(const world_state_t& page, HostTime arrival);
+  // Hermite in position, SLERP in orientation. A body that a snapshot leaves out rests where it was.
+  Sample<BodyPose> pose(int body, SimTime t) const;
+  // How the newest snapshot as a whole relates to t.
+  How how(SimTime t) const;
+  std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+
+ private:
+  struct Stamped {
+    SimTime time;
+    BodyPose pose;
+  };
+  SimFollower follower_;
+  std::map<int, std::deque<Stamped>> bodies_;
+  std::optional<SimTime> newest_;
+};
+
+}  // namespace tactus::sync

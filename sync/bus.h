@@ -1,0 +1,91 @@
+// Access to the bus: two LCM ports, stamped messages out, checked messages in.
+//
+// Nothing here waits for another process. Queues are bounded; what does not fit is dropped and counted.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "sync/identity.h"
+#include "sync/inbox.h"
+#include "sync/pacing.h"
+
+namespace tactus::sync {
+
+struct BusOptions {
+  std::string group = channels::kGroup;
+  int port = channels::kDefaultPort;  // bulk is the next one
+  int ttl = 0;                        // 0: never leaves this machine
+  bool memory = false;                // within this process only, for tests: no network
+};
+
+enum class Port { kRealtime, kBulk, kBoth };
+
+class Bus {
+ public:
+  // Opens both ports. Throws std::runtime_error with one sentence (what is wrong and what to do) when it cannot.
+  // Threads that LCM starts inherit the caller's scheduling: set that first.
+  Bus(Identity identity, const BusOptions& options);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  // Subscriptions live as long as the bus; make them before the first drain.
+  template <class Message>
+  Latest<Message>& latest(const char* channel, Port port = Port::kRealtime) {
+    return add(std::make_unique<Latest<Message>>(channel), channel, port);
+  }
+  template <class Message>
+  Queue<Message>& queue(const char* channel, std::size_t capacity, Port port = Port::kRealtime) {
+    return add(std::make_unique<Queue<Message>>(channel, capacity), channel, port);
+  }
+
+  // Hands everything that has arrived to the inboxes, at most kMaxDrain messages, without waiting.
+  void drain(HostTime now);
+  static constexpr int kMaxDrain = 8192;
+  // For processes that are driven by events: waits until something arrives, at most so long.
+  void wait(Nanoseconds at_most);
+
+  // Stamps the header (all but sim_time_ns) and sends. False when the message is too large or the network refused it.
+  template <class Message>
+  bool publish(const char* channel, Message& m, Port port = Port::kRealtime) {
+    stamp(channel, m.header);
+    const int size = m.getEncodedSize();
+    if (size > static_cast<int>(channels::kMaxMessageBytes)) return refuse();
+    unsigned char bytes[channels::kMaxMessageBytes];
+    m.encode(bytes, 0, size);
+    return send(channel, bytes, static_cast<unsigned>(size), port);
+  }
+  std::int64_t refused() const { return refused_; }
+
+  const Identity& identity() const { return identity_; }
+  const std::vector<std::unique_ptr<InboxBase>>& inboxes() const { return inboxes_; }
+
+ private:
+  struct Connections;
+  template <class Inbox>
+  Inbox& add(std::unique_ptr<Inbox> inbox, const char* channel, Port port) {
+    Inbox& ref = *inbox;
+    subscribe(channel, &ref, port);
+    inboxes_.push_back(std::move(inbox));
+    return ref;
+  }
+  void subscribe(const char* channel, InboxBase* inbox, Port port);
+  void stamp(const char* channel, header_t& header);
+  bool send(const char* channel, const void* data, unsigned size, Port port);
+  bool refuse() { return ++refused_, false; }
+
+  Identity identity_;
+  std::unique_ptr<Connections> connections_;
+  std::vector<std::unique_ptr<InboxBase>> inboxes_;
+  std::map<std::string, std::int64_t> next_seq_;
+  std::int64_t refused_ = 0;
+};
+
+// "udpm://group:port?ttl=T&recv_buf_size=N", with a receive buffer as large as bursts need.
+std::string lcm_url(const BusOptions& options, int port);
+
+}  // namespace tactus::sync

@@ -1,0 +1,155 @@
+#include "sync/contact_stream.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+namespace {
+
+// Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
+constexpr std::size_t kRememberedIds = 8192;
+constexpr std::size_t kRememberedLives = 8192;
+// 128 ms of the tool group; 2 s of the others.
+constexpr std::size_t kSnapshots = 128;
+constexpr std::size_t kPartialSnapshots = 8;
+
+float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
+
+// The scalars of the same contact between two snapshots; points and normal stay those of the older.
+contact_t between(contact_t a, const contact_t& b, double s) {
+  a.depth_m = mix(a.depth_m, b.depth_m, s);
+  a.area_m2 = mix(a.area_m2, b.area_m2, s);
+  a.normal_force_N = mix(a.normal_force_N, b.normal_force_N, s);
+  a.impulse_N_s = mix(a.impulse_N_s, b.impulse_N_s, s);
+  return a;
+}
+
+}  // namespace
+
+bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  const std::int64_t before = follower_.incarnation();
+  const Follow verdict = follower_.follow(header, clock, arrival);
+  if (verdict == Follow::kIgnore) return false;
+  if (verdict == Follow::kRestart) {
+    if (before != 0) ++restarts_;
+    pending_.clear();
+    seen_.clear();
+    seen_order_.clear();
+    lives_.clear();
+    lives_order_.clear();
+    for (auto& group : partial_) group.clear();
+    for (auto& group : snapshots_) group.clear();
+  }
+  return true;
+}
+
+void ContactStream::push(const contact_events_t& m, HostTime arrival) {
+  if (!accept(m.header, m.clock, arrival)) return;
+  for (const contact_event_t& event : m.events) {
+    if (!seen_.insert(event.event_id).second) {
+      ++duplicates_;
+      continue;
+    }
+    seen_order_.push_back(event.event_id);
+    if (seen_order_.size() > kRememberedIds) {
+      seen_.erase(seen_order_.front());
+      seen_order_.pop_front();
+    }
+    note_event(event);
+    pending_.emplace(sim_time(event.time_ns), event);
+    if (pending_.size() > kMaxPendingEvents) pending_.erase(pending_.begin());
+  }
+}
+
+void ContactStream::note_event(const contact_event_t& event) {
+  const auto [it, fresh] = lives_.try_emplace(event.contact_id);
+  if (fresh) {
+    lives_order_.push_back(event.contact_id);
+    if (lives_order_.size() > kRememberedLives) {
+      lives_.erase(lives_order_.front());
+      lives_order_.pop_front();
+    }
+  }
+  if (event.kind == contact_event_t::BEGIN) it->second.begin = event;
+  if (event.kind == contact_event_t::END) it->second.end = sim_time(event.time_ns);
+}
+
+void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
+  if (!accept(m.header, m.clock, arrival)) return;
+  const std::size_t group = m.group == contact_frame_t::TOOL ? 0 : 1;
+  const SimTime time = sim_time(m.header.sim_time_ns);
+  auto& snapshots = snapshots_[group];
+  if (!snapshots.empty() && snapshots.back().time >= time) return;  // overtaken or repeated
+  Pages& pages = partial_[group][time];
+  pages.pages = m.pages;
+  pages.arrived[m.page] = m.contacts;
+  if (static_cast<int>(pages.arrived.size()) < pages.pages) {
+    if (partial_[group].size() > kPartialSnapshots) partial_[group].erase(partial_[group].begin());
+    return;
+  }
+  Snapshot snapshot{time, {}};
+  for (auto& [page, contacts] : pages.arrived)
+    snapshot.contacts.insert(snapshot.contacts.end(), contacts.begin(), contacts.end());
+  partial_[group].erase(partial_[group].begin(), partial_[group].upper_bound(time));
+  snapshots.push_back(std::move(snapshot));
+  if (snapshots.size() > kSnapshots) snapshots.pop_front();
+}
+
+std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
+  std::vector<contact_event_t> due;
+  const auto end = pending_.lower_bound(until);
+  for (auto it = pending_.begin(); it != end; ++it) due.push_back(it->second);
+  pending_.erase(pending_.begin(), end);
+  return due;
+}
+
+bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
+  const auto it = lives_.find(contact_id);
+  if (it == lives_.end()) return true;  // joined late: its begin was not heard
+  const Life& life = it->second;
+  return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
+}
+
+How ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
+  if (group.empty() || t < group.front().time) return How::kNone;
+  if (t > group.back().time) return t - group.back().time <= kStaleAfter ? How::kHeld : How::kStale;
+  const auto it = std::lower_bound(group.begin(), group.end(), t, [](const Snapshot& s, SimTime x) { return s.time < x; });
+  return it->time == t ? How::kExact : How::kInterpolated;
+}
+
+void ContactStream::append_state(const std::deque<Snapshot>& group, SimTime t, Contacts& out) const {
+  if (how(group, t) == How::kNone) return;
+  const auto after = std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
+  const Snapshot& before = *std::prev(after);
+  const auto find = [](const Contacts& list, std::int64_t id) {
+    return std::find_if(list.begin(), list.end(), [&](const contact_t& c) { return c.contact_id == id; });
+  };
+  for (const contact_t& c : before.contacts) {
+    if (!alive(c.contact_id, t)) continue;
+    if (after == group.end()) {
+      out.push_back(c);
+      continue;
+    }
+    const auto next = find(after->contacts, c.contact_id);
+    const double s = to_seconds(t - before.time) / to_seconds(after->time - before.time);
+    out.push_back(next == after->contacts.end() ? c : between(c, *next, s));
+  }
+  if (after == group.end()) return;
+  // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
+  for (const contact_t& c : after->contacts) {
+    const auto life = lives_.find(c.contact_id);
+    const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
+    if (begun && alive(c.contact_id, t) && find(before.contacts, c.contact_id) == before.contacts.end()) out.push_back(c);
+  }
+}
+
+Sample<Contacts> ContactStream::state_at(SimTime t) const {
+  Sample<Contacts> state;
+  for (const auto& group : snapshots_) {
+    const How how_group = how(group, t);
+    state.how = std::max(state.how, how_group);
+    append_state(group, t, state.value);
+  }
+  return state;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,99 @@
+// Turns the contact channels into what a sense needs for its tick: the events due, the state at an instant, and the
+// integrals over the tick. Pure: time and messages are arguments.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <vector>
+
+#include "sync/how.h"
+#include "sync/sim_follower.h"
+#include "sync/time.h"
+
+namespace tactus::sync {
+
+// Live contacts at an instant.
+using Contacts = std::vector<contact_t>;
+
+// What a slow sense integrates: means over a tick, weighted by the time of contact.
+struct ContactIntegral {
+  Nanoseconds contact_time{0};  // how long the tool touched at all within the interval
+  double force_N = 0;           // mean normal force over the whole interval
+  double area_m2 = 0;           // mean area over the whole interval
+  std::int32_t material = -1;   // of the other body of the contact that lasted longest; -1: none
+  std::int32_t body = -1;
+  How how = How::kNone;
+};
+
+class ContactStream {
+ public:
+  // Past the newest snapshot the contact state is held, since its begin and end come as events; then it is stale.
+  static constexpr Nanoseconds kStaleAfter{50'000'000};
+  static constexpr std::size_t kMaxPendingEvents = 4096;
+
+  // own_run: messages of this cluster run carry our own clock; those of another run are mapped by arrival.
+  explicit ContactStream(std::int64_t own_run) : follower_(own_run) {}
+
+  void push(const contact_events_t&, HostTime arrival);
+  void push(const contact_frame_t&, HostTime arrival);
+
+  // Map between simulated time and our host clock, from the newest message. Nothing before the first.
+  std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+
+  // Events whose time is before `until` and that were not taken before, in order of time; each exactly once, however
+  // often it was repeated or replayed within an incarnation. An event that arrives late is returned at the next call.
+  std::vector<contact_event_t> take_events(SimTime until);
+
+  // Contacts alive at `t`, of both groups: the newest complete snapshot at or before t, its forces and depths
+  // interpolated towards the next. `how` is the worse of the two groups. A contact whose begin lies after t or whose end
+  // lies at or before t is not in it, whatever the snapshots say.
+  Sample<Contacts> state_at(SimTime t) const;
+
+  // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact shorter
+  // than the interval between snapshots counts. tool_body: the tool's body id, to tell which side is the other body.
+  ContactIntegral integral(SimTime t0, SimTime t1, int tool, int tool_body = -1) const;
+
+  // How many times a new incarnation or epoch of the simulation ended all contacts.
+  std::int64_t restarts() const { return restarts_; }
+  std::int64_t duplicates() const { return duplicates_; }
+
+ private:
+  struct Snapshot {
+    SimTime time;
+    Contacts contacts;
+  };
+  struct Pages {
+    std::map<int, Contacts> arrived;
+    int pages = 0;
+  };
+  struct Life {  // of a contact, from its events
+    std::optional<contact_event_t> begin;
+    std::optional<SimTime> end;
+  };
+
+  bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
+  void note_event(const contact_event_t& event);
+  bool alive(std::int64_t contact_id, SimTime t) const;
+  How how(const std::deque<Snapshot>& group, SimTime t) const;
+  void append_state(const std::deque<Snapshot>& group, SimTime t, Contacts& out) const;
+
+  SimFollower follower_;
+  std::int64_t restarts_ = 0;
+  std::int64_t duplicates_ = 0;
+
+  std::multimap<SimTime, contact_event_t> pending_;
+  std::set<std::int64_t> seen_;
+  std::deque<std::int64_t> seen_order_;
+  std::map<std::int64_t, Life> lives_;
+  std::deque<std::int64_t> lives_order_;
+
+  std::map<SimTime, Pages> partial_[2];  // per group
+  std::deque<Snapshot> snapshots_[2];
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,17 @@
+// Rows of the tables that are made of a log: one per TOOL_STATE and one per THERMAL_STATE. Pure.
+#pragma once
+
+#include <string>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+
+namespace tactus::sync {
+
+// Lines of column names, with units, and of values; each ends with a newline. Times are s: simulated (empty when the
+// message speaks of no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths m, forces N, world frame.
+std::string haptic_csv_names();
+std::string csv_row(const tool_state_t&);
+std::string thermal_csv_names();
+std::string csv_row(const thermal_state_t&);
+
+}  // namespace tactus::sync

@@ -1,0 +1,22 @@
+// Rows of the tables that lay sound and picture on the log's time: contact events, what was presented of them, and which
+// sample or frame was out when. Pure.
+#pragma once
+
+#include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <vector>
+
+namespace tactus::sync {
+
+// Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; of an event,
+// the instant at which its simulated time was now. -1: never.
+std::string events_csv_names();
+std::string csv_row(const contact_event_t& event, const sim_clock_t& clock);
+std::string presented_csv_names();
+std::string csv_row(const std::string& modality, const presentation_t&);
+std::string media_clock_csv_names();
+std::string csv_row(const media_clock_t&);
+
+}  // namespace tactus::sync

@@ -1,0 +1,58 @@
+// export_events: makes tables of the contact events, of what was presented, and of the clocks of sound and picture.
+//
+//   in   LOG...
+//   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv
+//
+// A damaged log is read as far as it is intact. Each event and each report is listed once, however often it was sent.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <tuple>
+
+#include "sync/decode.h"
+#include "sync/export_events.h"
+#include "sync/log_reader.h"
+#include "sync/node.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Makes tables of contact events, presentations and media clocks from the log of a run."};
+  std::vector<std::string> logs;
+  std::string out = ".";
+  app.add_option("LOG", logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
+  app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
+  sync::parse_or_exit(app, "export_events", argc, argv);
+
+  std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv");
+  events << sync::events_csv_names();
+  presented << sync::presented_csv_names();
+  clocks << sync::media_clock_csv_names();
+  std::set<std::int64_t> seen;
+  std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
+  for (const std::string& path : logs) {
+    const sync::MappedFile file(path);
+    sync::LogScanner scanner(file.bytes());
+    for (sync::LogEvent e; scanner.next(e);) {
+      if (e.channel == channels::kContactEvents)
+        if (const auto m = sync::decode<contact_events_t>(e.data.data(), e.data.size()))
+          for (const contact_event_t& event : m->events)
+            if (seen.insert(event.event_id).second) events << sync::csv_row(event, m->clock);
+      if (e.channel == channels::kPresented)
+        if (const auto m = sync::decode<presented_t>(e.data.data(), e.data.size()))
+          for (const presentation_t& p : m->reports)
+            if (reported.insert({m->header.source, p.event_id, p.part}).second)
+              presented << sync::csv_row(m->modality, p);
+      if (e.channel == channels::kMediaClock)
+        if (const auto m = sync::decode<media_clock_t>(e.data.data(), e.data.size())) clocks << sync::csv_row(*m);
+    }
+  }
+  events.close(), presented.close(), clocks.close();
+  if (!events || !presented || !clocks)
+    throw std::runtime_error("cannot write the tables to " + out + "; give --out a folder that can be written");
+  std::cout << seen.size() << " events, " << reported.size() << " presentations\n";
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("export_events", e);
+}

@@ -1,0 +1,34 @@
+// Who a process is on the bus, and the hashes that name processes and assets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tactus::sync {
+
+// FNV-1a (Fowler, Noll, Vo; draft-eastlake-fnv, section 2): small, public, and the same in every language.
+constexpr std::uint32_t fnv1a_32(std::string_view text) {
+  std::uint32_t h = 2166136261u;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+  return h;
+}
+std::int64_t fnv1a_64(const void* data, std::size_t size);
+
+struct Identity {
+  std::string node;              // process name, e.g. "audio_node"
+  std::int32_t source = 0;       // hash of it
+  std::int64_t incarnation = 0;  // random, > 0
+  std::int64_t run_id = 1;       // of the cluster run
+
+  // Draws a fresh incarnation from the operating system. Throws std::system_error when it gives no random numbers.
+  static Identity fresh(std::string node, std::int64_t run_id);
+};
+
+// Ids of events and contacts: 24 bits of the incarnation above 40 bits that count.
+constexpr std::int64_t prefixed_id(std::int64_t incarnation, std::int64_t count) {
+  return ((incarnation & 0x7fffff) << 40) | (count & ((std::int64_t{1} << 40) - 1));
+}
+
+}  // namespace tactus::sync

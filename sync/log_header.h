@@ -1,0 +1,22 @@
+// The header of a message of any type: every type of ours has it first, behind LCM's fingerprint of 8 bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <tactus/header_t.hpp>
+
+namespace tactus::sync {
+
+// Nothing when the bytes are too few or their values cannot be a header, as in a message of another system.
+inline std::optional<header_t> peek_header(const void* data, std::size_t size) {
+  constexpr int kFingerprintBytes = 8;
+  header_t h{};
+  if (size > INT32_MAX ||
+      h._decodeNoHash(data, kFingerprintBytes, static_cast<int>(size) - kFingerprintBytes) < 0 ||
+      h.sim_time_ns < -1 || h.publish_time_ns < 0 || h.run_id <= 0 || h.incarnation <= 0 || h.seq < 0)
+    return std::nullopt;
+  return h;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,116 @@
+#include "sync/log_reader.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+
+namespace tactus::sync {
+namespace {
+
+// LCM allows channel names of 63 characters and messages of 256 MB.
+constexpr std::uint32_t kMaxChannelBytes = 63;
+constexpr std::uint32_t kMaxDataBytes = 1u << 28;
+
+std::uint64_t big_endian(const std::uint8_t* p, int bytes) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < bytes; ++i) value = value << 8 | p[i];
+  return value;
+}
+
+bool printable(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
+}
+
+}  // namespace
+
+bool LogScanner::sync_at(std::size_t at) const {
+  return at + 4 <= bytes_.size() && big_endian(&bytes_[at], 4) == kLogSync;
+}
+
+bool LogScanner::event_at(std::size_t at, LogEvent& event) const {
+  if (at + kLogEventHeaderBytes > bytes_.size() || !sync_at(at)) return false;
+  const std::uint8_t* p = &bytes_[at];
+  const std::uint64_t channel_bytes = big_endian(p + 20, 4);
+  const std::uint64_t data_bytes = big_endian(p + 24, 4);
+  if (channel_bytes < 1 || channel_bytes > kMaxChannelBytes || data_bytes > kMaxDataBytes ||
+      at + kLogEventHeaderBytes + channel_bytes + data_bytes > bytes_.size())
+    return false;
+  event.number = static_cast<std::int64_t>(big_endian(p + 4, 8));
+  event.timestamp_us = static_cast<std::int64_t>(big_endian(p + 12, 8));
+  event.channel = {reinterpret_cast<const char*>(p) + kLogEventHeaderBytes, channel_bytes};
+  event.data = bytes_.subspan(at + kLogEventHeaderBytes + channel_bytes, data_bytes);
+  return printable(event.channel);
+}
+
+std::size_t LogScanner::next_event_after(std::size_t at, std::size_t until) const {
+  static constexpr std::uint8_t word[4] = {0xED, 0xA1, 0xDA, 0x01};
+  LogEvent ignored;
+  while (at < until) {
+    const void* found = memmem(&bytes_[at], bytes_.size() - at, word, sizeof word);
+    if (found == nullptr) return until;
+    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes_.data());
+    if (at < until && event_at(at, ignored)) return at;
+    ++at;
+  }
+  return until;
+}
+
+void LogScanner::skip_to(std::size_t at) {
+  ++damaged_regions_;
+  damaged_bytes_ += static_cast<std::int64_t>(at - at_);
+  at_ = at;
+}
+
+bool LogScanner::next(LogEvent& event) {
+  while (at_ < bytes_.size()) {
+    if (!event_at(at_, event)) {
+      skip_to(next_event_after(at_ + 1, bytes_.size()));
+      continue;
+    }
+    const std::size_t end = at_ + kLogEventHeaderBytes + event.channel.size() + event.data.size();
+    if (end < bytes_.size() && !sync_at(end)) {
+      // Either the damage begins behind this event, or this event's length is a lie that swallows intact ones.
+      const std::size_t swallowed = next_event_after(at_ + kLogEventHeaderBytes, end);
+      if (swallowed < end) {
+        skip_to(swallowed);
+        continue;
+      }
+    }
+    at_ = end;
+    ++events_;
+    return true;
+  }
+  return false;
+}
+
+MappedFile::MappedFile(const std::string& path) {
+  const auto refuse = [&](int fd) {
+    const std::string why = strerror(errno);
+    if (fd >= 0) close(fd);
+    throw std::runtime_error("cannot read " + path + " (" + why + "); give the path of a log");
+  };
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (fd < 0 || fstat(fd, &status) != 0) refuse(fd);
+  if (S_ISDIR(status.st_mode)) errno = EISDIR, refuse(fd);
+  if (status.st_size > 0) {
+    const auto size = static_cast<std::size_t>(status.st_size);
+    void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
+    if (start == MAP_FAILED) refuse(fd);
+    madvise(start, size, MADV_SEQUENTIAL);
+    bytes_ = {static_cast<const std::uint8_t*>(start), size};
+  }
+  close(fd);
+}
+
+MappedFile::~MappedFile() {
+  if (!bytes_.empty()) munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
+}
+
+}  // namespace tactus::sync

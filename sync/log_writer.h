@@ -1,0 +1,70 @@
+// Writes an LCM event log that the stock tools read. What the disk refuses is kept up to a bound, then dropped and
+// counted; the file always ends at the end of an event.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::sync {
+
+// Where the bytes go.
+class LogSink {
+ public:
+  virtual ~LogSink() = default;
+  // All of the bytes or none of them. Empty when done, else why not.
+  virtual std::string append(std::span<const std::uint8_t> bytes) = 0;
+};
+
+// A file that did not exist before.
+class FileSink : public LogSink {
+ public:
+  // Throws std::runtime_error with one sentence.
+  explicit FileSink(const std::string& path);
+  ~FileSink() override;
+  std::string append(std::span<const std::uint8_t> bytes) override;
+
+ private:
+  int fd_ = -1;
+  std::int64_t size_ = 0;
+};
+
+class LogWriter {
+ public:
+  // What waits for a disk that is full or slow.
+  static constexpr std::size_t kMaxWaitingBytes = 64 << 20;
+
+  explicit LogWriter(std::unique_ptr<LogSink> sink, std::size_t max_waiting_bytes = kMaxWaitingBytes);
+
+  // Stamps never fall back: one that does is raised to the one before.
+  void write(std::int64_t timestamp_us, std::string_view channel, std::span<const std::uint8_t> data);
+  // Hands everything that waits to the sink.
+  void flush();
+
+  std::int64_t events() const { return events_; }
+  // Events that found no room.
+  std::int64_t lost() const { return lost_; }
+  // Why the last flush failed; empty: it did not.
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  std::unique_ptr<LogSink> sink_;
+  std::size_t max_waiting_bytes_;
+  // In blocks of whole events, so that a disk that is nearly full takes what it can.
+  std::deque<std::vector<std::uint8_t>> blocks_;
+  std::size_t waiting_bytes_ = 0;
+  std::int64_t last_us_ = INT64_MIN;
+  std::int64_t events_ = 0;
+  std::int64_t lost_ = 0;
+  std::string trouble_;
+};
+
+// dir/run.lcmlog, or dir/run.2.lcmlog, dir/run.3.lcmlog, ... when those before exist: a restarted recorder overwrites
+// nothing.
+std::string new_log_path(const std::string& dir);
+
+}  // namespace tactus::sync

@@ -1,0 +1,194 @@
+#include "sync/node.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <utility>
+
+#include "sync/kernel_drops.h"
+
+namespace tactus::sync {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void request_stop(int) { stop_requested = true; }
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+Realtime parse_realtime(const std::string& text) {
+  return text == "require" ? Realtime::kRequire : text == "off" ? Realtime::kOff : Realtime::kTry;
+}
+
+std::string enter(const Declaration& d, const NodeOptions& o) {
+  if (o.check) std::exit(0);
+  catch_signals();
+  // Timers of normal threads are rounded up by 50 us unless told otherwise.
+  prctl(PR_SET_TIMERSLACK, 1000);
+  return set_realtime(parse_realtime(o.realtime), d.fifo_priority);
+}
+
+constexpr Nanoseconds kReportPeriod{100'000'000};
+constexpr Nanoseconds kRateWindow{1'000'000'000};
+
+}  // namespace
+
+void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
+  name = d.node;
+  app.description(d.about);
+  app.add_option("--group", bus.group, "multicast group of the bus")->capture_default_str();
+  app.add_option("--port", bus.port, "UDP port of the bus; bulk data uses the next one")
+      ->envname("TACTUS_PORT")
+      ->check(CLI::Range(1, 65534))
+      ->capture_default_str();
+  app.add_option("--ttl", bus.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255))->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
+      ->envname("TACTUS_RUN_ID")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--name", name, "name of this process on the bus")->capture_default_str();
+  app.add_option("--realtime", realtime, "real-time priority: require, try or off")
+      ->check(CLI::IsMember({"require", "try", "off"}))
+      ->capture_default_str();
+  app.add_option("--out", out, "folder for what this node writes")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
+  app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
+  app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
+}
+
+void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& e) {
+    std::exit(app.exit(e));
+  } catch (const CLI::ParseError& e) {
+    std::cerr << node << ": " << e.what() << "; see " << node << " --help\n";
+    std::exit(1);
+  }
+}
+
+int fail(const std::string& node, const std::exception& e) {
+  const std::string what = e.what();
+  std::cerr << (what.starts_with(node) ? "" : node + ": ") << what << "\n";
+  return 1;
+}
+
+Node::Node(Declaration declaration, NodeOptions options)
+    : declaration_(std::move(declaration)),
+      options_(std::move(options)),
+      scheduling_(enter(declaration_, options_)),
+      bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
+      loop_(declaration_.rate_Hz) {
+  health_.tool = -1;
+  health_.nominal_rate_Hz = declaration_.rate_Hz;
+  rate_since_ = tick_begin_ = next_report_ = host_now();
+  std::cerr << options_.name << ": " << declaration_.rate_Hz << " Hz, " << scheduling_ << ", "
+            << lcm_url(options_.bus, options_.bus.port) << std::endl;
+}
+
+Node::~Node() = default;
+
+bool Node::running() const { return !stop_requested; }
+
+void Node::set_rate(double rate_Hz) {
+  loop_.set_rate(rate_Hz);
+  health_.nominal_rate_Hz = rate_Hz;
+}
+
+void Node::set_state(std::int8_t state, std::string note) {
+  health_.state = state;
+  note_ = std::move(note);
+}
+
+void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz) {
+  overridden_ = true;
+  health_.ticks = ticks;
+  health_.missed_ticks = missed;
+  health_.nominal_rate_Hz = rate_Hz;
+}
+
+void Node::end_tick(HostTime now) {
+  tick_.add(now - tick_begin_);
+  if (is_realtime() && guard_.tick(tick_begin_, now)) {
+    leave_realtime();
+    scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
+    std::cerr << options_.name << ": " << scheduling_ << std::endl;
+  }
+}
+
+HostTime Node::wait() {
+  const HostTime end = host_now();
+  end_tick(end);
+  if (end >= next_report_) report(end);
+  const HostTime now = loop_.wait();
+  wake_.add(loop_.wake_lateness());
+  tick_begin_ = now;
+  bus_.drain(now);
+  return now;
+}
+
+HostTime Node::wait_for_event() {
+  const HostTime end = host_now();
+  end_tick(end);
+  if (end >= next_report_) report(end);
+  bus_.wait(from_seconds(1 / loop_.deadlines().rate_Hz()));
+  ++event_ticks_;
+  tick_begin_ = host_now();
+  bus_.drain(tick_begin_);
+  return tick_begin_;
+}
+
+node_health_t Node::health_message(HostTime now) {
+  node_health_t m = health_;
+  m.header.sim_time_ns = -1;
+  m.node = options_.name;
+  m.modality = declaration_.modality;
+  m.owes = declaration_.owes;
+  m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
+  m.tick = tick_.to_message();
+  m.wake = wake_.to_message();
+  for (const auto& inbox : bus_.inboxes()) {
+    const InputCount& c = inbox->count();
+    input_health_t in{};
+    in.channel = c.channel;
+    // Clocks of another run are not ours: their messages are aged by arrival.
+    const bool ours = c.newest_run_id == bus_.identity().run_id;
+    in.age_ns = c.newest_publish_ns < 0 ? -1 : ours ? to_ns(now) - c.newest_publish_ns : (now - c.newest_arrival).count();
+    if (in.age_ns < -1) in.age_ns = 0;
+    in.messages = c.sequence.messages();
+    in.gaps = c.sequence.gaps() + c.dropped;
+    in.bad = c.bad;
+    m.inputs.push_back(in);
+  }
+  m.input_count = static_cast<std::int32_t>(m.inputs.size());
+  return m;
+}
+
+void Node::report(HostTime now) {
+  next_report_ = std::max(next_report_ + kReportPeriod, now);
+  if (!overridden_) {
+    health_.ticks = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
+    health_.missed_ticks = loop_.deadlines().missed();
+  }
+  if (now - rate_since_ >= kRateWindow) {
+    health_.rate_Hz = static_cast<double>(health_.ticks - ticks_at_rate_since_) / to_seconds(now - rate_since_);
+    rate_since_ = now;
+    ticks_at_rate_since_ = health_.ticks;
+  }
+  if (reports_++ % 10 == 0) health_.kernel_drops = kernel_drops();
+  node_health_t m = health_message(now);
+  bus_.publish(channels::kNodeHealth, m);
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,48 @@
+#include "sync/pacing.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace tactus::sync {
+
+HostTime host_now() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return host_time(t.tv_sec * 1'000'000'000 + t.tv_nsec);
+}
+
+void Deadlines::set_rate(double rate_Hz) {
+  if (!(rate_Hz > 0 && rate_Hz <= 10000))
+    throw std::invalid_argument("a rate of " + std::to_string(rate_Hz) + " Hz is impossible; choose 0 < rate <= 10000 Hz");
+  if (rate_Hz == rate_Hz_) return;
+  rate_Hz_ = rate_Hz;
+  start_ = next_;
+  since_start_ = 0;
+}
+
+std::int64_t Deadlines::advance(HostTime now) {
+  const double period_ns = 1e9 / rate_Hz_;
+  std::int64_t skipped = 0;
+  if (now > next_) skipped = static_cast<std::int64_t>(static_cast<double>((now - next_).count()) / period_ns);
+  since_start_ += 1 + skipped;
+  next_ = start_ + Nanoseconds(std::llround(static_cast<double>(since_start_) * period_ns));
+  ++ticks_;
+  missed_ += skipped;
+  return skipped;
+}
+
+HostTime Loop::wait() {
+  const std::int64_t deadline = to_ns(deadlines_.next());
+  const timespec t{deadline / 1'000'000'000, deadline % 1'000'000'000};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+  const HostTime now = host_now();
+  lateness_ = std::max(Nanoseconds(0), now - deadlines_.next());
+  deadlines_.advance(now);
+  return now;
+}
+
+}  // namespace tactus::sync

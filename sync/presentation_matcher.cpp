@@ -1,0 +1,208 @@
+#include "sync/presentation_matcher.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace tactus::sync {
+namespace {
+
+// A sense has at most three parts; with as many nodes as anyone would run, this many reports of one event.
+constexpr std::size_t kMaxReportsPerEvent = 64;
+
+std::size_t place(const std::string& modality) {
+  static const std::array<std::string, 4> known = {"haptic", "audio", "visual", "thermal"};
+  return static_cast<std::size_t>(std::distance(known.begin(), std::find(known.begin(), known.end(), modality)));
+}
+
+bool was_presented(std::int8_t outcome) {
+  return outcome == presentation_t::PRESENTED || outcome == presentation_t::LATE ||
+         outcome == presentation_t::INAUDIBLE;
+}
+
+// Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
+bool is_onset(std::int8_t part, std::int8_t kind) {
+  return part == presentation_t::WHOLE ||
+         part == (kind == contact_event_t::HIT ? presentation_t::TRANSIENT : presentation_t::CONSTRAINT);
+}
+
+}  // namespace
+
+bool named_before(const std::string& a, const std::string& b) {
+  return std::pair(place(a), a) < std::pair(place(b), b);
+}
+
+PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, HostTime arrival) {
+  const auto it = events_.find(id);
+  if (it != events_.end()) return &it->second;
+  if (events_.size() >= kMaxEvents) return ++overflow_, nullptr;
+  forget_.emplace(arrival + kSettleAfter + kRemember, id);
+  return &events_[id];
+}
+
+void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
+  const bool ours = own_run_ == 0 || m.header.run_id == own_run_;
+  TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
+  if (!ours) {
+    SenderClock& clock = foreign_clocks_[m.header.source];
+    clock.observe(m.header.publish_time_ns, arrival, false);
+    map.host = clock.to_host(m.clock.host_ns, arrival);
+  }
+  for (const contact_event_t& e : m.events) {
+    Event* event = find_or_add(e.event_id, arrival);
+    if (event == nullptr || event->known) continue;
+    event->known = true;
+    event->kind = e.kind;
+    event->tool = e.tool;
+    event->source = ours ? m.header.source : 0;  // a foreign simulation's health is not heeded
+    event->incarnation = m.header.incarnation;
+    // Nothing is published before its time.
+    event->time = std::min(map.to_host(sim_time(e.time_ns)), arrival);
+    due_.emplace(std::max(event->time + kSettleAfter, arrival + kSettleAfter / 2), e.event_id);
+    ++(e.kind == contact_event_t::BEGIN ? begins_ : e.kind == contact_event_t::HIT ? hits_ : ends_);
+  }
+}
+
+void PresentationMatcher::observe(const node_health_t& m, HostTime) {
+  if (own_run_ == 0) own_run_ = m.header.run_id;
+  if (m.header.run_id != own_run_) {
+    ++foreign_;
+    return;
+  }
+  Renderer& r = renderers_[m.header.source];
+  r.modality = m.modality;
+  r.owes = m.owes;
+  r.tool = m.tool;
+  const bool returned = r.life.observe(m.header.incarnation, m.state, host_time(m.header.publish_time_ns));
+  std::erase_if(last_debts_, [&](const LastDebt& d) {
+    return d.source == m.header.source || d.simulation == m.header.source;
+  });
+  if (r.modality.empty()) return;
+  DebtTally& tally = tallies_[r.modality];
+  if (returned) {
+    tally.dead -= r.dead_unless_it_returns;
+    tally.stalled += r.dead_unless_it_returns;
+  }
+  r.dead_unless_it_returns = 0;
+}
+
+void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
+  if (m.header.run_id != own_run_) {
+    ++foreign_;
+    return;
+  }
+  for (const presentation_t& p : m.reports) {
+    Event* event = find_or_add(p.event_id, arrival);
+    if (event == nullptr || event->reports.size() >= kMaxReportsPerEvent) continue;
+    const auto same = [&](const Report& r) { return r.source == m.header.source && r.part == p.part; };
+    if (std::any_of(event->reports.begin(), event->reports.end(), same)) continue;
+    event->reports.push_back({m.header.source, m.modality, p.part, p.outcome, p.presented_ns});
+    if (event->settled) ++late_reports_;
+  }
+}
+
+void PresentationMatcher::advance(HostTime now) {
+  while (!due_.empty() && due_.begin()->first <= now) {
+    settle(events_.at(due_.begin()->second), now, false);
+    due_.erase(due_.begin());
+  }
+  while (!forget_.empty() && forget_.begin()->first <= now) {
+    const auto it = events_.find(forget_.begin()->second);
+    forget_.erase(forget_.begin());
+    if (!it->second.known) unknown_reports_ += static_cast<std::int64_t>(it->second.reports.size());
+    events_.erase(it);
+  }
+}
+
+void PresentationMatcher::finish(HostTime now) {
+  advance(now);
+  for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
+  due_.clear();
+  // All processes end before the log of them does: that is no death.
+  for (const LastDebt& d : last_debts_) {
+    --tallies_[d.modality].owed;
+    --tallies_[d.modality].dead;
+  }
+  last_debts_.clear();
+}
+
+bool PresentationMatcher::owes(const Renderer& r, const Event& e) const {
+  const int kind = e.kind == contact_event_t::BEGIN ? node_health_t::OWES_BEGIN
+                   : e.kind == contact_event_t::HIT ? node_health_t::OWES_HIT
+                                                    : 0;
+  if (r.modality.empty() || (r.owes & kind) == 0) return false;
+  return (r.owes & node_health_t::OWES_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
+}
+
+void PresentationMatcher::settle(Event& e, HostTime now, bool last) {
+  e.settled = true;
+  for (auto& [source, renderer] : renderers_)
+    if (owes(renderer, e)) settle_debt(renderer, source, e, now, last);
+  count_asynchrony(e);
+}
+
+void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Event& e, HostTime now, bool last) {
+  const NodeLife::Answer life = r.life.during(e.time, e.time + kReportsWithin, now);
+  if (life.fate == NodeLife::Fate::kAbsent) return;
+  DebtTally& tally = tallies_[r.modality];
+  std::int64_t* outcome = nullptr;
+  for (const Report& report : e.reports) {
+    if (report.source != source) continue;
+    if (was_presented(report.outcome)) {
+      outcome = &tally.presented;
+      break;
+    }
+    const bool by_profile = report.outcome == presentation_t::DROPPED_BY_PROFILE;
+    if (by_profile || outcome == nullptr) outcome = by_profile ? &tally.dropped_by_profile : &tally.dropped_late;
+  }
+  if (outcome == nullptr) {
+    const auto simulation = renderers_.find(e.source);
+    const bool source_died = simulation != renderers_.end() &&
+                             simulation->second.life.died_before(e.incarnation, e.time + kRepeated, now);
+    if (last && (life.may_return || life.fate == NodeLife::Fate::kUndecided || source_died)) return;
+    if (life.fate == NodeLife::Fate::kStalled) {
+      outcome = &tally.stalled;
+    } else if (life.fate == NodeLife::Fate::kDead || source_died) {
+      outcome = &tally.dead;
+      if (life.may_return) ++r.dead_unless_it_returns;
+      if (simulation != renderers_.end() && simulation->second.life.silent_since(e.time + kEndsWithin, now))
+        last_debts_.push_back({source, e.source, r.modality});
+    } else {
+      outcome = &tally.lost;
+    }
+  }
+  ++tally.owed;
+  ++*outcome;
+}
+
+void PresentationMatcher::count_asynchrony(const Event& e) {
+  // Of several nodes of one sense (walls of a room) the first.
+  std::map<std::string, std::int64_t> onset;
+  for (const Report& r : e.reports) {
+    if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;
+    const auto [it, first] = onset.emplace(r.modality, r.presented_ns);
+    if (!first) it->second = std::min(it->second, r.presented_ns);
+  }
+  for (const auto& [a, time_a] : onset)
+    for (const auto& [b, time_b] : onset)
+      if (named_before(a, b)) pairs_[{a, b}].add(Nanoseconds(time_b - time_a));
+}
+
+sync_report_t PresentationMatcher::report() const {
+  sync_report_t m{};
+  m.header.sim_time_ns = -1;
+  m.begins = begins_;
+  m.hits = hits_;
+  m.ends = ends_;
+  for (const auto& [name, t] : tallies_)
+    m.modalities.push_back(
+        {name, t.owed, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
+  m.modality_count = static_cast<std::int32_t>(m.modalities.size());
+  for (const auto& [names, soa] : pairs_)
+    m.pairs.push_back({names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
+                       soa.quantile(0.95).count()});
+  m.pair_count = static_cast<std::int32_t>(m.pairs.size());
+  return m;
+}
+
+}  // namespace tactus::sync

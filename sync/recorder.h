@@ -1,0 +1,65 @@
+// What the recorder does with what it hears: holds it back until the scene is there, then writes it, and counts. Pure but
+// for the sink that it is given.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <tactus/log_info_t.hpp>
+
+#include "sync/log_writer.h"
+#include "sync/recorder_head.h"
+#include "sync/recorder_tap.h"
+#include "sync/sequence.h"
+
+namespace tactus::sync {
+
+class Recorder {
+ public:
+  // Without a scene after so long, or with so much waiting for it, the log begins without.
+  static constexpr Nanoseconds kWaitForScene{5'000'000'000};
+  static constexpr std::size_t kMaxHeldBytes = 32 << 20;
+  // A disk that refused is tried again after so long.
+  static constexpr Nanoseconds kRetryAfter{1'000'000'000};
+
+  // info: all but header and live_from_ns.
+  Recorder(Identity identity, log_info_t info, LogWriter writer, HostTime start);
+
+  void push(const TapBatch& batch);
+  // The scene is complete: it goes to the head of the log, if that is not written yet.
+  void begin(const std::vector<HeadAsset>& assets, HostTime now);
+  // Call every 100 ms or more often: begins when it has waited long enough, and hands what there is to the disk.
+  void poll(HostTime now);
+  // Begins if nothing made it before, and writes all.
+  void finish(HostTime now);
+
+  bool begun() const { return begun_; }
+  bool failing() const { return !writer_.trouble().empty(); }
+  std::int64_t lost() const { return writer_.lost(); }
+  // Messages missing in the numbering of their sender, over all channels.
+  std::int64_t gaps() const;
+  // One line: what was written, what is missing and where.
+  std::string note(std::int64_t tap_overflow) const;
+
+ private:
+  struct Held {
+    HostTime arrival;
+    std::string channel;
+    Bytes data;
+  };
+  void write(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+
+  Identity identity_;
+  log_info_t info_;
+  LogWriter writer_;
+  HostTime start_;
+  bool begun_ = false;
+  std::vector<Held> held_;
+  std::size_t held_bytes_ = 0;
+  HostTime next_flush_{};
+  std::map<std::string, SequenceTracker, std::less<>> sequences_;
+};
+
+}  // namespace tactus::sync

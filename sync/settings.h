@@ -1,0 +1,84 @@
+// The options of a node: a struct with defaults (generated from its settings.csv) and the table that fills it by name,
+// from the scene or from the command line.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tactus::sync {
+
+// A number with a unit as text, in the base unit given: ("20ms", "s") -> 0.02, ("1.5 kHz", "Hz") -> 1500.
+// A number without unit is taken in the base unit. Throws std::invalid_argument with one sentence.
+double parse_quantity(std::string_view text, std::string_view unit);
+
+// One row of a settings.csv.
+struct SettingRow {
+  const char* name;     // as in XML and --set
+  const char* unit;     // "s", "Hz", "N/m", "1", "count", "bool", or "a|b|c" for a choice
+  const char* initial;  // the default, in that unit
+  double min;
+  double max;
+  const char* meaning;
+  const char* source;
+};
+
+// Checks a value against its row. Throws std::invalid_argument with one sentence that names the setting and its range.
+void check_setting(const SettingRow& row, std::string_view value);
+
+template <class Settings>
+struct SettingField {
+  SettingRow row;
+  std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*> field;
+};
+
+// Sets one option by name. Throws std::invalid_argument when there is none of that name or the value does not fit.
+template <class Settings>
+void set(Settings& settings, std::span<const SettingField<Settings>> table, std::string_view name,
+         std::string_view value) {
+  for (const auto& entry : table) {
+    if (name != entry.row.name) continue;
+    check_setting(entry.row, value);
+    std::visit(
+        [&](auto field) {
+          using Value = std::remove_reference_t<decltype(settings.*field)>;
+          if constexpr (std::is_same_v<Value, std::string>)
+            settings.*field = std::string(value);
+          else if constexpr (std::is_same_v<Value, bool>)
+            settings.*field = value == "true" || value == "1";
+          else
+            settings.*field = static_cast<Value>(parse_quantity(value, std::string_view(entry.row.unit) == "count" ? "1" : entry.row.unit));
+        },
+        entry.field);
+    return;
+  }
+  throw std::invalid_argument("there is no setting \"" + std::string(name) + "\"");
+}
+
+// Applies what a scene says of `node` (a list of {node, name, value}), then what the command line says ("name=value").
+// Returns one sentence per refused entry; the others hold.
+template <class Settings, class SceneSettings>
+std::vector<std::string> apply_settings(Settings& settings, std::span<const SettingField<Settings>> table,
+                                        std::string_view node, const SceneSettings& from_scene,
+                                        const std::vector<std::string>& from_command_line) {
+  std::vector<std::string> refused;
+  const auto try_set = [&](std::string_view name, std::string_view value) {
+    try {
+      set(settings, table, name, value);
+    } catch (const std::invalid_argument& e) {
+      refused.push_back(std::string(node) + ": " + e.what());
+    }
+  };
+  for (const auto& s : from_scene)
+    if (s.node == node) try_set(s.name, s.value);
+  for (const std::string& s : from_command_line) {
+    const auto equals = s.find('=');
+    try_set(s.substr(0, equals), equals == std::string::npos ? "" : s.substr(equals + 1));
+  }
+  return refused;
+}
+
+}  // namespace tactus::sync

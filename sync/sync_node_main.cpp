@@ -1,0 +1,62 @@
+// sync_node: matches contact events with what each sense reports of them. It coordinates; nobody needs it to run.
+//
+//   in   CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
+//   out  SYNC_REPORT                              once a second
+//
+// Losing CONTACT_EVENTS or PRESENTED only leaves it less to report; a sense that falls silent is named in the report.
+#include <CLI/CLI.hpp>
+
+#include "sync/node.h"
+#include "sync/presentation_matcher.h"
+
+using namespace tactus;
+
+namespace {
+
+// One second of each at the most that they are sent.
+constexpr std::size_t kEventsQueue = 4096;
+constexpr std::size_t kReportsQueue = 4096;
+constexpr std::size_t kHealthQueue = 1024;
+constexpr sync::Nanoseconds kReportPeriod{1'000'000'000};
+
+template <class Message>
+void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
+  while (const auto received = queue.pop()) matcher.observe(received->message, received->arrival);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "sync_node",
+                                      .modality = "",
+                                      .rate_Hz = 50,  // at the least: it wakes when something arrives
+                                      .fifo_priority = 40,
+                                      .about = "Matches contact events with what each sense reports of them."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+
+  sync::Node node(declaration, options);
+  auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);
+  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, kEventsQueue);
+  auto& presented = node.bus().queue<presented_t>(channels::kPresented, kReportsQueue);
+  sync::PresentationMatcher matcher(options.run_id);
+  node.set_state(node_health_t::RUNNING);
+
+  sync::HostTime next_report = sync::host_now() + kReportPeriod;
+  while (node.running()) {
+    const sync::HostTime now = node.wait_for_event();
+    feed(matcher, health);
+    feed(matcher, events);
+    feed(matcher, presented);
+    matcher.advance(now);
+    if (now < next_report) continue;
+    next_report = std::max(next_report + kReportPeriod, now);
+    sync_report_t report = matcher.report();
+    node.bus().publish(channels::kSyncReport, report);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("sync_node", e);
+}

@@ -1,0 +1,78 @@
+// watch: shows once a second how every node of the running cluster fares.
+//
+//   in   NODE_HEALTH, SYNC_REPORT
+//   out  a table on stdout, redrawn in place on a terminal; or one line of JSON
+//
+// A node that falls silent is shown as LOST; without sync_node the line about the events is missing.
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <iostream>
+
+#include "sync/node.h"
+#include "sync/watch_table.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kPeriod{1'000'000'000};
+std::atomic<bool> stop{false};
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= 40 ? size.ws_col : 110;
+}
+
+void show(const sync::WatchTable& table, sync::HostTime now, bool json, bool in_place) {
+  if (json)
+    std::cout << table.to_json(now) << std::flush;
+  else  // to the corner, the table, and clear what is below
+    std::cout << (in_place ? "\033[H\033[2J" : "") << table.to_text(now, terminal_width()) << (in_place ? "" : "\n")
+              << std::flush;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Shows once a second how every node of the running cluster fares."};
+  sync::BusOptions bus_options;
+  bool once = false, json = false;
+  std::int64_t run_id = 0;
+  app.add_option("--group", bus_options.group, "multicast group of the bus")->capture_default_str();
+  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
+  app.add_option("--ttl", bus_options.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255));
+  app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all")->envname("TACTUS_RUN_ID");
+  app.add_flag("--once", once, "show one table and end; status 1 when no node was heard");
+  app.add_flag("--json", json, "one line of JSON a second instead of the table");
+  sync::parse_or_exit(app, "watch", argc, argv);
+  for (int s : {SIGINT, SIGTERM}) signal(s, [](int) { stop = true; });
+
+  sync::Bus bus(sync::Identity::fresh("watch", std::max<std::int64_t>(1, run_id)), bus_options);
+  auto& health = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
+  auto& report = bus.latest<sync_report_t>(channels::kSyncReport);
+  const bool in_place = !once && !json && isatty(STDOUT_FILENO) == 1;
+  sync::WatchTable table;
+  sync::HostTime next = sync::host_now() + kPeriod;
+  while (!stop && std::cout) {
+    bus.wait(kPeriod / 20);
+    const sync::HostTime now = sync::host_now();
+    bus.drain(now);
+    while (const auto m = health.pop())
+      if (run_id == 0 || m->message.header.run_id == run_id) table.observe(m->message, m->arrival);
+    if (const sync_report_t* m = report.take(); m && (run_id == 0 || m->header.run_id == run_id)) table.observe(*m);
+    if (now < next) continue;
+    next += kPeriod;
+    show(table, now, json, in_place);
+    if (once && table.empty())
+      throw std::runtime_error("heard no node on port " + std::to_string(bus_options.port) +
+                               " in one second; start watch with scripts/attach, or give its --port");
+    if (once) break;
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("watch", e);
+}
