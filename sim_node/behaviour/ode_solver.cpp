@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "sim_node/behaviour/ode_handles.h"
+#include "sim_node/behaviour/ode_joints.h"
+#include "sim_node/behaviour/solver.h"
+#include "sim_node/collision/ode_shapes.h"
+
+namespace tactus::sim {
+namespace {
+
+using ode::to_eigen;
+
+// Contacts that one step may solve, and storage for their feedback: it must outlive the step.
+constexpr std::size_t kMostPoints = 16384;
+
+// Below this a tangential speed has no direction, m/s.
+constexpr double kStill_m_s = 1e-9;
+
+dMass mass_of(const BodyDef& body) {
+  const Eigen::Matrix3d& i = body.inertia_kg_m2;
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(i);
+  if (!(body.mass_kg > 0) || !std::isfinite(body.mass_kg) || !i.allFinite() || cholesky.info() != Eigen::Success)
+    throw std::runtime_error("sim_node: body \"" + body.name +
+                             "\" has a mass or inertia that is not positive; correct its <inertial>");
+  dMass mass;
+  dMassSetParameters(&mass, body.mass_kg, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
+  return mass;
+}
+
+}  // namespace
+
+struct Solver::Engine {
+  ode::Library library;
+  ode::Owned<dWorldID> world;
+  dJointGroupID contact_joints;
+  std::vector<dBodyID> bodies;  // null: never moves
+  std::vector<bool> jointed;
+  std::unique_ptr<ode::Joints> joints;
+  std::unique_ptr<ode::Shapes> shapes;
+  struct Joined {
+    ManifoldPoint* point;
+    bool first_is_b;
+  };
+  std::vector<Joined> joined;
+  std::vector<dJointFeedback> feedback;
+  bool exact = false;
+  long long said_before = 0;  // messages up to the end of the construction
+
+  Engine() : world(dWorldCreate()), contact_joints(dJointGroupCreate(0)) {}
+  ~Engine() {
+    joints.reset();
+    shapes.reset();
+    dJointGroupDestroy(contact_joints);
+  }
+
+  dBodyID make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s) {
+    if (def.is_static || def.tool >= 0) return nullptr;
+    const dMass mass = mass_of(def);
+    const dBodyID id = dBodyCreate(world.get());
+    dBodySetMass(id, &mass);
+    const Eigen::Vector3d p = def.pose * def.centre_of_mass_m;
+    dBodySetPosition(id, p.x(), p.y(), p.z());
+    dQuaternion q;
+    ode::set_quaternion(Eigen::Quaterniond(def.pose.linear()).normalized(), q);
+    dBodySetQuaternion(id, q);
+    // ODE's step, v += g h then x += v h, lies exactly on the parabola when the speed belongs to the middle of the step
+    // before: half a step of gravity earlier.
+    Eigen::Vector3d v = def.velocity_m_s;
+    if (def.gravity) v -= gravity_m_s2 * (step_s / 2);
+    dBodySetLinearVel(id, v.x(), v.y(), v.z());
+    dBodySetGravityMode(id, def.gravity);
+    dBodySetAutoDisableFlag(id, 0);
+    dBodySetLinearDamping(id, std::min(1.0, def.linear_damping_1_s * step_s));
+    dBodySetAngularDamping(id, std::min(1.0, def.angular_damping_1_s * step_s));
+    dBodySetLinearDampingThreshold(id, 0);
+    dBodySetAngularDampingThreshold(id, 0);
+    return id;
+  }
+};
+
+Solver::Solver(const WorldDef& world, const Settings& settings)
+    : engine_(std::make_unique<Engine>()), settings_(settings), motions_(world.bodies.size()) {
+  const dWorldID w = engine_->world.get();
+  const Eigen::Vector3d g = world.gravity_m_s2;
+  dWorldSetGravity(w, g.x(), g.y(), g.z());
+  dWorldSetERP(w, settings.joint_erp);
+  dWorldSetCFM(w, settings.joint_cfm);
+  dWorldSetAutoDisableFlag(w, 0);
+  dWorldSetQuickStepNumIterations(w, settings.iterations);
+  dWorldSetQuickStepW(w, settings.over_relaxation);
+  dWorldSetContactMaxCorrectingVel(w, settings.correcting_speed_m_s);
+  dWorldSetContactSurfaceLayer(w, settings.surface_layer_m);
+  engine_->exact = settings.solver == "step";
+  for (const BodyDef& b : world.bodies) engine_->bodies.push_back(engine_->make_body(b, g, settings.step_s));
+  engine_->jointed.resize(world.bodies.size());
+  for (const JointDef& j : world.joints)
+    for (const int body : {j.parent, j.child})
+      if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
+  engine_->joints =
+      std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
+  engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies);
+  engine_->feedback.resize(kMostPoints);
+  engine_->joined.reserve(kMostPoints);
+  for (const ShapeDef& s : world.shapes) {
+    friction_.push_back(s.friction);
+    restitution_.push_back(s.restitution);
+  }
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const BodyDef& b = world.bodies[i];
+    const bool moves = engine_->bodies[i] != nullptr;
+    inert_.push_back({b.centre_of_mass_m,
+                      moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
+                      moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
+    BodyMotion& m = motions_[i];
+    m.position_m = b.pose.translation();
+    m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
+    m.centre_m = b.pose * b.centre_of_mass_m;
+    m.inverse_mass_1_kg = moves ? 1 / b.mass_kg : 0;
+    fall_m_s_.push_back(inert_[i].gravity_m_s);
+  }
+  shift_m_.resize(world.bodies.size());
+  read_bodies();
+  engine_->shapes->collide(contacts_);
+  engine_->said_before = ode::message_count();
+}
+
+Solver::~Solver() = default;
+
+void Solver::read_bodies() {
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const dBodyID id = engine_->bodies[i];
+    if (!id) continue;
+    BodyMotion& m = motions_[i];
+    m.centre_m = to_eigen(dBodyGetPosition(id));
+    m.orientation = ode::quaternion(dBodyGetQuaternion(id));
+    m.velocity_m_s = to_eigen(dBodyGetLinearVel(id));
+    m.spin_rad_s = to_eigen(dBodyGetAngularVel(id));
+    const Eigen::Matrix3d r = m.orientation.toRotationMatrix();
+    m.position_m = m.centre_m - r * inert_[i].centre_in_body_m;
+    m.inverse_inertia = r * inert_[i].inverse_inertia * r.transpose();
+  }
+}
+
+void Solver::add_force(int body, const Eigen::Vector3d& f, const Eigen::Vector3d& p) {
+  const auto i = static_cast<std::size_t>(body);
+  const dBodyID id = engine_->bodies[i];
+  if (!id) return;
+  dBodyAddForceAtPos(id, f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
+  fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
+}
+
+// A body that has just arrived overshot the surface within the step. It is put back to where it met it, so that it
+// bounces from there and is not thrown out later. Jointed bodies are left to their joints.
+void Solver::back_off(Manifold& c, bool is_new) {
+  const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
+  for (ManifoldPoint& p : c.used()) p.depth_m -= p.normal.dot(shift_m_[b] - shift_m_[a]);
+  if (!is_new) return;
+  const ManifoldPoint& deepest = c.points[0];
+  const double closing = -deepest.normal.dot(motions_[b].velocity_at(deepest.point_m) - motions_[a].velocity_at(deepest.point_m));
+  const double overshot = std::min(deepest.depth_m - settings_.surface_layer_m / 2, closing * settings_.step_s);
+  const double free_a = engine_->jointed[a] ? 0 : motions_[a].inverse_mass_1_kg;
+  const double free_b = engine_->jointed[b] ? 0 : motions_[b].inverse_mass_1_kg;
+  if (overshot <= 0 || free_a + free_b <= 0) return;
+  const Eigen::Vector3d n = deepest.normal;
+  const auto move = [&](std::size_t body, double by) {
+    if (by == 0) return;
+    shift_m_[body] += by * n;
+    const Eigen::Vector3d p = motions_[body].centre_m + shift_m_[body];
+    dBodySetPosition(engine_->bodies[body], p.x(), p.y(), p.z());
+  };
+  move(a, -overshot * free_a / (free_a + free_b));
+  move(b, overshot * free_b / (free_a + free_b));
+  for (ManifoldPoint& p : c.used()) p.depth_m -= overshot * p.normal.dot(n);
+}
+
+void Solver::join(Manifold& c) {
+  const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
+  const auto sa = static_cast<std::size_t>(c.shape_a), sb = static_cast<std::size_t>(c.shape_b);
+  const bool first_is_b = engine_->bodies[a] == nullptr;
+  const dBodyID first = engine_->bodies[first_is_b ? b : a], second = first_is_b ? nullptr : engine_->bodies[b];
+  dContact contact{};
+  dSurfaceParameters& s = contact.surface;
+  s.mode = dContactApprox1 | dContactFDir1 | dContactSoftERP | dContactSoftCFM | dContactBounce;
+  // A pair takes the geometric mean of friction and the smaller restitution, as scene.lcm says.
+  s.mu = std::sqrt(friction_[sa] * friction_[sb]);
+  s.bounce = std::min(restitution_[sa], restitution_[sb]);
+  s.bounce_vel = settings_.bounce_speed_m_s;
+  s.soft_erp = settings_.contact_erp;
+  s.soft_cfm = settings_.contact_cfm;
+  for (ManifoldPoint& p : c.used()) {
+    if (engine_->joined.size() >= kMostPoints) return;
+    // ODE bounds friction by a pyramid; turned so that one of its sides faces the motion to be, it is as wide as the
+    // cone. At 45 degrees it would be 41 % too wide.
+    Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + fall_m_s_[b] - motions_[a].velocity_at(p.point_m) - fall_m_s_[a];
+    sliding -= sliding.dot(p.normal) * p.normal;
+    const Eigen::Vector3d along = sliding.norm() > kStill_m_s ? sliding.normalized() : p.normal.unitOrthogonal();
+    const Eigen::Vector3d into_first = first_is_b ? p.normal : Eigen::Vector3d(-p.normal);
+    for (int k = 0; k < 3; ++k) {
+      contact.geom.pos[k] = p.point_m[k];
+      contact.geom.normal[k] = into_first[k];
+      contact.fdir1[k] = along[k];
+    }
+    contact.geom.depth = p.depth_m;
+    const dJointID id = dJointCreateContact(engine_->world.get(), engine_->contact_joints, &contact);
+    dJointAttach(id, first, second);
+    dJointSetFeedback(id, &engine_->feedback[engine_->joined.size()]);
+    engine_->joined.push_back({&p, first_is_b});
+  }
+}
+
+void Solver::step() {
+  // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
+  dRandSetSeed(static_cast<unsigned long>(++steps_));
+  engine_->joints->apply_passive(settings_.step_s);
+  std::fill(shift_m_.begin(), shift_m_.end(), Eigen::Vector3d::Zero());
+  engine_->joined.clear();
+  auto before = solved_.begin();
+  for (Manifold& c : contacts_) {
+    while (before != solved_.end() && before->before(c)) ++before;
+    back_off(c, before == solved_.end() || c.before(*before));
+    join(c);
+  }
+  if (engine_->exact)
+    dWorldStep(engine_->world.get(), settings_.step_s);
+  else
+    dWorldQuickStep(engine_->world.get(), settings_.step_s);
+  for (std::size_t i = 0; i < engine_->joined.size(); ++i) {
+    const auto [point, first_is_b] = engine_->joined[i];
+    const double along = to_eigen(engine_->feedback[i].f1).dot(point->normal);
+    point->normal_force_N = std::max(0.0, first_is_b ? along : -along);
+  }
+  dJointGroupEmpty(engine_->contact_joints);
+  for (std::size_t i = 0; i < fall_m_s_.size(); ++i) fall_m_s_[i] = inert_[i].gravity_m_s;
+  std::swap(contacts_, solved_);
+  read_bodies();
+  engine_->shapes->collide(contacts_);
+}
+
+std::int64_t Solver::complaints() const { return ode::message_count() - engine_->said_before; }
+double Solver::largest_joint_gap_m() const { return engine_->joints->largest_gap_m(); }
+
+}  // namespace tactus::sim

@@ -1,0 +1,102 @@
+#include "sim_node/behaviour/simulation.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+#include "sim_node/collision/closest_surface.h"
+
+namespace tactus::sim {
+
+namespace {
+
+constexpr std::size_t kMostBooks = 8;  // of a touch_model_t
+// A force may act so far outside the sphere around a body, m: the rounding of the wire and a step's motion.
+constexpr double kBeyond_m = 0.02;
+
+// Radius about its centre of mass of the sphere that holds each body.
+std::vector<double> reaches(const WorldDef& world) {
+  std::vector<double> out(world.bodies.size(), kBeyond_m);
+  for (const ShapeDef& s : world.shapes) {
+    const auto body = static_cast<std::size_t>(s.body);
+    if (world.bodies[body].is_static) continue;
+    const TriangleMesh* mesh = s.kind == ShapeKind::kMesh ? &world.meshes[static_cast<std::size_t>(s.mesh)] : nullptr;
+    const ClosestSurface surface(s, mesh);
+    const double from_centre = (s.pose * surface.centre() - world.bodies[body].centre_of_mass_m).norm();
+    // A plane that moves is a plate of its size.
+    const double bound = s.kind == ShapeKind::kPlane ? 0.5 * s.size_m.norm() : surface.bound_m();
+    out[body] = std::max(out[body], from_centre + bound + kBeyond_m);
+  }
+  return out;
+}
+
+}  // namespace
+
+Simulation::Simulation(const WorldDef& world, const Settings& settings)
+    : settings_(settings),
+      step_(sync::from_seconds(settings.step_s)),
+      ids_(0),
+      solver_(world, settings),
+      tracker_(surface_traits(world, settings), settings, ids_) {
+  tools_.reserve(world.tools.size());
+  const std::vector<double> reach_m = reaches(world);
+  for (std::size_t i = 0; i < world.tools.size(); ++i) {
+    const int body = world.tools[i].body;
+    tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_), ToolPush(settings, ids_, reach_m), {},
+                      Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(body)].pose.linear()).normalized()});
+  }
+  models_.resize(tools_.size());
+}
+
+void Simulation::start(std::int64_t incarnation) {
+  ids_.restart(incarnation);
+  look();
+}
+
+void Simulation::step(std::span<const tool_state_t> messages) {
+  for (Tool& tool : tools_) tool.news.clear();
+  for (const tool_state_t& m : messages)
+    if (static_cast<std::size_t>(m.tool) < tools_.size()) tools_[static_cast<std::size_t>(m.tool)].news.push_back(m);
+  for (Tool& tool : tools_)
+    for (const Push& push : tool.push.step(now(), tool.news, motions_))
+      solver_.add_force(push.body, push.force_N, push.point_m);
+  solver_.step();
+  // The events of the first instant have not been seen by anybody yet.
+  if (steps_++ > 0) events_.clear();
+  for (Tool& tool : tools_) tool.push.settle(solver_.bodies());
+  look();
+}
+
+void Simulation::look() {
+  tool_contacts_.clear();
+  motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
+  place_tools();
+  tracker_.update(now(), motions_, solver_.contacts(), solver_.solved(), events_);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    ToolTouch& touch = tools_[i].touch;
+    touch.update(now(), motions_, tools_[i].news, events_);
+    touch.describe(motions_, tool_contacts_);
+    models_[i] = touch.model();
+    tools_[i].push.books(models_[i].applied, kMostBooks);
+    models_[i].applied_count = static_cast<std::int32_t>(models_[i].applied.size());
+  }
+  std::stable_sort(events_.begin(), events_.end(),
+                   [](const contact_event_t& a, const contact_event_t& b) { return a.time_ns < b.time_ns; });
+}
+
+void Simulation::place_tools() {
+  for (Tool& tool : tools_) {
+    if (tool.body < 0) continue;
+    BodyMotion& m = motions_[static_cast<std::size_t>(tool.body)];
+    if (!tool.news.empty()) tool.orientation = to_eigen(tool.news.back().proxy.orientation).normalized();
+    m.orientation = tool.orientation;
+    m.position_m = m.centre_m = tool.touch.proxy();
+    m.velocity_m_s = tool.touch.proxy_velocity();
+  }
+}
+
+void Simulation::body_contacts(std::vector<contact_t>& out) const {
+  out.clear();
+  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.emplace_back());
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,65 @@
+// The bodies of a world and the laws that move them: one step of a world at a time. This header knows no engine; ODE
+// stays behind it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/collision/manifold.h"
+#include "sim_node/scene/world_def.h"
+#include "sim_node/settings.gen.h"
+
+namespace tactus::sim {
+
+class Solver {
+ public:
+  // Throws std::runtime_error with one sentence when a body cannot be simulated.
+  Solver(const WorldDef& world, const Settings& settings);
+  ~Solver();
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
+
+  // Acts during the next step, N, at a point of the world, m. Bodies that never move ignore it.
+  void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
+
+  // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses.
+  // Deterministic: the same steps from the same world are the same to the bit. Not for two threads at once.
+  // Realtime-safe once its lists have grown.
+  void step();
+
+  // Of every body of the world, tools and fixed bodies included (they stand still).
+  std::span<const BodyMotion> bodies() const { return motions_; }
+  // Contacts of the present poses, and those of the step before with the force that each point carried; both ordered.
+  std::span<const Manifold> contacts() const { return contacts_; }
+  std::span<const Manifold> solved() const { return solved_; }
+  // How often the engine said that it could not solve something, since the start.
+  std::int64_t complaints() const;
+  // How far apart the joints have come at most, m.
+  double largest_joint_gap_m() const;
+
+ private:
+  struct Engine;
+  struct Inert {  // in body axes; zero for what never moves
+    Eigen::Vector3d centre_in_body_m;
+    Eigen::Matrix3d inverse_inertia;
+    Eigen::Vector3d gravity_m_s;  // speed that gravity adds in a step
+  };
+  void read_bodies();
+  void back_off(Manifold& contact, bool is_new);
+  void join(Manifold& contact);
+
+  std::unique_ptr<Engine> engine_;
+  Settings settings_;
+  std::vector<double> friction_, restitution_;  // per shape
+  std::vector<Inert> inert_;
+  std::vector<Eigen::Vector3d> fall_m_s_;  // what gravity and forces add to each body's speed in the next step
+  std::vector<Eigen::Vector3d> shift_m_;   // by which each body was put back in this step
+  std::vector<BodyMotion> motions_;
+  std::vector<Manifold> contacts_, solved_;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,92 @@
+// One tool among the bodies: which surfaces it touches or may soon touch, and when its contacts began, hit and ended. The
+// tool is a ghost at its proxy's pose; the force is the haptic node's. Pure.
+#pragma once
+
+#include <span>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <vector>
+
+#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/collision/closest_surface.h"
+#include "sim_node/collision/contact_math.h"
+#include "sim_node/collision/ids.h"
+#include "sim_node/settings.gen.h"
+#include "sync/time.h"
+
+namespace tactus::sim {
+
+class ToolTouch {
+ public:
+  static constexpr std::size_t kMostPlanes = 8;  // of a touch_model_t
+
+  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids);
+
+  // One step, at `now`. news: messages of this tool since the last step, in order. Appends events.
+  void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
+              std::vector<contact_event_t>& events);
+
+  // The planes, nearest first; header and clock are the publisher's.
+  const touch_model_t& model() const { return model_; }
+  // Where the tool is: its proxy, as last heard of.
+  const Eigen::Vector3d& proxy() const { return proxy_; }
+  const Eigen::Vector3d& proxy_velocity() const { return proxy_velocity_; }
+  // Contacts of the tool.
+  void describe(std::span<const BodyMotion> bodies, std::vector<contact_t>& out) const;
+
+ private:
+  struct Surface {
+    ClosestSurface shape;
+    SurfaceTraits traits;
+    Eigen::Isometry3d from_body;     // body frame to shape frame
+    Eigen::Vector3d centre_in_body;  // of the sphere around the shape
+    double friction_static = 0.5, friction_dynamic = 0.5;  // of the pair
+    double compliance_1_Pa = 0;                            // of the pair
+  };
+  // A surface near the tool, followed from step to step.
+  struct Near {
+    std::int64_t contact_id = 0;
+    std::size_t surface = 0;
+    SurfacePlane plane;  // world
+    sync::SimTime seen{};
+    bool touching = false;
+    bool apart = true;  // while touching: within the hysteresis of its end
+    sync::SimTime apart_since{}, last_hit{};
+    bool has_hit = false;
+    double gap_m = 1, force_N = 0, impulse_N_s = 0;
+    double device_gap_m = 1;  // of the newest message
+    bool device_gap_known = false;
+    double closing_m_s = 0;   // speed at which the device came nearer, before
+  };
+
+  void look_around(sync::SimTime now, std::span<const BodyMotion> bodies);
+  void follow(sync::SimTime now, const SurfacePlane& plane, std::size_t surface);
+  void take(const tool_state_t& m, sync::SimTime now, std::span<const BodyMotion> bodies,
+            std::vector<contact_event_t>& events);
+  void judge(Near& n, sync::SimTime when, sync::SimTime before, sync::SimTime now, std::span<const BodyMotion> bodies,
+             std::vector<contact_event_t>& events);
+  void emit(const Near& n, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+            std::vector<contact_event_t>& events) const;
+  void write_model(sync::SimTime now, std::span<const BodyMotion> bodies);
+  double mass_kg(const Near& n, std::span<const BodyMotion> bodies) const;
+  const BodyMotion& body_of(const Near& n, std::span<const BodyMotion> bodies) const {
+    return bodies[static_cast<std::size_t>(surfaces_[n.surface].traits.body)];
+  }
+
+  int tool_, tool_body_, tool_material_;
+  double radius_m_, tool_mass_kg_;
+  Settings settings_;
+  Ids& ids_;
+  std::vector<Surface> surfaces_;
+  std::vector<Near> near_;
+  std::vector<SurfacePlane> found_;
+  touch_model_t model_{};
+
+  bool known_ = false;
+  Eigen::Vector3d proxy_{0, 0, 0}, device_{0, 0, 0}, velocity_{0, 0, 0}, proxy_velocity_{0, 0, 0};
+  sync::SimTime heard_{}, last_stamp_{};
+};
+
+}  // namespace tactus::sim

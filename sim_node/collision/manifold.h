@@ -1,0 +1,35 @@
+// What a collision query finds for one pair of shapes: up to four points that stand for the whole contact.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+namespace tactus::sim {
+
+struct ManifoldPoint {
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // world, between the surfaces or on one of them
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
+  double depth_m = 0;                                 // positive inside
+  int triangle_a = -1, triangle_b = -1;               // of a mesh; -1: none
+  double normal_force_N = 0;                          // once solved, mean over the step
+};
+
+inline constexpr int kMaxManifoldPoints = 4;
+
+struct Manifold {
+  int shape_a = -1, shape_b = -1;
+  int body_a = -1, body_b = -1;  // body_a < body_b
+  int count = 0;
+  std::array<ManifoldPoint, kMaxManifoldPoints> points;
+
+  std::span<const ManifoldPoint> used() const { return {points.data(), static_cast<std::size_t>(count)}; }
+  std::span<ManifoldPoint> used() { return {points.data(), static_cast<std::size_t>(count)}; }
+  bool before(const Manifold& o) const { return shape_a != o.shape_a ? shape_a < o.shape_a : shape_b < o.shape_b; }
+};
+
+// The deepest point, then each time the one furthest from those chosen: the corners of the patch. Without this the
+// stiffness of a contact would grow with its tessellation. Fills out.points and out.count.
+void reduce_points(std::span<const ManifoldPoint> found, Manifold& out);
+
+}  // namespace tactus::sim

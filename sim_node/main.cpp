@@ -1,0 +1,89 @@
+// sim_node: simulates the world at 1 kHz and says, with every step, what touches what.
+//
+//   in   TOOL_STATE       what each hand does: the force on the bodies is the opposite of what the hand feels
+//        NODE_HEALTH      a new process is given every body at once
+//        ASSET_REQUEST    chunks of the scene that somebody lacks
+//   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, in this order; SCENE_MANIFEST, ASSET_CHUNK
+//
+// Losing TOOL_STATE lets go of the bodies within 10 ms. A simulation that cannot keep up keeps its step: its time falls
+// behind the clock, and the map that it publishes says so.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <set>
+
+#include "sim_node/behaviour/simulation.h"
+#include "sim_node/publish/publisher.h"
+#include "sim_node/publish/sim_pacer.h"
+#include "sim_node/scene/load_sdf.h"
+#include "sim_node/scene/scene_assets.h"
+#include "sync/node.h"
+#include "sync/scene_exchange.h"
+
+using namespace tactus;
+
+namespace {
+
+sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::string>& from_command_line) {
+  sim::Settings settings;
+  const auto refused = sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
+  if (!refused.empty()) throw std::runtime_error(refused.front());
+  return settings;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "sim_node",
+                                      .modality = "",
+                                      .rate_Hz = 1000,
+                                      .fifo_priority = 50,
+                                      .about = "Simulates the world of a scene and publishes its contacts."};
+  CLI::App app;
+  sync::NodeOptions options;
+  std::string scene;
+  options.add_to(app, declaration);
+  app.add_option("SCENE", scene, "SDF file of the world")->required()->check(CLI::ExistingFile);
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+
+  std::vector<std::string> warnings;
+  const sim::WorldDef world = sim::load_sdf(scene, warnings);
+  for (const std::string& warning : warnings) std::cerr << "sim_node: " << warning << "\n";
+  const sim::Settings settings = settings_of(world, options.set);
+
+  sim::Simulation simulation(world, settings);
+
+  sync::Node node(declaration, options);
+  simulation.start(node.bus().identity().incarnation);
+  sync::SceneSender scene_sender(node.bus(), sim::make_assets(world, simulation.step_length().count()));
+  sim::Publisher publisher(node.bus(), settings.state_rate_Hz, settings.page_budget,
+                           static_cast<std::size_t>(settings.event_pages), simulation.step_length());
+  sim::SimPacer pacer;
+  auto& tool_states = node.bus().queue<tool_state_t>(channels::kToolState, 64);
+  auto& healths = node.bus().queue<node_health_t>(channels::kNodeHealth, 256);
+  std::set<std::int64_t> known;
+  std::vector<tool_state_t> news;
+  node.set_state(node_health_t::RUNNING);
+
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    news.clear();
+    while (auto m = tool_states.pop())
+      if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
+    while (const auto m = healths.pop())
+      if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) publisher.welcome();
+    simulation.step(news);
+    // The deadline of this tick, which does not tremble as the wake-up does.
+    const sync::TimeMap map = pacer.tick(simulation.now(), node.deadlines().next() - simulation.step_length());
+    publisher.publish({.time = simulation.now(),
+                       .touch_models = &simulation.touch_models(),
+                       .events = &simulation.events(),
+                       .tool_contacts = &simulation.tool_contacts(),
+                       .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }}},
+                      map);
+    scene_sender.poll(now);
+    node.set_realtime_factor(pacer.realtime_factor());
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("sim_node", e);
+}

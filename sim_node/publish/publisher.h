@@ -1,0 +1,43 @@
+// Sends a step of the world, in the order that receivers rely on: the touch models, the contact events, the contacts of
+// tools, then the pages of slow state that are due.
+#pragma once
+
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <vector>
+
+#include "sim_node/publish/snapshots.h"
+#include "sim_node/publish/young_events.h"
+#include "sync/bus.h"
+
+namespace tactus::sim {
+
+// What a step has to say.
+struct StepView {
+  sync::SimTime time{};
+  std::vector<touch_model_t>* touch_models = nullptr;          // one per tool; stamped here
+  const std::vector<contact_event_t>* events = nullptr;        // that became known in this step
+  const std::vector<contact_t>* tool_contacts = nullptr;
+  StateSource state;
+};
+
+class Publisher {
+ public:
+  Publisher(sync::Bus& bus, double state_rate_Hz, double pages_per_second, std::size_t event_pages, sync::Nanoseconds step)
+      : bus_(bus), young_(event_pages), snapshots_(state_rate_Hz, pages_per_second, step) {}
+
+  void publish(const StepView& view, const sync::TimeMap& map);
+  // Somebody new is listening: every body goes out as soon as the budget allows.
+  void welcome() { snapshots_.want_full(); }
+
+ private:
+  void publish_events(const StepView& view, const sim_clock_t& clock);
+  void publish_tool_contacts(const StepView& view, const sim_clock_t& clock);
+
+  sync::Bus& bus_;
+  YoungEvents young_;
+  Snapshots snapshots_;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,34 @@
+// The map between simulated time and the host's clock, as it is published. It follows what the loop really does but slews:
+// a tick that was missed shakes no renderer. Pure.
+//
+// A simulation that cannot keep up keeps its step: simulated time falls behind, the offset of the map grows, and its rate
+// says how fast.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "sync/time.h"
+
+namespace tactus::sim {
+
+class SimPacer {
+ public:
+  // Time in which the map follows, s of the world: a missed tick of 1 ms is a slew of 5 % that is over after 60 ms.
+  static constexpr double kFollow_s = 0.02;
+
+  // One tick: the world is at `sim` at the deadline `due` of the loop. Call with ever later times.
+  sync::TimeMap tick(sync::SimTime sim, sync::HostTime due);
+  // Simulated seconds per host second over the last whole second.
+  double realtime_factor() const { return factor_; }
+
+ private:
+  std::optional<double> offset_ns_;  // host - sim, since base_
+  std::int64_t base_ns_ = 0;
+  sync::SimTime last_sim_{};
+  sync::SimTime window_sim_{};
+  sync::HostTime window_host_{};
+  double factor_ = 1;
+};
+
+}  // namespace tactus::sim

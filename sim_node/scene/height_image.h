@@ -1,0 +1,14 @@
+// Reads a grey PNG of 8 or 16 bits as heights.
+#pragma once
+
+#include <filesystem>
+
+#include "sim_node/scene/world_def.h"
+
+namespace tactus::sim {
+
+// White is size_m.z high, black 0; the top row of the picture lies at +y. Throws std::runtime_error with one clause.
+Heightfield read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size_m,
+                              const Eigen::Vector3d& centre_m);
+
+}  // namespace tactus::sim

@@ -1,0 +1,67 @@
+#include "sim_node/scene/inertial.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "sim_node/scene/mass.h"
+#include "sim_node/scene/sdf_eigen.h"
+
+namespace tactus::sim {
+namespace {
+
+// SDF's defaults (inertial.sdf), for a body without shapes.
+constexpr double kDefaultMass_kg = 1, kDefaultInertia_kg_m2 = 1;
+
+Eigen::Matrix3d read_inertia(const LoadContext& context, const sdf::ElementPtr& inertia) {
+  const auto entry = [&](const char* name, double missing) {
+    const sdf::ElementPtr given = written(inertia, name);
+    return given ? given->Get<double>() : missing;
+  };
+  const double xy = entry("ixy", 0), xz = entry("ixz", 0), yz = entry("iyz", 0);
+  Eigen::Matrix3d matrix;
+  matrix << entry("ixx", 1), xy, xz, xy, entry("iyy", 1), yz, xz, yz, entry("izz", 1);
+  if (!matrix.allFinite()) context.refuse(*inertia, "is not finite");
+  const Eigen::Vector3d moments = matrix.selfadjointView<Eigen::Lower>().eigenvalues();  // ascending
+  if (!(moments[0] > 0))
+    context.refuse(*inertia, "is not positive definite: correct it, or leave it out to have it computed from the shapes");
+  // No distribution of mass does this; the step still computes. 1 %: figures are written with few digits.
+  if (moments[2] > 1.01 * (moments[0] + moments[1]))
+    context.warn(*inertia, "belongs to no real body: one principal moment is larger than the two others together");
+  return matrix;
+}
+
+}  // namespace
+
+void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std::span<const ShapeDef> shapes,
+                   BodyDef& body) {
+  if (body.is_static) {
+    body.mass_kg = 0;
+    return;
+  }
+  const sdf::ElementPtr inertial = written(link, "inertial");
+  const sdf::ElementPtr mass = written(inertial, "mass"), inertia = written(inertial, "inertia");
+  bool has_density = false;
+  MassProperties p = mass_of(context.world, shapes, has_density);
+  const bool has_volume = p.mass_kg > 0;
+  if (!has_volume) p = {kDefaultMass_kg, {0, 0, 0}, kDefaultInertia_kg_m2 * Eigen::Matrix3d::Identity()};
+  if (mass) {
+    const double given_kg = mass->Get<double>();
+    if (!(given_kg > 0 && given_kg < 1e9))
+      context.refuse(*mass, "= " + mass->GetValue()->GetAsString() + " must be above 0 kg: give the mass, or make the model static");
+    p = scaled_to(p, given_kg);
+  } else if (!has_density || !has_volume) {
+    p = scaled_to(p, kDefaultMass_kg);
+  }
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  if (const sdf::ElementPtr pose = written(inertial, "pose")) {
+    frame = to_eigen(pose->Get<ignition::math::Pose3d>());
+    if (!frame.matrix().allFinite()) context.refuse(*pose, "is not finite");
+    p.centre_of_mass_m = frame.translation();
+  }
+  if (inertia) {
+    if (!written(inertial, "pose")) p.centre_of_mass_m.setZero();  // as SDF defines it
+    p.inertia_kg_m2 = frame.linear() * read_inertia(context, inertia) * frame.linear().transpose();
+  }
+  body.mass_kg = p.mass_kg, body.centre_of_mass_m = p.centre_of_mass_m, body.inertia_kg_m2 = p.inertia_kg_m2;
+}
+
+}  // namespace tactus::sim

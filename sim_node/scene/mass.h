@@ -1,0 +1,23 @@
+// Mass, centre of mass and inertia of a body from its shapes.
+#pragma once
+
+#include <span>
+
+#include "sim_node/scene/world_def.h"
+
+namespace tactus::sim {
+
+struct MassProperties {
+  double mass_kg = 0;
+  Eigen::Vector3d centre_of_mass_m{0, 0, 0};                 // in the body frame
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the centre of mass, body axes
+};
+
+// Overlaps count twice. Each shape has the density of its material; where one has none, all have 1 kg/m^3, so that only
+// the ratios mean something. Planes and heightfields have no mass. `has_density` says which of the two it was.
+MassProperties mass_of(const WorldDef& world, std::span<const ShapeDef> shapes, bool& has_density);
+
+// The same body with another mass: inertia in proportion.
+MassProperties scaled_to(MassProperties properties, double mass_kg);
+
+}  // namespace tactus::sim

@@ -1,0 +1,27 @@
+// The table of physical materials, sim_node/scenes/materials.csv, which is compiled in.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <tactus/material_def_t.hpp>
+#include <vector>
+
+namespace tactus::sim {
+
+// One figure of a material: its column in the table, its attribute in <tactus:material>, and what it may be.
+struct MaterialFigure {
+  const char* column;
+  const char* attribute;
+  const char* unit;
+  double min, max;
+  double material_def_t::*field;
+};
+std::span<const MaterialFigure> material_figures();
+
+// Throws std::runtime_error, with the row, when a figure is missing, no number, out of range, or without a source.
+std::vector<material_def_t> parse_materials(std::string_view csv);
+
+// The table that is compiled in.
+std::vector<material_def_t> builtin_materials();
+
+}  // namespace tactus::sim

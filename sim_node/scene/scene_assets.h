@@ -1,0 +1,13 @@
+// Everything that the renderers get of a world: the scene itself, its meshes and the SDF text, each named by its hash.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/scene/world_def.h"
+
+namespace tactus::sim {
+
+// One SCENE, one MESH per mesh and heightfield, one SDF. step_ns as in scene_t.
+std::vector<sync::Asset> make_assets(const WorldDef& world, std::int64_t step_ns = 1'000'000);
+
+}  // namespace tactus::sim

@@ -1,0 +1,149 @@
+#include "sim_node/scene/shapes.h"
+
+#include <sdf/Box.hh>
+#include <sdf/Capsule.hh>
+#include <sdf/Cylinder.hh>
+#include <sdf/Heightmap.hh>
+#include <sdf/Mesh.hh>
+#include <sdf/Plane.hh>
+#include <sdf/Sphere.hh>
+#include <sstream>
+#include <stdexcept>
+
+#include "sim_node/scene/height_image.h"
+#include "sim_node/scene/mesh_file.h"
+#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/triangles.h"
+
+namespace tactus::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The file of a mesh or a picture, refused with the line of the element that names it.
+fs::path asset_file(const LoadContext& context, const std::string& uri, const sdf::Element& element) {
+  const fs::path file = context.files.find(uri, element.FilePath());
+  if (file.empty() || !fs::is_regular_file(file))
+    context.refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
+  return file;
+}
+
+int mesh_index(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
+  const Eigen::Vector3d scale = to_eigen(mesh.Scale());
+  if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
+    context.refuse(element, "has a <scale> that is zero or not finite");
+  const fs::path file = asset_file(context, mesh.Uri(), element);
+  std::ostringstream key;
+  key << file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
+  const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.meshes.size()));
+  if (is_new) try {
+      context.world.meshes.push_back(read_mesh(file, mesh.Submesh(), mesh.CenterSubmesh(), scale));
+    } catch (const std::exception& e) {
+      context.refuse(element, "names mesh \"" + mesh.Uri() + "\", which cannot be read: " + e.what());
+    }
+  return at->second;
+}
+
+int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
+  const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
+  if (!size.allFinite() || (size.array() <= 0).any() || !centre.allFinite())
+    context.refuse(element, "has a <size> that is not positive or a <pos> that is not finite");
+  const fs::path file = asset_file(context, map.Uri(), element);
+  std::ostringstream key;
+  key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
+  const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));
+  if (is_new) try {
+      context.world.heightfields.push_back(read_height_image(file, size, centre));
+    } catch (const std::exception& e) {
+      context.refuse(element, "names height image \"" + map.Uri() + "\", which cannot be read: " + e.what());
+    }
+  return at->second;
+}
+
+void require_positive(const LoadContext& context, const sdf::Element& owner, const ShapeDef& shape) {
+  // Sizes that the kind does not use are 1.
+  if (!shape.size_m.allFinite() || (shape.size_m.array() <= 0).any() || shape.size_m.maxCoeff() > 1e6)
+    context.refuse(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
+}
+
+}  // namespace
+
+std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner,
+                                   const Eigen::Isometry3d& pose) {
+  ShapeDef shape;
+  shape.pose = pose;
+  const sdf::ElementPtr inside = geometry.Element() ? geometry.Element()->GetFirstElement() : nullptr;
+  const sdf::Element& element = inside ? *inside : *owner;
+  switch (geometry.Type()) {
+    case sdf::GeometryType::BOX:
+      shape.kind = ShapeKind::kBox;
+      shape.size_m = to_eigen(geometry.BoxShape()->Size());
+      break;
+    case sdf::GeometryType::SPHERE:
+      shape.kind = ShapeKind::kSphere;
+      shape.size_m = {geometry.SphereShape()->Radius(), 1, 1};
+      break;
+    case sdf::GeometryType::CYLINDER:
+      shape.kind = ShapeKind::kCylinder;
+      shape.size_m = {geometry.CylinderShape()->Radius(), 1, geometry.CylinderShape()->Length()};
+      break;
+    case sdf::GeometryType::CAPSULE:
+      shape.kind = ShapeKind::kCapsule;
+      shape.size_m = {geometry.CapsuleShape()->Radius(), 1, geometry.CapsuleShape()->Length()};
+      break;
+    case sdf::GeometryType::PLANE: {
+      const Eigen::Vector3d normal = to_eigen(geometry.PlaneShape()->Normal());
+      if (!normal.allFinite() || normal.norm() < 1e-6) context.refuse(element, "has a <normal> without direction");
+      shape.kind = ShapeKind::kPlane;
+      shape.size_m = {geometry.PlaneShape()->Size().X(), geometry.PlaneShape()->Size().Y(), 1};
+      shape.pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal));
+      break;
+    }
+    case sdf::GeometryType::MESH:
+      shape.kind = ShapeKind::kMesh;
+      shape.mesh = mesh_index(context, *geometry.MeshShape(), element);
+      break;
+    case sdf::GeometryType::HEIGHTMAP:
+      shape.kind = ShapeKind::kHeightfield;
+      shape.mesh = heightfield_index(context, *geometry.HeightmapShape(), element);
+      break;
+    default:
+      return std::nullopt;
+  }
+  require_positive(context, element, shape);
+  if (shape.kind == ShapeKind::kSphere) shape.size_m.y() = shape.size_m.z() = 0;
+  if (shape.kind == ShapeKind::kCylinder || shape.kind == ShapeKind::kCapsule) shape.size_m.y() = 0;
+  if (shape.kind == ShapeKind::kPlane) shape.size_m.z() = 0;
+  return shape;
+}
+
+Eigen::AlignedBox3d bounds(const WorldDef& world, const ShapeDef& shape) {
+  const Eigen::Matrix3d turn = shape.pose.linear();
+  const Eigen::Vector3d centre = shape.pose.translation();
+  const auto around = [&](const Eigen::Vector3d& half) { return Eigen::AlignedBox3d(centre - half, centre + half); };
+  const double r = shape.size_m.x(), half_length = shape.size_m.z() / 2;
+  const Eigen::Vector3d z = turn.col(2).cwiseAbs();
+  switch (shape.kind) {
+    case ShapeKind::kBox:
+      return around(turn.cwiseAbs() * shape.size_m / 2);
+    case ShapeKind::kSphere:
+      return around(Eigen::Vector3d::Constant(r));
+    case ShapeKind::kCapsule:
+      return around(z * half_length + Eigen::Vector3d::Constant(r));
+    case ShapeKind::kCylinder:  // a disc of normal z reaches r sqrt(1 - z_i^2) along axis i
+      return around(z * half_length + r * (1 - z.array().square()).max(0).sqrt().matrix());
+    case ShapeKind::kMesh:
+      return bounds(world.meshes[static_cast<std::size_t>(shape.mesh)], shape.pose);
+    case ShapeKind::kHeightfield: {
+      const Heightfield& field = world.heightfields[static_cast<std::size_t>(shape.mesh)];
+      const Eigen::Vector3d middle = field.centre_m + Eigen::Vector3d(0, 0, field.size_m.z() / 2);
+      const Eigen::Vector3d half = turn.cwiseAbs() * field.size_m / 2, at = shape.pose * middle;
+      return Eigen::AlignedBox3d(at - half, at + half);
+    }
+    case ShapeKind::kPlane:
+      break;
+  }
+  return {};
+}
+
+}  // namespace tactus::sim

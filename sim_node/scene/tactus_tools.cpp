@@ -1,0 +1,77 @@
+#include "sim_node/scene/tactus_tools.h"
+
+#include "lcmtypes/vectors.h"
+#include "sim_node/scene/attributes.h"
+
+namespace tactus::sim {
+namespace {
+
+// Without further word: a fingertip, and the hand's effective mass at it of about 0.1 kg (design).
+constexpr double kDefaultRadius_m = 0.008, kDefaultMass_kg = 0.1;
+
+waypoint_t read_waypoint(const LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  waypoint_t waypoint{};
+  waypoint.time_s = attributes.required_quantity("time", "s", 0, 1e6);
+  attributes.required_text("position");
+  waypoint.position_m = to_vec3(*attributes.position("position"));
+  attributes.done();
+  return waypoint;
+}
+
+void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
+  Attributes attributes(context, *element);
+  tool_def_t tool{};
+  tool.name = attributes.required_text("name");
+  if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that something else has: choose another");
+  tool.radius_m = attributes.quantity("radius", "m", 0, 1).value_or(kDefaultRadius_m);
+  tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
+  tool.device = attributes.text("device").value_or("virtual_hand");
+  tool.loop = attributes.flag("loop").value_or(false) ? 1 : 0;
+  tool.material = -1;
+  if (const auto material = attributes.text("material")) {
+    const auto known = context.material_of.find(*material);
+    if (known == context.material_of.end()) context.refuse(*element, "names material \"" + *material + "\": there is none");
+    tool.material = known->second;
+  }
+  const auto pose = attributes.pose("pose");
+  attributes.done();
+
+  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+    if (child->GetName() != "tactus:waypoint") {
+      context.warn(*child, "is not supported and has no effect");
+      continue;
+    }
+    const waypoint_t waypoint = read_waypoint(context, *child);
+    if (!tool.waypoints.empty() && !(waypoint.time_s > tool.waypoints.back().time_s))
+      context.refuse(*child, "comes at or before the waypoint above it: times must grow");
+    tool.waypoints.push_back(waypoint);
+  }
+  tool.waypoint_count = static_cast<std::int32_t>(tool.waypoints.size());
+  if (tool.waypoints.empty() && tool.device == "virtual_hand")
+    context.refuse(*element, "has no <tactus:waypoint>: the virtual hand needs a path of one or more");
+
+  BodyDef body;
+  body.name = tool.name;
+  body.tool = static_cast<int>(context.world.tools.size());
+  body.mass_kg = tool.mass_kg;
+  // A solid sphere; of a point, as if it had 1 mm.
+  const double radius = std::max(tool.radius_m, 1e-3);
+  body.inertia_kg_m2 = 0.4 * tool.mass_kg * radius * radius * Eigen::Matrix3d::Identity();
+  body.gravity = false;
+  if (pose) body.pose = *pose;
+  if (!pose && !tool.waypoints.empty()) body.pose.translation() = to_eigen(tool.waypoints.front().position_m);
+  tool.body = static_cast<std::int32_t>(context.world.bodies.size());
+  context.body_of[body.name] = tool.body;
+  context.world.bodies.push_back(body);
+  context.world.tools.push_back(tool);
+}
+
+}  // namespace
+
+void read_tools(LoadContext& context, const sdf::ElementPtr& world) {
+  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
+    if (element->GetName() == "tactus:tool") read_tool(context, element);
+}
+
+}  // namespace tactus::sim

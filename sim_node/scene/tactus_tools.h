@@ -1,0 +1,11 @@
+// Tools: what a hand holds in the scene, and the path of the virtual hand.
+#pragma once
+
+#include "sim_node/scene/load_context.h"
+
+namespace tactus::sim {
+
+// Appends a tool and its body for every <tactus:tool> of the world, after all other bodies.
+void read_tools(LoadContext& context, const sdf::ElementPtr& world);
+
+}  // namespace tactus::sim
