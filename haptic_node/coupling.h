@@ -1,0 +1,58 @@
+// The virtual coupling between proxy and device (Colgate, Stanley and Brown 1995): how stiff and how damped it may
+// be for each surface, and the force of each surface on the hand.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <span>
+
+#include "haptic_node/surfaces.h"
+
+namespace tactus::haptic {
+
+struct CouplingLimits {
+  double stiffness_limit_N_m = 2000;
+  double mass_factor = 0.1;
+  double damping_ratio = 0.7;
+  double device_mass_kg = 0.1;
+  double device_damping_N_s_m = 10;
+};
+
+struct Gains {
+  double stiffness_N_m = 0;
+  double damping_N_s_m = 0;
+};
+
+// Device (mass M, damper b to ground) and body (mass m, seen along the normal) joined by spring K and damper B
+// move against each other with reduced mass mu = M m / (M + m), and are damped by B + b rho^2, rho = m / (M + m).
+// Then
+//   B <= b / 2                                  so that half of what the device dissipates is left for sampling
+//   K <= 2 (b - B) / T                          passive for any hand (Colgate and Schenkel 1997)
+//   K <= factor * m / loop_delay^2              a body that moves answers only after the loop delay
+//   (B + b rho^2) / (2 sqrt(K mu)) >= ratio     by more damping first, then by less stiffness
+// body_mass_kg of 1e9 and above: does not move, and then the third rule is void.
+Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m, double body_mass_kg,
+                     double loop_delay_s, double period_s, const CouplingLimits& limits);
+
+// How long it takes from a movement of the tool until the motion of the body that it causes is felt: the age of
+// the touch model when it is used, at worst lately, plus one step of the world and one tick.
+class LoopDelay {
+ public:
+  // Age of a touch model that is used now, s.
+  void observe(double age_s) { peak_s_ = std::max(peak_s_, std::min(age_s, kLongest_s)); }
+  // Once a tick: the worst is forgotten slowly, so that the stiffness does not flicker.
+  void pass(double dt);
+  double value_s(double step_s, double period_s) const { return peak_s_ + step_s + period_s; }
+
+ private:
+  static constexpr double kForget_s = 1;     // time constant
+  static constexpr double kLongest_s = 0.1;  // beyond, the touch model counts as lost anyway
+  double peak_s_ = 0;
+};
+
+// Force of each surface on the hand, N, into `forces`: normal, never pulling; tangential along the proxy's shift
+// and, while it sticks, against the motion over the surface, within the cone of friction. Realtime-safe: yes.
+void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& shift_m,
+                     const Eigen::Vector3d& device_velocity, bool slipping, std::span<Eigen::Vector3d> forces);
+
+}  // namespace tactus::haptic

@@ -1,0 +1,32 @@
+// Makes a device from what a person writes: virtual_hand, virtual_hand:FILE or
+// playback:FILE[,scale=S][,offset=X/Y/Z]
+// [,rate=R].
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tactus/tool_def_t.hpp>
+
+#include "haptic_node/devices/device.h"
+#include "haptic_node/devices/playback.h"
+#include "haptic_node/settings.gen.h"
+
+namespace tactus::haptic {
+
+struct DeviceSpec {
+  enum class Kind { kVirtualHand, kPlayback } kind = Kind::kVirtualHand;
+  std::optional<Motion> motion;  // of the file, if one was named
+  Placement placement;
+};
+
+// Reads the file, so that what is wrong with it is known before anything starts. Throws std::runtime_error with
+// one sentence.
+DeviceSpec parse_device_spec(const std::string& spec);
+
+// A virtual hand without a file follows the waypoints of the tool; without waypoints it rests at rest_m. Throws
+// std::runtime_error when the waypoints' times do not increase.
+std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
+                                    const Settings& settings);
+
+}  // namespace tactus::haptic

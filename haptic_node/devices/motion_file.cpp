@@ -1,0 +1,88 @@
+#include "haptic_node/devices/motion_file.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace tactus::haptic {
+namespace {
+
+// Days of seconds and any place on a site; a larger figure has another unit.
+constexpr double kLargest = 1e6;
+constexpr std::string_view kHeader = "time_s,x_m,y_m,z_m";
+constexpr std::string_view kHeaderWithPose = "time_s,x_m,y_m,z_m,qw,qx,qy,qz";
+
+[[noreturn]] void refuse(const std::string& name, std::size_t line, const std::string& what) {
+  throw std::runtime_error("motion file " + name + ", line " + std::to_string(line) + ": " + what);
+}
+
+double number(std::string_view field, const std::string& name, std::size_t line) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value) ||
+      std::abs(value) > kLargest)
+    refuse(name, line, "\"" + std::string(field) + "\" is no usable number; write plain seconds and metres");
+  return value;
+}
+
+std::vector<double> numbers(std::string_view text, const std::string& name, std::size_t line) {
+  std::vector<double> out;
+  while (true) {
+    const auto comma = text.find(',');
+    out.push_back(number(text.substr(0, comma), name, line));
+    if (comma == std::string_view::npos) return out;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+void append(Motion& motion, const std::vector<double>& row, const std::string& name, std::size_t line) {
+  if (!motion.times_s.empty() && row[0] <= motion.times_s.back())
+    refuse(name, line, "the time does not increase; sort the rows and remove repeated times");
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  if (row.size() == 8) {
+    q = Eigen::Quaterniond(row[4], row[5], row[6], row[7]);
+    if (std::abs(q.norm() - 1) > 1e-2)
+      refuse(name, line, "the quaternion is not of unit length; normalise qw,qx,qy,qz");
+    q.normalize();
+    if (!motion.orientations.empty() && motion.orientations.back().dot(q) < 0) q.coeffs() *= -1;
+  }
+  motion.times_s.push_back(row[0]);
+  motion.positions_m.emplace_back(row[1], row[2], row[3]);
+  motion.orientations.push_back(q);
+}
+
+}  // namespace
+
+Motion read_motion(std::istream& in, const std::string& name) {
+  const auto next = [&](std::string& text) {
+    if (!std::getline(in, text)) return false;
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+    return true;
+  };
+  std::string text;
+  next(text);
+  const bool with_pose = text == kHeaderWithPose;
+  if (!with_pose && text != kHeader)
+    refuse(name, 1, "the header must be " + std::string(kHeader) + " or " + std::string(kHeaderWithPose));
+  Motion motion;
+  const std::size_t columns = with_pose ? 8 : 4;
+  for (std::size_t line = 2; next(text); ++line) {
+    if (text.empty()) continue;
+    const auto row = numbers(text, name, line);
+    if (row.size() != columns)
+      refuse(name, line, std::to_string(row.size()) + " columns where the header has " + std::to_string(columns));
+    append(motion, row, name, line);
+  }
+  if (motion.times_s.empty()) refuse(name, 2, "there is no row; add at least one");
+  return motion;
+}
+
+Motion read_motion(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw std::runtime_error("motion file " + path + " cannot be read; check the path and its permissions");
+  return read_motion(in, path);
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,23 @@
+// A recorded or drawn motion: a CSV file with the header time_s,x_m,y_m,z_m[,qw,qx,qy,qz].
+#pragma once
+
+#include <Eigen/Geometry>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace tactus::haptic {
+
+struct Motion {
+  std::vector<double> times_s;  // strictly increasing
+  std::vector<Eigen::Vector3d> positions_m;
+  std::vector<Eigen::Quaterniond>
+      orientations;  // unit, neighbours in the same half; identity when the file has none
+};
+
+// Throws std::runtime_error with one sentence that names the file, the line and the remedy.
+Motion read_motion(const std::string& path);
+// The same from a stream; `name` is for the sentence.
+Motion read_motion(std::istream& in, const std::string& name);
+
+}  // namespace tactus::haptic

@@ -1,0 +1,26 @@
+#include "haptic_node/devices/playback.h"
+
+namespace tactus::haptic {
+
+Playback::Playback(Motion motion, const Placement& placement)
+    : curve_(std::move(motion.times_s), std::move(motion.positions_m), MonotoneCubic::Ends::kMoving),
+      orientations_(std::move(motion.orientations)),
+      placement_(placement) {}
+
+DeviceState Playback::read(sync::HostTime now) {
+  if (!begun_) {
+    begun_ = true;
+    start_ = now;
+  }
+  const double t = curve_.begin_s() + sync::to_seconds(now - start_) * placement_.rate;
+  const auto at = curve_.at(t);
+  const auto [i, s] = curve_.locate(t);
+  DeviceState state;
+  state.position = placement_.scale * at.position + placement_.offset_m;
+  state.velocity = placement_.scale * placement_.rate * at.velocity;
+  state.orientation =
+      i + 1 < orientations_.size() ? orientations_[i].slerp(s, orientations_[i + 1]) : orientations_[i];
+  return state;
+}
+
+}  // namespace tactus::haptic

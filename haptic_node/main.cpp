@@ -1,0 +1,84 @@
+// haptic_node: renders the contact force on the hand, at 1 kHz, one process per device.
+//
+//   in   TOUCH_MODEL                   the surfaces near its tool, newest only
+//        CONTACT_EVENTS                begins and hits of its tool
+//        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
+//   out  TOOL_STATE                    every tick
+//        PRESENTED                     every begin and hit of its tool
+//
+// Losing TOUCH_MODEL fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without hit
+// transients. The loop never waits for another node.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <optional>
+
+#include "haptic_node/session.h"
+#include "sync/node.h"
+#include "sync/presentation_reporter.h"
+#include "sync/scene_exchange.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{
+      .node = "haptic_node",
+      .modality = "haptic",
+      .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
+      .rate_Hz = haptic::Settings{}.rate_Hz,
+      .fifo_priority = 60,
+      .about = "Renders the contact force on the hand."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  std::string tool_name, device_spec;
+  app.add_option("--tool", tool_name, "tool that the hand holds; default: the scene's first");
+  app.add_option(
+      "--device", device_spec,
+      "virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R]; default: as the "
+      "scene says");
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  const auto given = haptic::choose(scene_t{}, tool_name, options.set);
+  if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
+  std::optional<haptic::DeviceSpec> device;
+  if (!device_spec.empty()) device = haptic::parse_device_spec(device_spec);
+
+  sync::Node node(declaration, options);
+  sync::SceneReceiver scenes(node.bus());
+  auto& touch = node.bus().queue<touch_model_t>(channels::kTouchModel, 256);
+  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
+  sync::PresentationReporter reporter(declaration.modality);
+  std::optional<haptic::Session> session;
+  node.set_state(node_health_t::WAITING, "waits for the scene");
+
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    if (scenes.poll(now)) {
+      session.reset();
+      const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
+      for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
+      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, options.run_id);
+      std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
+                << "\n";
+      node.set_tool(choice.tool);
+      node.set_rate(choice.settings.rate_Hz);
+      node.set_state(node_health_t::WAITING, session ? "waits for a touch model" : choice.problem);
+    }
+    while (const auto m = touch.pop())
+      if (session && m->order != sync::Arrival::kOld) session->push(m->message, m->arrival);
+    while (const auto m = events.pop())
+      if (session) session->push(m->message, m->arrival);
+    if (!session) continue;
+    haptic::TickOutput& out = session->step(now);
+    node.bus().publish(channels::kToolState, out.state);
+    for (const presentation_t& report : out.reports) reporter.report(report);
+    reporter.publish(node.bus(), now);
+    node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
+    if (session->heard() && session->lost())
+      node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");
+    else if (session->heard())
+      node.set_state(node_health_t::RUNNING);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("haptic_node", e);
+}

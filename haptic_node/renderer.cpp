@@ -1,0 +1,208 @@
+#include "haptic_node/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_node/devices/virtual_hand.h"
+#include "lcmtypes/vectors.h"
+
+namespace tactus::haptic {
+namespace {
+
+// A device drops a force that is not renewed for so long; what happened since then was without force.
+constexpr sync::Nanoseconds kWatchdog = VirtualHand::kWatchdog;
+
+SurfaceLimits surface_limits(const Settings& s) {
+  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
+          s.surface_speed_limit_m_s};
+}
+CouplingLimits coupling_limits(const Settings& s) {
+  return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
+}
+TransientShape transient_shape(const Settings& s) {
+  return {s.transient_gain,
+          s.transient_limit_N,
+          s.transient_soft_frequency_Hz,
+          s.transient_hard_frequency_Hz,
+          s.transient_decay_1_s,
+          s.late_tolerance_s,
+          s.drop_after_s};
+}
+SafetyLimits safety_limits(const Settings& s) {
+  return {s.force_limit_N, s.slew_limit_N_s, s.energy_limit_J, s.power_limit_W};
+}
+
+}  // namespace
+
+Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings)
+    : tool_(tool),
+      tool_body_(scene.tools[static_cast<std::size_t>(tool)].body),
+      radius_m_(scene.tools[static_cast<std::size_t>(tool)].radius_m),
+      settings_(settings),
+      coupling_(coupling_limits(settings)),
+      period_s_(1 / settings.rate_Hz),
+      step_s_(static_cast<double>(scene.step_ns) * 1e-9),
+      surfaces_(radius_m_, surface_limits(settings)),
+      transients_(transient_shape(settings)),
+      safety_(safety_limits(settings)),
+      fade_(settings.stale_after_s, settings.fade_s) {
+  for (const material_def_t& m : scene.materials) youngs_modulus_Pa_.push_back(m.youngs_modulus_Pa);
+  forces_.reserve(kMaxHalfSpaces);
+  felt_.reserve(kMaxHalfSpaces);
+  out_.reports.reserve(256);
+  out_.state.tool = tool;
+  out_.state.constraints.reserve(ContactBook::kMaxTold);
+}
+
+sync::Nanoseconds Renderer::uncertainty() const {
+  return sync::from_seconds(period_s_ / 2 + settings_.device_uncertainty_s);
+}
+
+void Renderer::take_device(const TickInput& in) {
+  DeviceState device = in.device;
+  if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite()) {
+    device = device_;
+    device.velocity.setZero();
+  }
+  if (!begun_) {
+    begun_ = true;
+    last_ = in.now - sync::from_seconds(period_s_);
+    device_ = device;
+    proxy_.reset(device.position);
+  }
+  moved_ = device.position - device_.position;
+  device_ = device;
+}
+
+void Renderer::take_touch(const TickInput& in, double dt) {
+  const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0;
+  loop_delay_.pass(dt);
+  if (silent) {
+    // Whatever comes after the loss is new.
+    surfaces_.clear();
+    proxy_.reset(device_.position);
+  }
+  if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
+  if (in.fresh && in.map) loop_delay_.observe(sync::to_seconds(in.map->to_sim(in.now) - *model_time_));
+  const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now)) : std::nullopt;
+  surfaces_.step(in.fresh, sim_now, proxy_.position(), dt);
+}
+
+Eigen::Vector3d Renderer::constraint_force(double dt) {
+  const double delay_s = loop_delay_.value_s(step_s_, period_s_);
+  const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
+  for (Surface& s : surfaces_.list()) {
+    const Gains g =
+        coupling_gains(s.stiffness_N_m, s.damping_N_s_m, s.effective_mass_kg, delay_s, period_s_, coupling_);
+    if (s.coupling_stiffness_N_m < 0) s.coupling_stiffness_N_m = g.stiffness_N_m;
+    s.coupling_stiffness_N_m += follow * (g.stiffness_N_m - s.coupling_stiffness_N_m);
+    s.coupling_damping_N_s_m = g.damping_N_s_m;
+  }
+  proxy_.step(surfaces_.list(), device_.position, dt);
+  forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
+  coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& f : forces_) sum += f;
+  return sum;
+}
+
+Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
+  const bool tool_is_b = e.body_b == tool_body_;
+  const std::int32_t material = tool_is_b ? e.material_a : e.material_b;
+  Hit hit;
+  hit.event_id = e.event_id;
+  hit.scheduled = scheduled;
+  hit.direction = (tool_is_b ? 1 : -1) * to_eigen(e.normal).normalized();  // away from what was hit
+  hit.approach_speed_m_s = e.approach_speed_m_s;
+  hit.effective_mass_kg = std::min<double>(e.effective_mass_kg, settings_.device_mass_kg);
+  if (material >= 0 && material < static_cast<std::int32_t>(youngs_modulus_Pa_.size()))
+    hit.youngs_modulus_Pa = youngs_modulus_Pa_[static_cast<std::size_t>(material)];
+  return hit;
+}
+
+void Renderer::take_events(const TickInput& in) {
+  if (!in.map) return;
+  for (const contact_event_t& e : in.events) {
+    if (e.tool != tool_) continue;
+    const sync::HostTime happened = in.map->to_host(sync::sim_time(e.time_ns));
+    if (e.kind == contact_event_t::HIT)
+      transients_.schedule(hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s)), out_.reports);
+    if (e.kind == contact_event_t::BEGIN)
+      owed_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr, out_.reports);
+  }
+}
+
+// What is left of the constraint force after all limits, split over the surfaces: each keeps its direction as far
+// as the sum does, the rest goes by size. The bodies then feel exactly what the hand feels.
+void Renderer::split(const Eigen::Vector3d& felt_constraint_N) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sizes = 0;
+  for (const Eigen::Vector3d& f : forces_) {
+    sum += f;
+    sizes += f.norm();
+  }
+  felt_.clear();
+  if (sizes <= 0) return;
+  const double square = sum.squaredNorm();
+  const double kept = square > 0 ? std::clamp(felt_constraint_N.dot(sum) / square, 0.0, 1.0) : 0.0;
+  const Eigen::Vector3d rest = felt_constraint_N - kept * sum;
+  const auto list = surfaces_.list();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    felt_.push_back({list[i].contact_id, list[i].body, proxy_.position() - radius_m_ * list[i].normal,
+                     kept * forces_[i] + forces_[i].norm() / sizes * rest});
+  }
+}
+
+sync::How Renderer::how(const TickInput& in) const {
+  if (!model_time_ || !in.touch_arrival) return sync::How::kNone;
+  if (fade_.lost()) return sync::How::kStale;
+  if (!in.map) return sync::How::kHeld;
+  const double age_s = sync::to_seconds(in.map->to_sim(in.now) - *model_time_);
+  if (age_s == 0) return sync::How::kExact;
+  return age_s <= settings_.extrapolate_at_most_s ? sync::How::kExtrapolated : sync::How::kHeld;
+}
+
+void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_N) {
+  tool_state_t& m = out_.state;
+  m.header.sim_time_ns = in.map ? std::max<std::int64_t>(0, sync::to_ns(in.map->to_sim(in.now))) : -1;
+  m.device.position_m = to_vec3(device_.position);
+  m.device.orientation = m.proxy.orientation = to_quat(device_.orientation);
+  m.proxy.position_m = to_vec3(proxy_.position());
+  m.device_velocity_m_s = to_vec3f(device_.velocity);
+  m.proxy_velocity_m_s = to_vec3f(proxy_.velocity());
+  m.force_N = to_vec3f(out_.force_N);
+  m.transient_N = to_vec3f(transient_N);
+  m.energy_J = static_cast<float>(safety_.energy_J());
+  m.touch_how = static_cast<std::int8_t>(how(in));
+  m.fade = static_cast<float>(fade_.value());
+  m.buttons = device_.buttons;
+  book_.tell(in.now, m.constraints);
+  m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
+}
+
+TickOutput& Renderer::step(const TickInput& in) {
+  out_.reports.clear();
+  take_device(in);
+  const sync::Nanoseconds gap = in.now - last_;
+  const double dt = sync::to_seconds(std::clamp(gap, sync::Nanoseconds(1000), kWatchdog));
+  if (gap > kWatchdog) safety_.release();
+  last_ = in.now;
+
+  take_touch(in, dt);
+  take_events(in);
+  const Eigen::Vector3d constraint = constraint_force(dt);
+  const bool felt = fade_.value() > 0;
+  const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
+  const Eigen::Vector3d wanted = fade_.value() * (constraint + transient);
+  out_.force_N = safety_.limit(wanted, moved_, dt);
+  // The transient takes its part of what the limits left.
+  const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
+  const Eigen::Vector3d felt_transient = left * fade_.value() * transient;
+  split(out_.force_N - felt_transient);
+  book_.step(in.now, dt, felt_);
+  owed_.step(in.now, book_, uncertainty(), out_.reports);
+  fill_state(in, felt_transient);
+  return out_;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,97 @@
+// One tick of touch: from the touch model, the events due and the state of the device to the force on the hand,
+// the state of the tool and the reports. Pure: no clock, no bus, no device.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <vector>
+
+#include "haptic_node/contact_book.h"
+#include "haptic_node/coupling.h"
+#include "haptic_node/devices/device.h"
+#include "haptic_node/owed_begins.h"
+#include "haptic_node/proxy.h"
+#include "haptic_node/safety.h"
+#include "haptic_node/settings.gen.h"
+#include "haptic_node/surfaces.h"
+#include "haptic_node/transient.h"
+#include "sync/how.h"
+#include "sync/time.h"
+
+namespace tactus::haptic {
+
+struct TickInput {
+  sync::HostTime now{};
+  DeviceState device;
+  // A touch model of this tool that has not been given before; null: none.
+  const touch_model_t* fresh = nullptr;
+  // When the newest touch model arrived, raw; nothing: none yet.
+  std::optional<sync::HostTime> touch_arrival;
+  // Between simulated time and the host clock; nothing: not known.
+  std::optional<sync::TimeMap> map;
+  // Contact events that have become due, each exactly once.
+  std::span<const contact_event_t> events;
+};
+
+struct TickOutput {
+  tool_state_t state{};
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();  // on the hand, world: command it now
+  std::vector<presentation_t> reports;
+};
+
+class Renderer {
+ public:
+  // The scene is read here and not kept. tool: index in its tools.
+  Renderer(const scene_t& scene, int tool, const Settings& settings);
+
+  // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
+  // ticks.
+  TickOutput& step(const TickInput& in);
+
+  // True while the touch model is lost.
+  bool lost() const { return fade_.lost(); }
+
+ private:
+  void take_device(const TickInput& in);
+  void take_touch(const TickInput& in, double dt);
+  void take_events(const TickInput& in);
+  Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
+  Eigen::Vector3d constraint_force(double dt);
+  void split(const Eigen::Vector3d& felt_constraint_N);
+  void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
+  sync::How how(const TickInput& in) const;
+  sync::Nanoseconds uncertainty() const;
+
+  int tool_;
+  std::int32_t tool_body_;
+  double radius_m_;
+  std::vector<double> youngs_modulus_Pa_;
+  Settings settings_;
+  CouplingLimits coupling_;
+  double period_s_, step_s_;
+
+  Surfaces surfaces_;
+  Proxy proxy_;
+  LoopDelay loop_delay_;
+  Transients transients_;
+  Safety safety_;
+  Fade fade_;
+  ContactBook book_;
+  OwedBegins owed_;
+
+  bool begun_ = false;
+  sync::HostTime last_{};
+  DeviceState device_;
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
+  std::optional<sync::SimTime> model_time_;
+  std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
+  std::vector<FeltForce> felt_;          // of each surface, as commanded
+  TickOutput out_;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,44 @@
+#include "haptic_node/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::haptic {
+namespace {
+
+// Faster than a hand can be (a pitcher's reaches 40 m/s): the device jumped, as a replayed motion may; no work is
+// done.
+constexpr double kFastest_m_s = 40;
+
+// A late tick is not paid back by a jump of the force: it counts as two ticks of 1 kHz at most.
+constexpr double kLongestSlew_s = 0.002;
+
+Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
+  const double size = v.norm();
+  return size > limit ? Eigen::Vector3d(v * (limit / size)) : v;
+}
+
+}  // namespace
+
+Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
+  const double work_J = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt ? last_.dot(moved_m) : 0;
+  energy_J_ += work_J;
+  // A debt is paid off within a second at most: one bad instant does not silence touch for long.
+  tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
+  const Eigen::Vector3d wanted = wanted_N.allFinite() ? wanted_N : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  // Full force until half of the allowance is spent: the change is too slow to be felt as a step.
+  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = left * clamped(wanted, limits_.force_N);
+  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));
+  return last_;
+}
+
+double Fade::step(sync::HostTime now, std::optional<sync::HostTime> newest, double dt) {
+  const double age_s = newest ? sync::to_seconds(now - *newest) : stale_after_s_ + fade_s_;
+  lost_ = age_s > stale_after_s_;
+  const double ceiling = std::clamp(1 - (age_s - stale_after_s_) / fade_s_, 0.0, 1.0);
+  value_ = std::min(value_ + dt / fade_s_, ceiling);
+  return value_;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,60 @@
+// What keeps the person safe whatever arrives: the force is limited in size, in change per time and in the energy
+// that it gives to the hand, and it fades when the touch model is lost.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "sync/time.h"
+
+namespace tactus::haptic {
+
+struct SafetyLimits {
+  double force_N = 8;
+  double slew_N_s = 2000;
+  double energy_J = 0.49;
+  double power_W = 1;
+};
+
+// A passivity observer (Hannaford and Ryu 2002) with an allowance: a tank that what the hand takes in drains and
+// what it gives fills, besides a small power. As it empties the force goes to zero.
+class Safety {
+ public:
+  explicit Safety(const SafetyLimits& limits) : limits_(limits), tank_J_(limits.energy_J) {}
+
+  // One tick: the force to command now, N. moved_m: how far the device moved since the last call, under the force
+  // that was returned then. A wanted force that is not finite counts as none. Realtime-safe: yes.
+  Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
+
+  // The device has let go of the force, because the loop stood still.
+  void release() { last_.setZero(); }
+
+  // Energy given to the hand since the beginning, J.
+  double energy_J() const { return energy_J_; }
+  // What the hand may still be given at once, J.
+  double tank_J() const { return tank_J_; }
+
+ private:
+  SafetyLimits limits_;
+  double tank_J_;
+  double energy_J_ = 0;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+};
+
+// Factor on the force: 1 while touch models arrive, to 0 within `fade` from the moment at which the newest is
+// older than stale_after, and back as slowly.
+class Fade {
+ public:
+  Fade(double stale_after_s, double fade_s) : stale_after_s_(stale_after_s), fade_s_(fade_s) {}
+  // newest: when the newest touch model arrived, raw; nothing: none yet.
+  double step(sync::HostTime now, std::optional<sync::HostTime> newest, double dt);
+  double value() const { return value_; }
+  bool lost() const { return lost_; }
+
+ private:
+  double stale_after_s_, fade_s_;
+  double value_ = 0;
+  bool lost_ = true;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,41 @@
+#include "haptic_node/session.h"
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::haptic {
+namespace {
+
+std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice,
+                                  const std::optional<DeviceSpec>& given) {
+  const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
+  const auto& body = scene.bodies[static_cast<std::size_t>(tool.body)];
+  const DeviceSpec spec = given ? *given : tool.device.empty() ? DeviceSpec{} : parse_device_spec(tool.device);
+  return make_device(spec, tool, to_eigen(body.pose.position_m), choice.settings);
+}
+
+}  // namespace
+
+Session::Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
+                 std::int64_t own_run)
+    : device_(device_of(scene, choice, device)),
+      renderer_(scene, choice.tool, choice.settings),
+      touch_(choice.tool, own_run),
+      events_(own_run) {}
+
+TickOutput& Session::step(sync::HostTime now) {
+  TickInput in;
+  in.now = now;
+  in.device = device_->read(now);
+  in.fresh = touch_.take();
+  in.touch_arrival = touch_.arrival();
+  in.map = touch_.map(now);
+  // Events are published when their time is reached, so all that have come are due.
+  std::vector<contact_event_t> due;
+  if (in.map) due = events_.take_events(sync::SimTime::max());
+  in.events = due;
+  TickOutput& out = renderer_.step(in);
+  device_->write(out.force_N);
+  return out;
+}
+
+}  // namespace tactus::haptic

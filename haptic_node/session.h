@@ -1,0 +1,41 @@
+// One tool of one scene with its device, from the messages that arrive to the state of the tool. Pure: no bus, no
+// clock.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <tactus/contact_events_t.hpp>
+
+#include "haptic_node/choice.h"
+#include "haptic_node/devices/make_device.h"
+#include "haptic_node/renderer.h"
+#include "haptic_node/touch_input.h"
+#include "sync/contact_stream.h"
+
+namespace tactus::haptic {
+
+class Session {
+ public:
+  // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. Throws
+  // std::runtime_error with one sentence when there is no such device.
+  Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
+          std::int64_t own_run);
+
+  void push(const touch_model_t& model, sync::HostTime arrival) { touch_.push(model, arrival); }
+  void push(const contact_events_t& events, sync::HostTime arrival) { events_.push(events, arrival); }
+
+  // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
+  // the next.
+  TickOutput& step(sync::HostTime now);
+
+  bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
+  bool lost() const { return renderer_.lost(); }
+
+ private:
+  std::unique_ptr<Device> device_;
+  Renderer renderer_;
+  TouchInput touch_;
+  sync::ContactStream events_;
+};
+
+}  // namespace tactus::haptic

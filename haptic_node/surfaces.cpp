@@ -1,0 +1,134 @@
+#include "haptic_node/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::haptic {
+namespace {
+
+Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
+  const double norm = v.norm();
+  return norm > limit ? Eigen::Vector3d(v * (limit / norm)) : v;
+}
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// `from` turned towards `to` by at most so much.
+Eigen::Vector3d turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at_most_rad) {
+  if (angle_between(from, to) <= at_most_rad) return to;
+  Eigen::Vector3d axis = from.cross(to);
+  if (axis.norm() < 1e-9) axis = from.unitOrthogonal();  // opposite: any way round is as short
+  return (Eigen::AngleAxisd(at_most_rad, axis.normalized()) * from).normalized();
+}
+
+// Faster than a body can seem to turn to a hand: one radian in 10 ms.
+constexpr double kLargestSpin_rad_s = 100;
+
+}  // namespace
+
+const Surface* Surfaces::find(std::int64_t contact_id) const {
+  for (const Surface& s : list_)
+    if (s.contact_id == contact_id) return &s;
+  return nullptr;
+}
+
+Surfaces::Told Surfaces::predict(const Surface& s) const {
+  if (!now_) return {s.told_point_, s.told_normal_};
+  const double age = std::clamp(sync::to_seconds(*now_ - s.at_), 0.0, limits_.extrapolate_at_most_s);
+  const double spin = s.angular_velocity.norm();
+  Told told{s.told_point_ + age * s.velocity, s.told_normal_};
+  if (spin > 0)
+    told.normal = (Eigen::AngleAxisd(spin * age, s.angular_velocity / spin) * told.normal).normalized();
+  return told;
+}
+
+double Surfaces::true_height(const Told& told, const Eigen::Vector3d& proxy) const {
+  return told.normal.dot(proxy - told.point) - radius_m_;
+}
+
+void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy) {
+  const auto known =
+      std::find_if(list_.begin(), list_.end(), [&](const Surface& s) { return s.contact_id == plane.contact_id; });
+  const bool is_new = known == list_.end();
+  Surface& s = is_new ? list_.emplace_back() : *known;
+  // Where the proxy is above the plane as rendered so far, had it only moved as predicted.
+  const double rendered = is_new ? 0 : true_height(predict(s), proxy) + s.lag_m_;
+  s.contact_id = plane.contact_id;
+  s.body = plane.body;
+  s.effective_mass_kg = plane.effective_mass_kg;
+  s.stiffness_N_m = plane.stiffness_N_m;
+  s.damping_N_s_m = plane.damping_N_s_m;
+  s.friction_static = plane.friction_static;
+  s.friction_dynamic = std::min(plane.friction_dynamic, plane.friction_static);
+  s.velocity = clamped(to_eigen(plane.velocity_m_s), limits_.surface_speed_limit_m_s);
+  s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kLargestSpin_rad_s);
+  s.told_point_ = to_eigen(plane.point_m);
+  s.told_normal_ = to_eigen(plane.normal).normalized();
+  s.at_ = at;
+  s.leaves_in_s_ = -1;
+  const Told told = predict(s);
+  if (is_new) s.normal = told.normal;
+  // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
+  const double height = true_height(told, proxy);
+  s.lag_m_ = s.depth_m > 0 ? rendered - height : std::max(0.0, -height);
+  s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
+  if (s.depth_m <= 0) s.normal = told.normal;
+  s.turn_rad_s_ =
+      std::max(limits_.recovery_turn_rad_s, angle_between(s.normal, told.normal) / limits_.recovery_time_s);
+}
+
+void Surfaces::leave(Surface& s) {
+  if (s.leaves_in_s_ < 0) s.leaves_in_s_ = limits_.recovery_time_s;
+}
+
+void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy) {
+  const std::size_t count = std::min(model.planes.size(), kMaxPresent);
+  for (Surface& s : list_) {
+    const bool told = std::any_of(model.planes.begin(), model.planes.begin() + static_cast<std::ptrdiff_t>(count),
+                                  [&](const touch_plane_t& p) { return p.contact_id == s.contact_id; });
+    if (!told) leave(s);
+  }
+  for (std::size_t i = 0; i < count; ++i) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy);
+}
+
+void Surfaces::forget_the_gone() {
+  std::erase_if(list_,
+                [](const Surface& s) { return s.leaves_in_s_ == 0 || (s.leaves_in_s_ > 0 && s.depth_m <= 0); });
+  // Those that leave have the last places; the one nearest its end goes first.
+  std::stable_sort(list_.begin(), list_.end(), [](const Surface& a, const Surface& b) {
+    const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
+    return rank(a) > rank(b);
+  });
+  if (list_.size() > kMaxHalfSpaces) list_.erase(list_.begin() + kMaxHalfSpaces, list_.end());
+}
+
+void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
+  const Told told = predict(s);
+  if (s.leaves_in_s_ > 0) {
+    // Draws back so that the depth is gone when the time is.
+    s.lag_m_ += s.depth_m * std::min(1.0, dt / s.leaves_in_s_);
+    s.leaves_in_s_ = std::max(0.0, s.leaves_in_s_ - dt);
+  } else {
+    const double step = s.lag_speed_m_s_ * dt;
+    s.lag_m_ = s.lag_m_ > 0 ? std::max(0.0, s.lag_m_ - step) : std::min(0.0, s.lag_m_ + step);
+  }
+  s.normal = turned(s.normal, told.normal, s.turn_rad_s_ * dt);
+  // While it turns it pivots about the place under the proxy, whose height is what it should be.
+  s.offset_m = s.normal.dot(proxy) - (true_height(told, proxy) + s.lag_m_);
+  s.point = told.point;
+}
+
+void Surfaces::step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
+                    double dt) {
+  now_ = now;
+  forget_the_gone();
+  if (fresh) take(*fresh, proxy);
+  forget_the_gone();
+  for (Surface& s : list_) render(s, proxy, dt);
+}
+
+}  // namespace tactus::haptic

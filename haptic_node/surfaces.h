@@ -1,0 +1,97 @@
+// The surfaces near the tool as the servo loop renders them: the planes of the touch model, moved on to now, and
+// made continuous. A plane that jumps, turns, appears over the proxy or is left out yields within the recovery
+// time (Mark et al. 1996), so that a new message never kicks the hand; what changes slowly is followed at once.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tactus/touch_model_t.hpp>
+#include <vector>
+
+#include "haptic_node/closest_point.h"
+#include "sync/time.h"
+
+namespace tactus::haptic {
+
+struct SurfaceLimits {
+  double recovery_time_s = 0.015;
+  double recovery_speed_m_s = 0.1;
+  double recovery_turn_rad_s = 30;
+  double extrapolate_at_most_s = 0.02;
+  double surface_speed_limit_m_s = 10;
+};
+
+struct Surface {
+  std::int64_t contact_id = 0;
+  std::int32_t body = -1;
+  double effective_mass_kg = 1;
+  double stiffness_N_m = 0, damping_N_s_m = 0;  // of the surface itself
+  double friction_static = 0, friction_dynamic = 0;
+  // As rendered now.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double offset_m = 0;                              // the tool's centre stays at normal . x >= offset
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of the surface, m, world
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+  // How deep the device was pressed under it in the last tick, m; set by whoever solves for the proxy.
+  double depth_m = 0;
+  // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
+  double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
+
+  // Velocity of its material at a place, m/s.
+  Eigen::Vector3d velocity_at(const Eigen::Vector3d& place) const {
+    return velocity + angular_velocity.cross(place - point);
+  }
+
+ private:
+  friend class Surfaces;
+  // As the newest message says, at the instant `at`.
+  Eigen::Vector3d told_point_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d told_normal_ = Eigen::Vector3d::UnitZ();
+  sync::SimTime at_{};
+  double lag_m_ = 0;          // rendered height of the proxy over it, less the true one
+  double lag_speed_m_s_ = 0;  // at which the lag goes to zero
+  double turn_rad_s_ = 0;     // at which the rendered normal follows
+  double leaves_in_s_ = -1;   // time left of one that the model has left out; negative: present
+};
+
+class Surfaces {
+ public:
+  static constexpr std::size_t kMaxPresent = 8;
+
+  Surfaces(double tool_radius_m, const SurfaceLimits& limits) : radius_m_(tool_radius_m), limits_(limits) {
+    list_.reserve(kMaxHalfSpaces + kMaxPresent);
+  }
+
+  // One tick. fresh: a touch model that has just arrived, or null. now: the simulated instant, nothing when the
+  // map is not known. proxy: where the tool's centre is. Realtime-safe: yes.
+  void step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt);
+  void clear() { list_.clear(); }
+
+  // At most kMaxHalfSpaces.
+  std::span<Surface> list() { return list_; }
+  std::span<const Surface> list() const { return list_; }
+  const Surface* find(std::int64_t contact_id) const;
+
+ private:
+  struct Told {
+    Eigen::Vector3d point, normal;
+  };
+  Told predict(const Surface& s) const;
+  double true_height(const Told& told, const Eigen::Vector3d& proxy) const;
+  void take(const touch_model_t& model, const Eigen::Vector3d& proxy);
+  void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy);
+  void leave(Surface& s);
+  void forget_the_gone();
+  void render(Surface& s, const Eigen::Vector3d& proxy, double dt) const;
+
+  double radius_m_;
+  SurfaceLimits limits_;
+  std::optional<sync::SimTime> now_;
+  std::vector<Surface> list_;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,36 @@
+// The touch models of one tool as they arrive: the newest, when it arrived, and the map between simulated time and
+// the host clock that it carries. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <tactus/touch_model_t.hpp>
+#include <utility>
+
+#include "sync/sim_follower.h"
+#include "sync/time.h"
+
+namespace tactus::haptic {
+
+class TouchInput {
+ public:
+  // own_run: messages of this cluster run carry our own clock.
+  TouchInput(int tool, std::int64_t own_run) : tool_(tool), simulation_(own_run) {}
+
+  // Those of other tools, and of a simulation that has been replaced, are ignored.
+  void push(const touch_model_t& model, sync::HostTime arrival);
+  // The newest if it has not been taken yet, else null.
+  const touch_model_t* take() { return std::exchange(fresh_, false) ? &*newest_ : nullptr; }
+  // When the newest arrived; nothing: none yet.
+  std::optional<sync::HostTime> arrival() const { return arrival_; }
+  std::optional<sync::TimeMap> map(sync::HostTime now) const { return simulation_.map(now); }
+
+ private:
+  int tool_;
+  sync::SimFollower simulation_;
+  std::optional<touch_model_t> newest_;
+  std::optional<sync::HostTime> arrival_;
+  bool fresh_ = false;
+};
+
+}  // namespace tactus::haptic
