@@ -1,0 +1,176 @@
+#include "audio_node/impact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::audio {
+namespace {
+
+using std::numbers::pi;
+
+// Air at 20 degrees Celsius (Kinsler et al., Fundamentals of Acoustics, 4th ed., appendix A10).
+constexpr double kAirDensity_kg_m3 = 1.21;
+constexpr double kSoundSpeed_m_s = 343;
+// What no sound may depend on: values beyond these are not of this world.
+constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
+// Louder than the reference by 12 dB at most: the limiter is for surprises, not for every blow.
+constexpr double kMostAboveReference = 4;  // design
+
+// How well an oscillating ball of radius a radiates: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 +
+// (ka)^4) (the dipole field with the ball's velocity as boundary condition; Pierce, Acoustics, 1981, section 4.2).
+double radiation_m(double frequency_Hz, double radius_m) {
+  const double ka = 2 * pi * frequency_Hz * radius_m / kSoundSpeed_m_s;
+  return radius_m * ka * ka / std::sqrt(4 + ka * ka * ka * ka);
+}
+
+Resonators resonators_of(const BodySound& sound, double rate_Hz) {
+  Resonators r;
+  for (const Mode& mode : sound.modes) {
+    const double w = 2 * pi * mode.frequency_Hz, d = mode.damping_1_s;
+    const auto pole = std::exp(std::complex<double>(-d, std::sqrt(w * w - d * d)) / rate_Hz);
+    const auto i = static_cast<std::size_t>(r.count++);
+    r.pole_re[i] = static_cast<float>(pole.real());
+    r.pole_im[i] = static_cast<float>(pole.imag());
+    r.response[i] = static_cast<float>(mode.gain / sound.mass_kg * kAirDensity_kg_m3 * kSoundSpeed_m_s *
+                                       radiation_m(mode.frequency_Hz, sound.radius_m));
+  }
+  return r;
+}
+
+// The shape that stands for a body: the largest that it collides with.
+const shape_def_t* main_shape(const scene_t& scene, int body) {
+  const shape_def_t* best = nullptr;
+  double best_size = -1;
+  for (const shape_def_t& shape : scene.shapes) {
+    if (shape.body != body) continue;
+    const double size =
+        shape.size_m.x * std::max(shape.size_m.y, shape.size_m.x) * std::max(shape.size_m.z, shape.size_m.x);
+    if (size > best_size) best = &shape, best_size = size;
+  }
+  return best;
+}
+
+}  // namespace
+
+double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a, const Elastic& b) {
+  const auto compliance = [](const Elastic& m) {
+    return (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
+  };
+  const double e = 1 / (compliance(a) + compliance(b));
+  return 2.87 * std::pow(mass_kg * mass_kg * curvature_1_m / (e * e * speed_m_s), 0.2);
+}
+
+double pulse_spectrum(double frequency_Hz, double length_s) {
+  const double x = frequency_Hz * length_s;
+  if (x < 1e-6) return 1;
+  if (std::abs(x - 1) < 1e-6) return 0.5;
+  return std::abs(std::sin(pi * x) / (pi * x * (1 - x * x)));
+}
+
+StereoGain stereo_gain(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
+  const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
+  const double r = std::max(p.norm(), nearest_m);
+  const double level = std::hypot(p.x(), p.y());
+  const double to_left = level > 1e-9 ? p.y() / level : 0;  // sine of the azimuth
+  const double angle = (1 - to_left) * pi / 4;
+  return {std::cos(angle) / r, std::sin(angle) / r};
+}
+
+Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
+                 const Settings& settings, double rate_Hz, std::int64_t generation)
+    : settings_(settings), rate_Hz_(rate_Hz), generation_(generation), listener_(to_eigen(scene.listener)) {
+  for (const material_def_t& m : scene.materials) materials_.push_back(elastic(m));
+  const auto add = [&](const body_def_t& body, const shape_def_t* shape, int material_index) {
+    const auto extent = shape && shape->kind == shape_def_t::MESH ? mesh(shape->mesh_hash) : std::nullopt;
+    Voice v{body_sound(body, shape, material(material_index), extent, settings), {}};
+    // Nearer to half the rate a resonator would sound as another.
+    std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
+    v.resonators = resonators_of(v.sound, rate_Hz);
+    return v;
+  };
+  for (const body_def_t& body : scene.bodies) {
+    const shape_def_t* shape = main_shape(scene, body.id);
+    const bool tool = body.tool >= 0 && body.tool < scene.tool_count;
+    int material_index = shape ? shape->material : -1;
+    if (material_index < 0 && tool) material_index = scene.tools[static_cast<std::size_t>(body.tool)].material;
+    voices_.push_back(add(body, shape, material_index));
+    if (tool)
+      voices_.back().sound.mass_kg = std::max(1e-3, scene.tools[static_cast<std::size_t>(body.tool)].mass_kg);
+  }
+  body_def_t none{};
+  unknown_ = add(none, nullptr, -1);
+}
+
+const Impacts::Voice& Impacts::voice(int id) const {
+  return id >= 0 && static_cast<std::size_t>(id) < voices_.size() ? voices_[static_cast<std::size_t>(id)]
+                                                                  : unknown_;
+}
+const BodySound& Impacts::body(int id) const { return voice(id).sound; }
+
+Elastic Impacts::material(int index) const {
+  return index >= 0 && static_cast<std::size_t>(index) < materials_.size()
+             ? materials_[static_cast<std::size_t>(index)]
+             : Elastic{};
+}
+
+// Peak pressure at 1 m by the modes: all start in phase, so their amplitudes are summed.
+double Impacts::peak_Pa(const Voice& v, double impulse_N_s, double length_s) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.resonators.count); ++i)
+    sum += static_cast<double>(v.resonators.response[i]) * pulse_spectrum(v.sound.modes[i].frequency_Hz, length_s);
+  return impulse_N_s * sum;
+}
+
+// Peak pressure at 1 m of the click that a body makes because the impact accelerates it as a whole (acceleration
+// noise; Chadwick, Zheng, James, "Precomputed acceleration noise", SIGGRAPH 2012): an oscillating ball whose
+// velocity changes by impulse / mass within the contact time.
+double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s) const {
+  if (!s.moves) return 0;
+  return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
+}
+
+Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled) const {
+  const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
+  const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
+  const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
+  const std::array<const Voice*, 2> bodies{&voice(event.body_a), &voice(event.body_b)};
+  const std::array<int, 2> ids{event.body_a, event.body_b}, surfaces{event.material_a, event.material_b};
+  const auto surface = [&](std::size_t i) {
+    return surfaces[i] >= 0 ? material(surfaces[i]) : bodies[i]->sound.material;
+  };
+  const Elastic a = surface(0), b = surface(1);
+  const double impulse = mass * speed * (1 + std::clamp(std::min(a.restitution, b.restitution), 0.0, 1.0));
+  const double length_s = std::min(settings_.longest_contact_s, contact_time_s(mass, curvature, speed, a, b));
+
+  Strike strike;
+  strike.event_id = event.event_id;
+  strike.scheduled = scheduled;
+  strike.pulse_samples = std::max(1, static_cast<int>(std::lround(length_s * rate_Hz_)));
+  double peak = 0;
+  for (const Voice* v : bodies) peak += peak_Pa(*v, impulse, length_s) + click_Pa(v->sound, impulse, length_s);
+  // Full scale per Pa: the reference pressure becomes the reference level, others follow with a smaller exponent.
+  const double pressure = std::max(peak, 1e-9), relative = pressure / settings_.reference_pressure_Pa;
+  const double level =
+      settings_.reference_level * std::min(kMostAboveReference, std::pow(relative, settings_.loudness_exponent));
+  const double scale = settings_.gain * level / pressure;
+  const StereoGain gain = stereo_gain(listener_, to_eigen(event.point_m), settings_.nearest_m);
+  strike.inaudible = settings_.gain * level * std::max(gain.left, gain.right) < settings_.inaudible_level;
+  // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
+  const double n = strike.pulse_samples;
+  const double steepest = strike.pulse_samples > 1 ? 2 / n * std::sin(pi / n) : 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    StrikeSide& side = strike.sides[i];
+    side.voice = generation_ << 32 | static_cast<std::uint32_t>(ids[i]);
+    side.resonators = bodies[i]->resonators;
+    side.impulse = static_cast<float>(impulse * scale);
+    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) * scale / steepest);
+    side.left = static_cast<float>(gain.left), side.right = static_cast<float>(gain.right);
+  }
+  return strike;
+}
+
+}  // namespace tactus::audio

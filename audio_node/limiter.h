@@ -1,0 +1,44 @@
+// Keeps every sample within a ceiling, whatever comes. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace tactus::audio {
+
+// Looks ahead: the gain that the loudest sample needs is reached by a straight ramp before that sample leaves, so
+// that nothing is clipped. Below the ceiling it is an exact delay of kDelay frames. No number (NaN, infinity)
+// becomes silence. Realtime-safe: yes.
+class Limiter {
+ public:
+  // 1.3 ms at 48 kHz: long enough for a ramp that is not heard as a click, short enough for the presentation
+  // delay. A power of two, so that a mean of ones is 1.
+  static constexpr int kLookAhead = 64;
+  static constexpr int kDelay = kLookAhead - 1;
+
+  Limiter(double ceiling, double rate_Hz);
+  // In place, left and right interleaved: what comes out is what came in kDelay frames before. Both sides get one
+  // gain.
+  void process(float* stereo, int frames);
+
+ private:
+  // 50 ms back to 63 % of the gain: shorter is heard as distortion of low tones (Giannoulis, Massberg, Reiss, J.
+  // Audio Eng. Soc. 60, 2012, section 1.3).
+  static constexpr double kRelease_s = 0.05;
+
+  float smallest_in_window(float target);
+
+  float ceiling_;
+  float release_;
+  float gain_ = 1;
+  double sum_ = kLookAhead;
+  std::int64_t count_ = 0;
+  std::array<float, 2 * kLookAhead> delayed_{};
+  std::array<float, kLookAhead> gains_;
+  // Monotonic queue of candidates for the window's minimum: their values and when they leave.
+  std::array<float, kLookAhead> values_{};
+  std::array<std::int64_t, kLookAhead> ends_{};
+  std::int64_t front_ = 0, back_ = 0;
+};
+
+}  // namespace tactus::audio

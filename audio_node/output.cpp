@@ -1,0 +1,86 @@
+#include "audio_node/output.h"
+
+#include <exception>
+#include <utility>
+
+namespace tactus::audio {
+namespace {
+
+bool same_stream(const Settings& a, const Settings& b) {
+  return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
+         a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
+         a.late_limit_s == b.late_limit_s;
+}
+
+}  // namespace
+
+Output::Output(std::string folder, std::string device, int fifo_priority)
+    : folder_(std::move(folder)),
+      device_(std::move(device)),
+      fifo_priority_(fifo_priority),
+      crossing_(std::make_unique<Crossing>()) {}
+
+void Output::configure(Settings settings) {
+  if (!device_.empty()) settings.device = device_;
+  if (stream_ && !same_stream(settings, settings_)) close();
+  settings_ = std::move(settings);
+  retry_at_ = {};
+}
+
+bool Output::keep_open(sync::HostTime now) {
+  if (stream_ && stream_->alive(now)) return true;
+  if (stream_) {
+    trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
+    close();
+  }
+  if (now < retry_at_) return false;
+  try {
+    renderer_ = std::make_unique<Renderer>(*crossing_, settings_.sample_rate_Hz, settings_.limiter_ceiling,
+                                           sync::from_seconds(settings_.late_limit_s));
+    const StreamOptions options{settings_.device,
+                                static_cast<int>(settings_.sample_rate_Hz),
+                                settings_.period_frames,
+                                settings_.latency_periods,
+                                folder_,
+                                fifo_priority_};
+    stream_ = std::make_unique<Stream>(
+        options,
+        [r = renderer_.get()](float* out, int frames, const BlockTime& time) { r->render(out, frames, time); });
+    medium_ = stream_->medium();
+    trouble_.clear();
+  } catch (const std::exception& e) {
+    trouble_ = e.what();
+    retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
+  }
+  return stream_ != nullptr;
+}
+
+void Output::close() {
+  const std::int64_t callbacks = stream_->callbacks(), underflows = stream_->underflows();
+  stream_.reset();
+  renderer_->abandon();
+  past_callbacks_ += callbacks, past_underflows_ += underflows;
+}
+
+bool Output::submit(const Strike& strike) { return stream_ && crossing_->strikes.push(strike); }
+
+std::optional<presentation_t> Output::next_report() {
+  presentation_t report;
+  if (!crossing_->reports.pop(report)) return std::nullopt;
+  return report;
+}
+
+std::optional<std::string> Output::news() {
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ : trouble_;
+  if (now == told_) return std::nullopt;
+  return told_ = std::move(now);
+}
+
+std::string Output::note() const {
+  if (!stream_) return trouble_.empty() ? "sound card not opened yet" : trouble_;
+  return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
+         std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
+         " underflows";
+}
+
+}  // namespace tactus::audio

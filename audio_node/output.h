@@ -1,0 +1,55 @@
+// The output of the node: a stream with its renderer, opened again when it is lost.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "audio_node/device/stream.h"
+#include "audio_node/settings.gen.h"
+
+namespace tactus::audio {
+
+class Output {
+ public:
+  // device: replaces the setting of that name unless empty.
+  Output(std::string folder, std::string device, int fifo_priority);
+
+  // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the
+  // limits.
+  void configure(Settings settings);
+  // Once a tick: opens the stream when there is none and it is time, closes it when it is dead. True when it
+  // plays.
+  bool keep_open(sync::HostTime now);
+
+  // False when nothing plays or the queue is full; then the strike will never sound.
+  bool submit(const Strike& strike);
+  std::optional<presentation_t> next_report();
+  std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
+
+  // One line for people: what it plays on, or why it does not.
+  std::string note() const;
+  // The same once, whenever it plays on another card or has another reason not to.
+  std::optional<std::string> news();
+  const std::string& medium() const { return medium_; }
+  // Since the start, over all streams.
+  std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
+  std::int64_t underflows() const { return past_underflows_ + (stream_ ? stream_->underflows() : 0); }
+  double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
+  const Settings& settings() const { return settings_; }
+
+ private:
+  void close();
+
+  std::string folder_, device_;
+  int fifo_priority_;
+  Settings settings_;
+  std::string trouble_, medium_, told_;
+  sync::HostTime retry_at_{};
+  std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
+  // In this order: the stream's callback uses the renderer, the renderer the queues.
+  std::unique_ptr<Crossing> crossing_;
+  std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<Stream> stream_;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,58 @@
+// A bounded queue from one thread to one other, without locks: the only way across the border of the audio
+// callback.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+namespace tactus::audio {
+
+// Elements cross by value. One thread pushes, one pops. Realtime-safe: yes, all but the constructor.
+template <class T>
+class Spsc {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  explicit Spsc(std::size_t at_least) : slots_(std::bit_ceil(std::max<std::size_t>(at_least, 2))) {}
+  Spsc(const Spsc&) = delete;
+  Spsc& operator=(const Spsc&) = delete;
+
+  // False, and nothing changes, when it does not fit.
+  bool push(const T& value) { return push(&value, 1); }
+  bool push(const T* values, std::size_t count) {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (count > slots_.size() - (head - tail_.load(std::memory_order_acquire))) return false;
+    for (std::size_t i = 0; i < count; ++i) slots_[(head + i) & (slots_.size() - 1)] = values[i];
+    head_.store(head + count, std::memory_order_release);
+    return true;
+  }
+
+  // How many were taken, 0 when empty.
+  bool pop(T& value) { return pop(&value, 1) == 1; }
+  std::size_t pop(T* values, std::size_t at_most) {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    const std::size_t count = std::min(at_most, head_.load(std::memory_order_acquire) - tail);
+    for (std::size_t i = 0; i < count; ++i) values[i] = slots_[(tail + i) & (slots_.size() - 1)];
+    tail_.store(tail + count, std::memory_order_release);
+    return count;
+  }
+
+  std::size_t capacity() const { return slots_.size(); }
+  // Free room as the pushing thread sees it; it can only grow until its next push.
+  std::size_t room() const {
+    return slots_.size() - (head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire));
+  }
+
+ private:
+  static_assert(std::atomic<std::size_t>::is_always_lock_free);
+  std::vector<T> slots_;
+  // Each on a cache line of its own, so that the two threads do not take it from each other.
+  alignas(64) std::atomic<std::size_t> head_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};
+};
+
+}  // namespace tactus::audio
