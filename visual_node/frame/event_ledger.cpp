@@ -1,0 +1,51 @@
+#include "visual_node/frame/event_ledger.h"
+
+#include <utility>
+
+namespace tactus::visual {
+
+bool owed(const contact_event_t& event) {
+  return event.kind == contact_event_t::BEGIN || event.kind == contact_event_t::HIT;
+}
+
+EventLedger::EventLedger(const Settings& s)
+    : late_after_(sync::from_seconds(s.late_after_s)),
+      drop_after_(sync::from_seconds(s.drop_after_s)),
+      uncertainty_(sync::from_seconds(s.fence_uncertainty_s)) {}
+
+std::vector<contact_event_t> EventLedger::take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
+                                               sync::HostTime t) {
+  std::vector<contact_event_t> to_flash;
+  for (const contact_event_t& event : due) {
+    if (!owed(event)) continue;
+    const sync::HostTime scheduled = map.to_host(sync::sim_time(event.time_ns));
+    presentation_t r{};
+    r.event_id = event.event_id;
+    r.part = presentation_t::WHOLE;
+    r.scheduled_ns = sync::to_ns(scheduled);
+    r.presented_ns = -1;
+    r.uncertainty_ns = uncertainty_.count();
+    if (t - scheduled > drop_after_) {
+      r.outcome = presentation_t::DROPPED_LATE;
+      dropped_.push_back(r);
+    } else {
+      in_frame_.push_back(r);
+      to_flash.push_back(event);
+    }
+  }
+  return to_flash;
+}
+
+std::vector<presentation_t> EventLedger::presented(sync::HostTime t) {
+  std::vector<presentation_t> reports = std::exchange(dropped_, {});
+  for (presentation_t& r : in_frame_) {
+    r.presented_ns = sync::to_ns(t);
+    const bool late = r.presented_ns - r.scheduled_ns > late_after_.count();
+    r.outcome = late ? presentation_t::LATE : presentation_t::PRESENTED;
+    reports.push_back(r);
+  }
+  in_frame_.clear();
+  return reports;
+}
+
+}  // namespace tactus::visual

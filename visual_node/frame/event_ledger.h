@@ -1,0 +1,34 @@
+// Books what becomes of every contact event that vision owes: exactly one report each. Pure.
+#pragma once
+
+#include <cstdint>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <vector>
+
+#include "sync/time.h"
+#include "visual_node/settings.gen.h"
+
+namespace tactus::visual {
+
+// Vision owes every begin and every hit.
+bool owed(const contact_event_t& event);
+
+class EventLedger {
+ public:
+  explicit EventLedger(const Settings& settings);
+
+  // Of the events due for the frame that is expected to be presented at t: those to flash. An event that would be
+  // shown too late is dropped and reported so.
+  std::vector<contact_event_t> take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
+                                    sync::HostTime t);
+  // The frame was presented at t: reports of the events that it showed first, and of those dropped since.
+  std::vector<presentation_t> presented(sync::HostTime t);
+
+ private:
+  sync::Nanoseconds late_after_, drop_after_, uncertainty_;
+  std::vector<presentation_t> in_frame_;
+  std::vector<presentation_t> dropped_;
+};
+
+}  // namespace tactus::visual

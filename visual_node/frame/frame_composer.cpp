@@ -1,0 +1,129 @@
+#include "visual_node/frame/frame_composer.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+#include "visual_node/frame/marker.h"
+#include "visual_node/frame/text.h"
+
+namespace tactus::visual {
+namespace {
+
+// A tool that was not heard of for so long is drawn where the simulation holds it: a dead haptic_node's hand is no
+// longer anywhere.
+constexpr sync::Nanoseconds kToolStaleAfter{200'000'000};
+// Its pose is carried on with its velocity by no more than a frame: a hand turns round faster than a ball.
+constexpr sync::Nanoseconds kToolExtrapolateAtMost{17'000'000};
+// Background without a scene: nearly black, so that a word on it is read.
+const Eigen::Vector3f kNoScene{0.01f, 0.012f, 0.016f};
+// Where the words are, pixels.
+constexpr float kTextAt_px = 8, kTextSize_px = 2;
+
+Eigen::Isometry3d to_isometry(const sync::BodyPose& p) { return Eigen::Translation3d(p.position) * p.orientation; }
+
+const char* word(const Frame& frame) {
+  switch (frame.state) {
+    case node_health_t::WAITING: return "WAITING";
+    case node_health_t::INPUT_LOST: return "LOST";
+    case node_health_t::STALE: return frame.how == sync::How::kHeld ? "HELD" : "STALE";
+    default: return "";
+  }
+}
+
+}  // namespace
+
+FrameComposer::FrameComposer(std::int64_t own_run, const Settings& settings)
+    : settings_(settings), contacts_(own_run), bodies_(own_run), flashes_(settings), ledger_(settings) {}
+
+const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings) {
+  settings_ = settings;
+  scene_ = scene;
+  view_.emplace(scene, meshes, settings);
+  flashes_ = Flashes(settings);
+  return *view_;
+}
+
+Frame FrameComposer::frame(sync::HostTime now, std::int64_t number) {
+  tick_ = now;
+  const sync::HostTime t = now + render_time_.expected();
+  const auto map = bodies_.map(now);
+  const auto instant = map ? std::optional(map->to_sim(t)) : std::nullopt;
+  Frame frame;
+  if (instant) frame.how = bodies_.how(*instant);
+  judge(frame, now);
+  flash_due(t);
+  if (view_) {
+    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now));
+    frame.list.glows = flashes_.frame(t, frame.list.camera);
+  } else {
+    frame.list.lighting.background = kNoScene;
+  }
+  if (settings_.event_marker == "strip")
+    append_marker(frame.list.overlay, static_cast<std::uint32_t>(number & 0xffffff), flashes_.shown(),
+                  view_ ? view_->height() : settings_.height / 4 * 4);
+  if (const std::string_view text = word(frame); !text.empty())
+    append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
+  return frame;
+}
+
+void FrameComposer::judge(Frame& frame, sync::HostTime now) {
+  const bool stale = frame.how == sync::How::kStale;
+  if (!stale) stale_since_.reset();
+  if (stale && !stale_since_) stale_since_ = now;
+  if (!scene_) {
+    frame.note = "waits for the scene";
+  } else if (frame.how == sync::How::kNone) {
+    frame.note = "waits for the state of the world";
+  } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
+    frame.state = node_health_t::INPUT_LOST;
+    frame.note = "no state of the world: shows the last";
+  } else if (stale || frame.how == sync::How::kHeld) {
+    frame.state = node_health_t::STALE;
+    frame.note = "shows the last state of the world";
+  } else {
+    frame.state = node_health_t::RUNNING;
+  }
+}
+
+void FrameComposer::flash_due(sync::HostTime t) {
+  const auto map = contacts_.map(tick_);
+  if (!map) return;
+  // Without a scene there is nothing to show an event in: it waits until it is too late.
+  const sync::HostTime until = view_ ? t : t - sync::from_seconds(settings_.drop_after_s);
+  const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
+  for (const contact_event_t& event : ledger_.take(due, *map, t)) flashes_.add(event, t);
+}
+
+std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(scene_->bodies.size());
+  for (const body_def_t& body : scene_->bodies) {
+    sync::Sample<sync::BodyPose> sample;
+    if (t && !body.is_static) sample = bodies_.pose(body.id, *t);
+    poses.push_back(sample.how == sync::How::kNone ? to_eigen(body.pose) : to_isometry(sample.value));
+  }
+  return poses;
+}
+
+std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const {
+  std::vector<ToolPose> poses(scene_->tools.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto it = tools_.find(static_cast<int>(i));
+    if (it == tools_.end() || now - it->second.arrival > kToolStaleAfter) continue;
+    const tool_state_t& m = it->second.state;
+    sync::Nanoseconds ahead{0};
+    if (t && m.header.sim_time_ns >= 0)
+      ahead = std::clamp(*t - sync::sim_time(m.header.sim_time_ns), sync::Nanoseconds(0), kToolExtrapolateAtMost);
+    poses[i] = {true, to_eigen(m.device), to_eigen(m.proxy)};
+    poses[i].device.translation() += to_eigen(m.device_velocity_m_s) * sync::to_seconds(ahead);
+    poses[i].proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
+  }
+  return poses;
+}
+
+std::vector<presentation_t> FrameComposer::presented(sync::HostTime fence) {
+  render_time_.add(fence - tick_);
+  return ledger_.presented(fence);
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,68 @@
+// Composes the picture of one instant from everything that has arrived: the one object behind the loop. Pure.
+//
+// A frame shows the world at the instant at which it will be presented: the tick plus the time that drawing takes.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <vector>
+
+#include "sync/body_history.h"
+#include "sync/contact_stream.h"
+#include "visual_node/frame/event_ledger.h"
+#include "visual_node/frame/render_time.h"
+#include "visual_node/scene_view/flashes.h"
+#include "visual_node/scene_view/scene_view.h"
+
+namespace tactus::visual {
+
+struct Frame {
+  DrawList list;
+  sync::How how = sync::How::kNone;            // how the poses of the bodies were obtained
+  std::int8_t state = node_health_t::WAITING;  // of the node, for its health
+  std::string note;
+};
+
+class FrameComposer {
+ public:
+  // own_run: messages of this run carry our own clock.
+  FrameComposer(std::int64_t own_run, const Settings& settings);
+
+  void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
+  void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
+  void push(const tool_state_t& m, sync::HostTime arrival) { tools_[m.tool] = {m, arrival}; }
+  // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
+  const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings);
+
+  // The frame that begins now, number `number` of all.
+  Frame frame(sync::HostTime now, std::int64_t number);
+  // That frame was presented at `fence`: reports of the events that it showed first or dropped.
+  std::vector<presentation_t> presented(sync::HostTime fence);
+
+ private:
+  struct ToolArrival {
+    tool_state_t state;
+    sync::HostTime arrival;
+  };
+  void flash_due(sync::HostTime t);
+  void judge(Frame& frame, sync::HostTime now);
+  std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
+  std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
+
+  Settings settings_;
+  sync::ContactStream contacts_;
+  sync::BodyHistory bodies_;
+  std::map<int, ToolArrival> tools_;
+  std::optional<scene_t> scene_;
+  std::optional<SceneView> view_;
+  Flashes flashes_;
+  EventLedger ledger_;
+  RenderTime render_time_;
+  sync::HostTime tick_{};
+  std::optional<sync::HostTime> stale_since_;
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,41 @@
+// Cells at the lower left edge of a frame that name the frame and the contact events that flash in it, so that
+// what was shown when can be read from the frames themselves. visual_node/marker.py reads them back. Pure.
+//
+// A cell is 4 x 4 pixels, black or white, so that it survives video compression; a row is 68 cells. Row 0 lies on
+// the lowest 4 pixels, row k above it. From the left, most significant bit first:
+//   1 0 1 0 | frame, 24 bits | low 32 bits of event_id, 0: none | CRC-8 of the seven bytes before
+// There is always a row 0; it names the newest event, the rows above it the next older ones whose flash is still
+// seen.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "visual_node/scene_view/draw_list.h"
+
+namespace tactus::visual {
+
+inline constexpr int kMarkerCell_px = 4;
+inline constexpr int kMarkerCells = 4 + 24 + 32 + 8;
+inline constexpr int kMarkerRows = 4;
+
+struct Marker {
+  std::uint32_t frame = 0;  // modulo 2^24
+  std::uint32_t event = 0;  // low 32 bits of event_id
+};
+
+// The cells of one row, true: white.
+std::vector<bool> encode_marker(const Marker& marker);
+// Nothing when they hold no marker: wrong beginning or check sum.
+std::optional<Marker> decode_marker(const std::vector<bool>& cells);
+
+// The cells of a whole picture; events: newest first, the first kMarkerRows of them are named.
+void append_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const std::int64_t> events,
+                   int height);
+
+// Reads row `row` from the luma of a picture (rows from the top, one byte per pixel).
+std::optional<Marker> read_marker(std::span<const std::uint8_t> luma, int width, int height, int row);
+
+}  // namespace tactus::visual

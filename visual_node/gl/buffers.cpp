@@ -1,0 +1,153 @@
+#include "visual_node/gl/buffers.h"
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <stdexcept>
+
+namespace tactus::visual {
+namespace {
+
+const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+void check_complete(const char* what) {
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw std::runtime_error(std::string("the graphics driver refuses the ") + what +
+                             "; choose a smaller picture or shadow_size");
+}
+
+}  // namespace
+
+StreamBuffer::StreamBuffer() { glGenBuffers(1, &id_); }
+StreamBuffer::~StreamBuffer() { glDeleteBuffers(1, &id_); }
+void StreamBuffer::write(const void* data, std::size_t bytes) {
+  glBindBuffer(GL_ARRAY_BUFFER, id_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+}
+
+GeometryBuffer::GeometryBuffer(const Triangles& t)
+    : index_count_(static_cast<int>(t.indices.size())), two_sided_(t.two_sided) {
+  std::vector<Eigen::Vector3f> interleaved;
+  interleaved.reserve(2 * t.positions.size());
+  for (std::size_t i = 0; i < t.positions.size(); ++i) {
+    interleaved.push_back(t.positions[i]);
+    interleaved.push_back(t.normals[i]);
+  }
+  glGenVertexArrays(1, &array_);
+  glGenBuffers(1, &vertices_);
+  glGenBuffers(1, &indices_);
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(interleaved.size() * sizeof(Eigen::Vector3f)),
+               interleaved.data(), GL_STATIC_DRAW);
+  for (unsigned i = 0; i < 2; ++i) {
+    glEnableVertexAttribArray(i);
+    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 2 * sizeof(Eigen::Vector3f),
+                          offset(i * sizeof(Eigen::Vector3f)));
+  }
+  for (unsigned i = 2; i < 2 + sizeof(Instance) / 16; ++i) {
+    glEnableVertexAttribArray(i);
+    glVertexAttribDivisor(i, 1);
+  }
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(t.indices.size() * sizeof(std::uint32_t)),
+               t.indices.data(), GL_STATIC_DRAW);
+}
+
+GeometryBuffer::~GeometryBuffer() {
+  glDeleteVertexArrays(1, &array_);
+  glDeleteBuffers(1, &vertices_);
+  glDeleteBuffers(1, &indices_);
+}
+
+void GeometryBuffer::draw(const StreamBuffer& instances, int first, int count) const {
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, instances.id());
+  // OpenGL 3.3 has no base instance: the attributes begin where the batch does.
+  for (unsigned i = 0; i < sizeof(Instance) / 16; ++i)
+    glVertexAttribPointer(2 + i, 4, GL_FLOAT, GL_FALSE, sizeof(Instance),
+                          offset(static_cast<std::size_t>(first) * sizeof(Instance) + 16 * i));
+  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, count);
+}
+
+QuadArray::QuadArray(int floats4) : floats4_(floats4) {
+  glGenVertexArrays(1, &array_);
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, instances_.id());
+  for (int i = 0; i < floats4_; ++i) {
+    const auto attribute = static_cast<unsigned>(i);
+    glEnableVertexAttribArray(attribute);
+    glVertexAttribPointer(attribute, 4, GL_FLOAT, GL_FALSE, 16 * floats4_, offset(16 * attribute));
+    glVertexAttribDivisor(attribute, 1);
+  }
+}
+
+QuadArray::~QuadArray() { glDeleteVertexArrays(1, &array_); }
+
+void QuadArray::draw(const void* data, std::size_t count) {
+  if (count == 0) return;
+  instances_.write(data, count * 16 * static_cast<std::size_t>(floats4_));
+  glBindVertexArray(array_);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
+}
+
+PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
+  glGenFramebuffers(1, &framebuffer_);
+  glGenRenderbuffers(1, &colour_);
+  glGenRenderbuffers(1, &depth_);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glBindRenderbuffer(GL_RENDERBUFFER, colour_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_SRGB8_ALPHA8, width, height);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+  check_complete("picture");
+}
+
+PictureTarget::~PictureTarget() {
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteRenderbuffers(1, &colour_);
+  glDeleteRenderbuffers(1, &depth_);
+}
+
+void PictureTarget::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, width_, height_);
+}
+
+void PictureTarget::read(std::span<std::uint8_t> rgba) const {
+  if (rgba.size() < static_cast<std::size_t>(width_ * height_ * 4)) return;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+
+ShadowTarget::ShadowTarget(int size) : size_(size) {
+  glGenFramebuffers(1, &framebuffer_);
+  glGenTextures(1, &depth_);
+  glBindTexture(GL_TEXTURE_2D, depth_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+               nullptr);
+  for (const auto filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  for (const auto wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
+  glDrawBuffer(GL_NONE);
+  check_complete("shadow map");
+}
+
+ShadowTarget::~ShadowTarget() {
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteTextures(1, &depth_);
+}
+
+void ShadowTarget::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, size_, size_);
+}
+
+}  // namespace tactus::visual

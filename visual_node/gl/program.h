@@ -1,0 +1,35 @@
+// A vertex and a fragment shader, compiled and linked.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+
+namespace tactus::visual {
+
+class Program {
+ public:
+  // Of shaders/NAME.vert and shaders/NAME.frag, with `defines` ("#define A 1\n...") after the version line of
+  // both. Throws std::runtime_error that names file and line of every error.
+  explicit Program(const std::string& name, const std::string& defines = "");
+  // Of the texts given, which errors call by these names.
+  Program(const std::string& vertex_name, std::string_view vertex, const std::string& fragment_name,
+          std::string_view fragment, const std::string& defines = "");
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const;
+  unsigned id() const { return id_; }
+  // Of the program in use. A name that the shader does not use is no error: the compiler may have removed it.
+  void set(const char* name, float value) const;
+  void set(const char* name, int value) const;
+  void set(const char* name, const Eigen::Vector2f& value) const;
+  void set(const char* name, const Eigen::Vector3f& value) const;
+  void set(const char* name, const Eigen::Matrix4f& value) const;
+
+ private:
+  unsigned id_ = 0;
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,140 @@
+#include "visual_node/gl/renderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+namespace tactus::visual {
+namespace {
+
+// Clip space -1 .. 1 to texture coordinates 0 .. 1.
+Eigen::Matrix4f texture_from_clip() {
+  Eigen::Matrix4f m = Eigen::Matrix4f::Identity() * 0.5f;
+  m.col(3) << 0.5f, 0.5f, 0.5f, 1.0f;
+  return m;
+}
+
+// The kinds of the lamps are known to the shader's compiler: a software renderer pays for every branch of every
+// pixel.
+std::string surface_defines(const Lighting& lighting) {
+  std::string lamps;
+  for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
+    const Light& l = lighting.lights[i];
+    const std::string index = std::to_string(i);
+    const bool shiny = l.specular.head<3>().maxCoeff() > 0;
+    const auto flag = [](bool on) { return on ? ", true" : ", false"; };
+    if (l.position.w() == 0)
+      lamps += "directional(" + index + flag(shiny) + ");";
+    else
+      lamps += "lamp(" + index + flag(shiny) + flag(l.cone.x() != 0) + flag(l.cone.z() != 1) +
+               flag(static_cast<int>(i) == lighting.shadow_light) + ");";
+  }
+  return "#define LIGHTS " + std::to_string(std::max<std::size_t>(1, lighting.lights.size())) +
+         "\n#define LAMPS " + lamps + "\n#define SHADOWS " + (lighting.shadow_light >= 0 ? "1" : "0") + "\n";
+}
+
+void enable(unsigned what, bool on) { on ? glEnable(what) : glDisable(what); }
+
+}  // namespace
+
+Renderer::Renderer(int width, int height, int shadow_size) : picture_(width, height), shadow_size_(shadow_size) {
+  load({}, {});
+}
+
+void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& lighting) {
+  const bool shadows = lighting.shadow_light >= 0;
+  shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_) : nullptr;
+  surface_ = std::make_unique<Program>("surface", surface_defines(lighting));
+  glUniformBlockBinding(surface_->id(), glGetUniformBlockIndex(surface_->id(), "Lights"), 0);
+  geometries_.clear();
+  for (const Triangles& t : geometries) geometries_.push_back(std::make_unique<GeometryBuffer>(t));
+}
+
+void Renderer::draw(const DrawList& list) {
+  instances_.write(list.instances.data(), list.instances.size() * sizeof(Instance));
+  if (shadow_) draw_shadow(list);
+  draw_surfaces(list);
+
+  glDisable(GL_DEPTH_TEST);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glow_.use();
+  glow_.set("clip_from_world", list.camera.clip_from_world());
+  glow_.set("exposure", list.lighting.exposure);
+  glows_.draw(list.glows.data(), list.glows.size());
+
+  glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  overlay_.use();
+  overlay_.set("size",
+               Eigen::Vector2f(static_cast<float>(picture_.width()), static_cast<float>(picture_.height())));
+  rects_.draw(list.overlay.data(), list.overlay.size());
+  glDisable(GL_BLEND);
+}
+
+void Renderer::draw_shadow(const DrawList& list) {
+  shadow_->bind();
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 4.0f);  // one and a half texels of slope: the filter reads the neighbouring texel too
+  shadow_program_.use();
+  shadow_program_.set("clip_from_world", list.lighting.shadow_clip);
+  for (const Batch& b : list.opaque)
+    if (b.casts_shadow) draw_batch(b);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Renderer::draw_surfaces(const DrawList& list) {
+  picture_.bind();
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  const Eigen::Vector3f background = list.lighting.background * list.lighting.exposure;
+  glClearColor(background.x(), background.y(), background.z(), 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+
+  std::vector<Light> lights = list.lighting.lights;
+  if (lights.empty()) lights.push_back({});  // dark: its colours are 0
+  glBindBuffer(GL_UNIFORM_BUFFER, lights_.id());
+  glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(lights.size() * sizeof(Light)), lights.data(),
+               GL_STREAM_DRAW);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights_.id());
+  surface_->use();
+  surface_->set("clip_from_world", list.camera.clip_from_world());
+  surface_->set("shadow_from_world", Eigen::Matrix4f(texture_from_clip() * list.lighting.shadow_clip));
+  surface_->set("eye", list.camera.eye);
+  surface_->set("ambient_light", list.lighting.ambient);
+  surface_->set("exposure", list.lighting.exposure);
+  if (shadow_) {
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, shadow_->texture());
+    surface_->set("shadow_map", 0);
+  }
+  glDisable(GL_BLEND);
+  for (const Batch& b : list.opaque) draw_batch(b);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  for (const Batch& b : list.translucent) draw_batch(b);
+  glDisable(GL_CULL_FACE);
+}
+
+void Renderer::draw_batch(const Batch& batch) {
+  const auto at = static_cast<std::size_t>(batch.geometry);
+  if (at >= geometries_.size()) return;
+  enable(GL_CULL_FACE, !geometries_[at]->two_sided());
+  geometries_[at]->draw(instances_, batch.first, batch.count);
+}
+
+void Renderer::wait() const {
+  // A fence, not glFinish: a driver may treat that as a flush.
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  constexpr GLuint64 kAtMost_ns = 1'000'000'000;  // a device that hangs longer is not waited for
+  glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kAtMost_ns);
+  glDeleteSync(fence);
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,42 @@
+// Draws a draw list into a picture with OpenGL 3.3. A context must be current in the calling thread.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "visual_node/gl/buffers.h"
+#include "visual_node/gl/program.h"
+#include "visual_node/scene_view/draw_list.h"
+
+namespace tactus::visual {
+
+class Renderer {
+ public:
+  // Throws std::runtime_error when a shader does not compile.
+  Renderer(int width, int height, int shadow_size);
+
+  // Geometries that the batches of later draw lists refer to, and how many lamps there are.
+  void load(const std::vector<Triangles>& geometries, const Lighting& lighting);
+  // Gives the work to the device and returns.
+  void draw(const DrawList& list);
+  // Waits until the device has finished the picture.
+  void wait() const;
+  const PictureTarget& picture() const { return picture_; }
+
+ private:
+  void draw_shadow(const DrawList& list);
+  void draw_surfaces(const DrawList& list);
+  void draw_batch(const Batch& batch);
+
+  PictureTarget picture_;
+  int shadow_size_;
+  std::unique_ptr<ShadowTarget> shadow_;  // null: no lamp casts one
+  std::unique_ptr<Program> surface_;
+  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"};
+  std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
+  StreamBuffer instances_, lights_;
+  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)};
+};
+
+}  // namespace tactus::visual

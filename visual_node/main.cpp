@@ -1,0 +1,111 @@
+// visual_node: draws the scene, its tools and a flash for every contact, at 60 Hz.
+//
+//   in   WORLD_STATE, CONTACT_EVENTS   where the bodies are, what began and what hit
+//        TOOL_STATE                    where device and proxy of each tool are
+//        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
+//   out  PRESENTED                     every begin and hit
+//        MEDIA_CLOCK                   which frame of the video was out when
+//
+// Losing WORLD_STATE carries bodies on for 50 ms, then holds them and says so in the picture; the loop waits for
+// nobody.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "sync/node.h"
+#include "sync/presentation_reporter.h"
+#include "sync/scene_exchange.h"
+#include "visual_node/egl/display.h"
+#include "visual_node/frame/frame_composer.h"
+#include "visual_node/gl/renderer.h"
+#include "visual_node/scene_view/meshes.h"
+#include "visual_node/video/recording.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  visual::Settings settings;
+  const sync::Declaration declaration{.node = "visual_node",
+                                      .modality = "visual",
+                                      .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
+                                      .rate_Hz = settings.rate_Hz,
+                                      .about = "Draws the scene, its tools and a flash for every contact."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  visual::RecordingOptions keep;
+  bool window = false, no_video = false;
+  app.add_flag("--window", window, "open a window");
+  app.add_flag("--no-video", no_video, "write no video.mp4");
+  app.add_option("--snapshot", keep.snapshot, "PNG file that the newest picture is written to");
+  app.add_option("--snapshot-every", keep.snapshot_every_s, "how often, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  const std::vector<setting_t> no_scene;
+  for (const std::string& wrong :
+       sync::apply_settings(settings, visual::setting_fields(), declaration.node, no_scene, options.set))
+    throw std::runtime_error(wrong);
+  keep.folder = options.out;
+  keep.video = !no_video;
+
+  visual::quiet_software_renderer();
+  const auto display = window ? visual::make_window("Tactus", settings.width, settings.height)
+                              : visual::make_headless(settings.egl_device);
+  auto renderer =
+      std::make_unique<visual::Renderer>(settings.width / 4 * 4, settings.height / 4 * 4, settings.shadow_size);
+  std::cerr << declaration.node << ": " << display->description() << std::endl;
+
+  sync::Node node(declaration, options);
+  node.set_rate(settings.rate_Hz);
+  sync::SceneReceiver scenes(node.bus());
+  auto& world = node.bus().queue<world_state_t>(channels::kWorldState, 4096);
+  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
+  auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
+  visual::FrameComposer composer(options.run_id, settings);
+  visual::Recording recording(keep);
+  sync::PresentationReporter reporter(declaration.modality);
+  std::string said;
+
+  while (node.running() && !display->closed()) {
+    const sync::HostTime now = node.wait();
+    while (const auto m = world.pop()) composer.push(m->message, m->arrival);
+    while (const auto m = events.pop()) composer.push(m->message, m->arrival);
+    while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
+    if (scenes.poll(now)) {
+      settings = {};
+      for (const std::string& refused : sync::apply_settings(settings, visual::setting_fields(), declaration.node,
+                                                             scenes.scene()->settings, options.set))
+        std::cerr << refused << "\n";
+      const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings);
+      renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
+      renderer->load(view.geometries(), view.lighting());
+      recording.begin(view.width(), view.height(), settings);
+      node.set_rate(settings.rate_Hz);
+    }
+    const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
+    const visual::Frame frame = composer.frame(now, tick);
+    const visual::PictureTarget& picture = renderer->picture();
+    renderer->draw(frame.list);
+    display->show(picture.framebuffer(), picture.width(), picture.height());
+    renderer->wait();
+    const sync::HostTime fence = sync::host_now();
+    std::int64_t rendered = 0;
+    for (const presentation_t& report : composer.presented(fence)) {
+      reporter.report(report);
+      rendered += report.outcome != presentation_t::DROPPED_LATE;
+    }
+    node.count_rendered(rendered);
+    reporter.publish(node.bus(), fence);
+    if (auto pair = recording.add(tick, fence, [&](std::span<std::uint8_t> rgba) { picture.read(rgba); }))
+      node.bus().publish(channels::kMediaClock, *pair);
+    if (const std::string trouble = recording.trouble(); trouble != said) {
+      std::cerr << declaration.node << ": " << trouble << std::endl;
+      said = trouble;
+    }
+    const std::string video = recording.note();
+    node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("visual_node", e);
+}

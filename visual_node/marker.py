@@ -1,0 +1,78 @@
+"""Reads the cells at the lower left edge of a frame of visual_node; frame/marker.h says how they are laid out.
+
+  python3 visual_node/marker.py video.mp4     one line per frame: index in the file, frame number, events that flash
+"""
+import subprocess
+import sys
+
+import numpy as np
+
+CELL, CELLS, ROWS = 4, 68, 4
+
+
+def _crc8(data):
+    crc = 0
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc << 1) ^ 0x07 if crc & 0x80 else crc << 1
+            crc &= 0xFF
+    return crc
+
+
+def decode_row(frame, row):
+    """(frame number, low 32 bits of the event id) of one row of a luma picture (rows from the top), or None."""
+    height, width = frame.shape
+    y = height - CELL * (row + 1)
+    if y < 0 or width < CELL * CELLS:
+        return None
+    # The inner 2 x 2 pixels of each cell, which compression hurts least.
+    inner = frame[y + 1:y + 3, :CELL * CELLS].reshape(2, CELLS, CELL)[:, :, 1:3].astype(float)
+    bits = (inner.mean(axis=(0, 2)) > 127).astype(np.uint8)
+    if list(bits[:4]) != [1, 0, 1, 0]:
+        return None
+    data = np.packbits(bits[4:]).tobytes()
+    if _crc8(data[:7]) != data[7]:
+        return None
+    return int.from_bytes(data[0:3], "big"), int.from_bytes(data[3:7], "big")
+
+
+def frame_number(frame):
+    """Number of the frame modulo 2^24, or None."""
+    row = decode_row(frame, 0)
+    return None if row is None else row[0]
+
+
+def decode_frame(frame):
+    """Low 32 bits of the ids of the events that flash in this frame, newest first, at most 4."""
+    rows = (decode_row(frame, row) for row in range(ROWS))
+    first = next(rows)
+    if first is None:
+        return []
+    number, event = first
+    events = [event] if event else []
+    for row in rows:
+        if row is None or row[0] != number:
+            break
+        events.append(row[1])
+    return events
+
+
+def main():
+    path = sys.argv[1]
+    size = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v", "-show_entries", "stream=width,height",
+                           "-of", "csv=p=0", path], check=True, capture_output=True, text=True).stdout
+    width, height = (int(x) for x in size.strip().split(",")[:2])
+    stream = subprocess.Popen(["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                              stdout=subprocess.PIPE)
+    index = 0
+    while len(raw := stream.stdout.read(width * height)) == width * height:
+        frame = np.frombuffer(raw, np.uint8).reshape(height, width)
+        print(index, frame_number(frame), *(f"{event:08x}" for event in decode_frame(frame)))
+        index += 1
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
+        sys.exit(__doc__)
+    main()

@@ -1,0 +1,80 @@
+// Everything that one frame shows, as plain data: what the scene view builds and the renderer draws.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "visual_node/scene_view/camera.h"
+
+namespace tactus::visual {
+
+// One shape in its place. The layout is that of the instance attributes of shaders/surface.vert.
+struct Instance {
+  Eigen::Vector4f orientation{0, 0, 0, 1};  // T_world_shape, quaternion x, y, z, w
+  Eigen::Vector4f position{0, 0, 0, 1};     // m, world; w unused
+  Eigen::Vector4f scale{1, 1, 1, 16};       // along the axes of the shape; w: Phong exponent
+  Eigen::Vector4f diffuse{1, 1, 1, 1};      // linear; w: opacity
+  Eigen::Vector4f specular{0, 0, 0, 0};     // linear; w unused
+  Eigen::Vector4f ambient{0, 0, 0, 0};      // share of the ambient light that it returns; w unused
+  Eigen::Vector4f emissive{0, 0, 0, 0};     // linear; w unused
+};
+static_assert(sizeof(Instance) == 7 * 16);
+
+// Consecutive instances of one geometry.
+struct Batch {
+  int geometry = 0;
+  int first = 0;
+  int count = 0;
+  bool casts_shadow = true;
+};
+
+// The layout is that of one element of the light block in shaders/surface.frag (std140).
+struct Light {
+  Eigen::Vector4f position{0, 0, 0, 0};  // m, world; w: 0 for a directional light, whose position does not matter
+  Eigen::Vector4f direction{0, 0, -1, 0};   // unit, away from the lamp; w unused
+  Eigen::Vector4f diffuse{0, 0, 0, 0};      // linear, times intensity; w: range in m
+  Eigen::Vector4f specular{0, 0, 0, 0};     // linear, times intensity; w unused
+  Eigen::Vector4f attenuation{1, 0, 0, 0};  // constant, linear 1/m, quadratic 1/m^2
+  // Cone: factor and offset on the cosine of the angle to the axis, 0 outside and 1 inside, and the exponent of
+  // its falloff. Factor 0: no cone.
+  Eigen::Vector4f cone{0, 1, 1, 0};
+};
+static_assert(sizeof(Light) == 6 * 16);
+inline constexpr int kMaxLights = 8;
+
+struct Lighting {
+  std::vector<Light> lights;                                  // at most kMaxLights
+  int shadow_light = -1;                                      // which of them casts a shadow, -1: none
+  Eigen::Matrix4f shadow_clip = Eigen::Matrix4f::Identity();  // world to the clip space of that lamp
+  Eigen::Vector3f ambient = Eigen::Vector3f::Zero();          // linear
+  Eigen::Vector3f background = Eigen::Vector3f::Zero();       // linear
+  float exposure = 1;
+};
+
+// A disc of light, drawn over everything and added to it.
+struct Glow {
+  Eigen::Vector4f centre;  // m, world; w: 0 .. 1, how far the flash has grown
+  Eigen::Vector4f u, v;    // half axes, m, world
+  Eigen::Vector4f colour;  // linear, premultiplied; w unused
+};
+static_assert(sizeof(Glow) == 4 * 16);
+
+// A filled rectangle in pixels from the top left, over everything, in sRGB.
+struct Rect {
+  float x = 0, y = 0, width = 0, height = 0;
+  float red = 0, green = 0, blue = 0, alpha = 1;
+};
+
+struct DrawList {
+  Camera camera;
+  Lighting lighting;
+  std::vector<Instance> instances;
+  std::vector<Batch> opaque;       // roughly front to back
+  std::vector<Batch> translucent;  // back to front
+  std::vector<Glow> glows;
+  std::vector<Rect> overlay;
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,67 @@
+#include "visual_node/scene_view/lighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::visual {
+namespace {
+
+Eigen::Vector4f with(const Eigen::Vector3d& v, float w) {
+  const Eigen::Vector3f f = v.cast<float>();
+  return {f.x(), f.y(), f.z(), w};
+}
+
+// A texel of the map is as wide as the cone is there: beyond 160 degrees a single map would be all corner.
+constexpr double kWidestShadowCone_rad = 160 * std::numbers::pi / 180;
+// Farther away a lamp's shadow would be coarser than what it falls on.
+constexpr double kFarthestShadow_m = 30;
+// Depth precision is lost with the ratio of far to near.
+constexpr double kShadowFarToNear = 500;
+
+Eigen::Matrix4f shadow_clip(const light_def_t& lamp) {
+  const double far_m = std::min<double>(std::max(lamp.range_m, 0.1f), kFarthestShadow_m);
+  const double cone = std::clamp<double>(lamp.outer_angle_rad * 1.02, 0.05, kWidestShadowCone_rad);
+  return perspective(cone, 1, far_m / kShadowFarToNear, far_m) *
+         look_along(to_eigen(lamp.pose.position_m), to_eigen(lamp.direction));
+}
+
+}  // namespace
+
+Light make_light(const light_def_t& lamp) {
+  const bool directional = lamp.kind == light_def_t::DIRECTIONAL, spot = lamp.kind == light_def_t::SPOT;
+  Light l;
+  l.position = with(to_eigen(lamp.pose.position_m), directional ? 0 : 1);
+  l.direction = with(to_eigen(lamp.direction).normalized(), 0);
+  l.diffuse = with(to_eigen(lamp.diffuse) * lamp.intensity, directional ? 1e30f : lamp.range_m);
+  l.specular = with(to_eigen(lamp.specular) * lamp.intensity, 0);
+  if (!directional)
+    l.attenuation = {lamp.attenuation_constant, lamp.attenuation_linear, lamp.attenuation_quadratic, 0};
+  if (spot) {
+    const float outer = std::cos(lamp.outer_angle_rad / 2);
+    // An inner cone as wide as the outer one is a hard edge: 0.001 of cosine is half a texel of the shadow map.
+    const float factor = 1 / std::max(std::cos(lamp.inner_angle_rad / 2) - outer, 1e-3f);
+    l.cone = {factor, -outer * factor, lamp.falloff > 0 ? lamp.falloff : 1, 0};
+  }
+  return l;
+}
+
+Lighting make_lighting(const scene_t& scene, const Settings& settings) {
+  Lighting lighting;
+  for (const light_def_t& lamp : scene.lights) {
+    if (lighting.lights.size() == kMaxLights) break;
+    lighting.lights.push_back(make_light(lamp));
+    if (!settings.shadows || lighting.shadow_light >= 0 || lamp.kind != light_def_t::SPOT || !lamp.casts_shadow)
+      continue;
+    lighting.shadow_light = static_cast<int>(lighting.lights.size()) - 1;
+    lighting.shadow_clip = shadow_clip(lamp);
+  }
+  lighting.ambient = static_cast<float>(settings.ambient) * to_eigen(scene.ambient).cast<float>();
+  lighting.background = to_eigen(scene.background).cast<float>();
+  lighting.exposure = static_cast<float>(settings.exposure);
+  return lighting;
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,198 @@
+#include "visual_node/scene_view/scene_view.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "lcmtypes/vectors.h"
+#include "visual_node/scene_view/lighting.h"
+
+namespace tactus::visual {
+namespace {
+
+// Segments around a round shape per level, and the radius in pixels from which the next finer level is used: a
+// polygon of n segments errs by r (1 - cos(pi / n)), which stays below 3/4 of a pixel so. More would cost a
+// software renderer dearly, which shades every triangle in blocks of 4 x 4 pixels.
+constexpr std::array kSegments{12, 20, 40};
+constexpr std::array kCoarserBelow_px{22.0f, 61.0f};
+
+// Horizontal field of view of a scene that gives none: that of the SDF camera's default, 1.047 rad.
+constexpr double kDefaultFov_rad = 1.047;
+// A tool that is a point is drawn as large as a pencil's tip.
+constexpr double kSmallestTool_m = 0.004;
+// Colours of a tool without visuals: a blue that no material of ours has.
+const Eigen::Vector3f kToolColour{0.10f, 0.42f, 0.95f};
+
+Eigen::Vector4f with(const vec3f_t& v, float w) { return {v.x, v.y, v.z, w}; }
+
+int multiple_of_4(int pixels) { return pixels / 4 * 4; }
+
+}  // namespace
+
+SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings)
+    : width_(multiple_of_4(settings.width)), height_(multiple_of_4(settings.height)) {
+  const double fov = settings.fov_rad > 0       ? settings.fov_rad
+                     : scene.camera_fov_rad > 0 ? scene.camera_fov_rad
+                                                : kDefaultFov_rad;
+  camera_ = make_camera(to_eigen(scene.camera), std::min(fov, 3.0), width_, height_, settings.near_m,
+                        std::max(settings.far_m, 2 * settings.near_m));
+  lighting_ = make_lighting(scene, settings);
+  geometries_ = {unit_plane(), unit_box()};
+  for (const int n : kSegments) geometries_.push_back(unit_sphere(n));
+  for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
+  for (const visual_def_t& v : scene.visuals) add(v, meshes);
+  for (const tool_def_t& t : scene.tools) add_tool(scene, t);
+  // A lamp modelled around its light would swallow all of it.
+  for (Part& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
+  for (Tool& t : tools_) t.ghost.look.diffuse.w() = static_cast<float>(settings.ghost_alpha);
+}
+
+void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
+  Part part;
+  if (v.alpha <= 0 || !shape(v.shape, meshes, part)) return;
+  part.body = v.shape.body;
+  part.in_body = to_eigen(v.shape.pose);
+  part.look.scale.w() = std::max(v.shininess, 1.0f);
+  part.look.diffuse = with(v.diffuse, std::min(v.alpha, 1.0f));
+  part.look.specular = with(v.specular, 0);
+  part.look.ambient = with(v.ambient, 0);
+  part.look.emissive = with(v.emissive, 0);
+  parts_.push_back(part);
+}
+
+void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool) {
+  Part ball;
+  const auto radius = static_cast<float>(std::max(tool.radius_m, kSmallestTool_m));
+  ball.body = tool.body;
+  ball.geometry = kSphere;
+  ball.levels = true;
+  ball.radius_m = radius;
+  ball.look.scale = {radius, radius, radius, 40};
+  ball.look.diffuse << kToolColour, 1;
+  ball.look.specular = {0.5f, 0.5f, 0.5f, 0};
+  // It glows a little, so that the hand is found in the dark.
+  ball.look.ambient << kToolColour, 0;
+  ball.look.emissive << 0.12f * kToolColour, 0;
+  const bool has_visual =
+      std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.body == tool.body; });
+  if (!has_visual && tool.body < static_cast<int>(scene.bodies.size())) parts_.push_back(ball);
+  tools_.push_back({tool.body, ball});
+}
+
+bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, Part& part) {
+  const Eigen::Vector3f size = to_eigen(s.size_m).cast<float>();
+  const float r = size.x();
+  const auto scaled = [&](float x, float y, float z) { part.look.scale = {x, y, z, 1}; };
+  switch (s.kind) {
+    case shape_def_t::BOX:
+      part.geometry = kBox;
+      part.radius_m = size.norm() / 2;
+      scaled(size.x(), size.y(), size.z());
+      return true;
+    case shape_def_t::SPHERE:
+      part.geometry = kSphere;
+      part.levels = true;
+      part.radius_m = r;
+      scaled(r, r, r);
+      return true;
+    case shape_def_t::CYLINDER:
+      part.geometry = kCylinder;
+      part.levels = true;
+      part.radius_m = std::max(r, size.z() / 2);
+      scaled(r, r, size.z());
+      return true;
+    case shape_def_t::CAPSULE:
+      part.geometry = static_cast<int>(geometries_.size());
+      part.radius_m = r + size.z() / 2;
+      geometries_.push_back(capsule(r, size.z(), kSegments[1]));
+      return true;
+    case shape_def_t::PLANE:
+      part.geometry = kPlane;
+      part.radius_m = std::max(size.x(), size.y());
+      part.casts_shadow = false;
+      scaled(size.x(), size.y(), 1);
+      return true;
+    case shape_def_t::MESH: {
+      const auto mesh = meshes.find(s.mesh_hash);
+      if (mesh == meshes.end()) return ++missing_meshes_, false;
+      const auto [at, fresh] = mesh_geometry_.try_emplace(s.mesh_hash, static_cast<int>(geometries_.size()));
+      if (fresh) geometries_.push_back(from_mesh(mesh->second));
+      part.geometry = at->second;
+      for (const auto& p : geometries_[static_cast<std::size_t>(part.geometry)].positions)
+        part.radius_m = std::max(part.radius_m, p.norm());
+      return true;
+    }
+    default: return false;
+  }
+}
+
+bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
+  if (lighting_.shadow_light < 0) return false;
+  const Eigen::Vector3f lamp =
+      lighting_.lights[static_cast<std::size_t>(lighting_.shadow_light)].position.head<3>();
+  const auto body = static_cast<std::size_t>(part.body);
+  const Eigen::Isometry3d pose =
+      (body < scene.bodies.size() ? to_eigen(scene.bodies[body].pose) : Eigen::Isometry3d::Identity()) *
+      part.in_body;
+  // Not what is as large as a room: its bounding sphere holds everything.
+  return part.radius_m < 0.5f && (pose.translation().cast<float>() - lamp).norm() < part.radius_m;
+}
+
+SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const {
+  const Eigen::Isometry3d pose = body * part.in_body;
+  const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
+  Placed p{part.geometry, 0, part.casts_shadow, part.look};
+  p.instance.orientation = q.coeffs();
+  p.instance.position.head<3>() = pose.translation().cast<float>();
+  p.distance_m = (p.instance.position.head<3>() - camera.eye).norm();
+  if (part.levels) {
+    const float radius_px = part.look.scale.x() * camera.focal_px / std::max(p.distance_m, 1e-3f);
+    for (const float limit : kCoarserBelow_px) p.geometry += radius_px >= limit;
+  }
+  return p;
+}
+
+DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools) const {
+  DrawList list;
+  list.camera = camera_;
+  list.lighting = lighting_;
+  std::vector<Placed> opaque, translucent;
+  const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {
+    (part.look.diffuse.w() < 1 ? translucent : opaque).push_back(place(part, pose, camera_));
+  };
+  const auto tool_of = [&](int body) {
+    for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
+      if (tools_[i].body == body && tools[i].known) return static_cast<int>(i);
+    return -1;
+  };
+  for (const Part& part : parts_) {
+    const int tool = tool_of(part.body);
+    if (tool >= 0)
+      add(part, tools[static_cast<std::size_t>(tool)].proxy);
+    else if (part.body >= 0 && part.body < static_cast<int>(bodies.size()))
+      add(part, bodies[static_cast<std::size_t>(part.body)]);
+  }
+  for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
+    if (tools[i].known) add(tools_[i].ghost, tools[i].device);
+
+  // Planes and boxes have the lowest numbers and are mostly floors and walls: last, so that little is drawn twice.
+  std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {
+    return std::tuple(-a.geometry, a.casts_shadow, a.distance_m) <
+           std::tuple(-b.geometry, b.casts_shadow, b.distance_m);
+  });
+  std::sort(translucent.begin(), translucent.end(),
+            [](const Placed& a, const Placed& b) { return a.distance_m > b.distance_m; });
+  const auto append = [&](const std::vector<Placed>& from, std::vector<Batch>& to) {
+    for (const Placed& p : from) {
+      if (to.empty() || to.back().geometry != p.geometry || to.back().casts_shadow != p.casts_shadow)
+        to.push_back({p.geometry, static_cast<int>(list.instances.size()), 0, p.casts_shadow});
+      ++to.back().count;
+      list.instances.push_back(p.instance);
+    }
+  };
+  append(opaque, list.opaque);
+  append(translucent, list.translucent);
+  return list;
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,81 @@
+// Turns a scene and the poses of its bodies into a draw list. Built anew for every scene.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <span>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "visual_node/scene_view/draw_list.h"
+#include "visual_node/scene_view/triangles.h"
+#include "visual_node/settings.gen.h"
+
+namespace tactus::visual {
+
+using Meshes = std::map<std::int64_t, mesh_t>;  // by content hash
+
+// What is known of one tool at the instant of a frame.
+struct ToolPose {
+  bool known = false;
+  Eigen::Isometry3d device = Eigen::Isometry3d::Identity();  // T_world_device
+  Eigen::Isometry3d proxy = Eigen::Isometry3d::Identity();   // T_world_proxy
+};
+
+class SceneView {
+ public:
+  // Shapes whose mesh is not among `meshes` are left out and counted.
+  SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings);
+
+  // The triangles that batches refer to, by index.
+  const std::vector<Triangles>& geometries() const { return geometries_; }
+  const Lighting& lighting() const { return lighting_; }
+  int missing_meshes() const { return missing_meshes_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // One pose T_world_body per body and one entry per tool; a tool that is known is drawn where its proxy is.
+  DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools) const;
+
+ private:
+  // The order is that of geometries_; levels are how finely round shapes are divided.
+  static constexpr int kPlane = 0, kBox = 1, kSphere = 2, kCylinder = 5, kLevels = 3;
+
+  struct Part {  // one visible shape
+    int body = 0;
+    Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();  // T_body_shape
+    int geometry = 0;                                           // of the coarsest level
+    bool levels = false;                                        // whether there are finer ones behind it
+    float radius_m = 0;  // of a sphere about the origin of the shape that holds it
+    bool casts_shadow = true;
+    Instance look;  // all but its pose
+  };
+  struct Placed {
+    int geometry;
+    float distance_m;
+    bool casts_shadow;
+    Instance instance;
+  };
+
+  void add(const visual_def_t& visual, const Meshes& meshes);
+  void add_tool(const scene_t& scene, const tool_def_t& tool);
+  bool shape(const shape_def_t& shape, const Meshes& meshes, Part& part);
+  bool lamp_inside(const scene_t& scene, const Part& part) const;
+  Placed place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const;
+
+  int width_, height_;
+  Camera camera_;
+  Lighting lighting_;
+  std::vector<Triangles> geometries_;
+  std::map<std::int64_t, int> mesh_geometry_;
+  std::vector<Part> parts_;
+  struct Tool {
+    int body;
+    Part ghost;
+  };
+  std::vector<Tool> tools_;
+  int missing_meshes_ = 0;
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,32 @@
+// The triangles of every kind of shape, in its own frame.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <tactus/mesh_t.hpp>
+#include <vector>
+
+namespace tactus::visual {
+
+// Counter-clockwise seen from outside; one unit normal per vertex.
+struct Triangles {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<std::uint32_t> indices;
+  bool two_sided = false;  // seen from the back too
+};
+
+// Unit shapes, to be scaled along their axes: edges of 1, radius 1, length 1, about the origin. Scaling them so
+// keeps their normals right without an inverse transpose: flat faces stay across an axis and x, y of round ones
+// scale alike.
+Triangles unit_box();
+Triangles unit_sphere(int segments);
+Triangles unit_cylinder(int segments);
+// Normal +z.
+Triangles unit_plane();
+
+// length_m: between the centres of the caps. True size: a capsule cannot be scaled.
+Triangles capsule(double radius_m, double length_m, int segments);
+Triangles from_mesh(const mesh_t& mesh);
+
+}  // namespace tactus::visual

@@ -1,0 +1,135 @@
+#include "visual_node/video/recording.h"
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+
+#include "visual_node/video/encoder.h"
+#include "visual_node/video/i420.h"
+#include "visual_node/video/png.h"
+
+namespace tactus::visual {
+
+struct Recording::Shared {
+  mutable std::mutex mutex;
+  std::string trouble;
+};
+
+namespace {
+
+// Lives in the writing thread: fills the slots of one file.
+class VideoWriter {
+ public:
+  VideoWriter(std::vector<std::string> command, int width, int height, std::function<void(std::string)> complain)
+      : command_(std::move(command)), width_(width), height_(height), complain_(std::move(complain)) {}
+
+  bool write(const Picture& picture) {
+    if (!encoder_ && !start()) return false;
+    const auto repeats = slots_.repeats_before(picture.tick);
+    if (!repeats) return true;
+    for (std::int64_t i = 0; i < *repeats; ++i)
+      if (!encoder_->write(planes_)) return lost();
+    planes_.resize(i420_bytes(width_, height_));
+    rgba_to_i420(picture.rgba, width_, height_, planes_);
+    return encoder_->write(planes_) || lost();
+  }
+  void end() { encoder_.reset(); }
+
+ private:
+  bool start() {
+    try {
+      encoder_.emplace(command_);
+      return true;
+    } catch (const std::exception& e) {
+      complain_(e.what());
+      return false;
+    }
+  }
+  bool lost() {
+    complain_("the video ends early: its encoder has died");
+    return false;
+  }
+  std::vector<std::string> command_;
+  int width_, height_;
+  std::function<void(std::string)> complain_;
+  std::optional<Encoder> encoder_;
+  SlotFiller slots_;
+  std::vector<std::uint8_t> planes_;
+};
+
+constexpr std::size_t kSnapshotQueue = 2;
+
+}  // namespace
+
+std::string next_video(const std::string& folder) {
+  const std::filesystem::path out(folder);
+  std::filesystem::path file = out / "video.mp4";
+  for (int n = 2; std::filesystem::exists(file); ++n) file = out / ("video." + std::to_string(n) + ".mp4");
+  return file.string();
+}
+
+Recording::Recording(RecordingOptions options)
+    : options_(std::move(options)), shared_(std::make_shared<Shared>()) {}
+Recording::~Recording() = default;
+
+void Recording::begin(int width, int height, const Settings& settings) {
+  const auto bytes = static_cast<std::size_t>(width * height * 4);
+  if (video_) ending_ = std::jthread([old = std::move(video_)]() mutable { old.reset(); });
+  snapshots_.reset();
+  if (!options_.snapshot.empty())
+    snapshots_ = std::make_unique<FrameSink>(kSnapshotQueue, bytes,
+                                             [file = options_.snapshot, width, height](const Picture& p) {
+                                               return write_png(file, p.rgba, width, height);
+                                             });
+  if (!options_.video) return;
+  file_ = next_video(options_.folder);
+  clock_.emplace(settings.rate_Hz);
+  const auto complain = [shared = shared_](std::string text) {
+    const std::lock_guard lock(shared->mutex);
+    shared->trouble = std::move(text);
+  };
+  auto writer = std::make_shared<VideoWriter>(
+      encoder_command(file_, width, height, settings.rate_Hz, settings.video_crf), width, height, complain);
+  video_ = std::make_unique<FrameSink>(
+      static_cast<std::size_t>(settings.video_queue), bytes,
+      [writer](const Picture& p) { return writer->write(p); }, [writer] { writer->end(); });
+}
+
+std::optional<media_clock_t> Recording::add(std::int64_t tick, sync::HostTime fence,
+                                            const std::function<void(std::span<std::uint8_t>)>& read) {
+  const auto offer = [&](FrameSink& sink) {
+    auto picture = sink.take_empty();
+    if (!picture) return false;
+    picture->tick = tick;
+    read(picture->rgba);
+    sink.push(std::move(*picture));
+    return true;
+  };
+  if (snapshots_ && fence >= next_snapshot_) {
+    next_snapshot_ = fence + sync::from_seconds(options_.snapshot_every_s);
+    offer(*snapshots_);
+  }
+  if (!video_ || video_->ended()) return std::nullopt;
+  if (!offer(*video_)) return ++dropped_, std::nullopt;
+  const auto pair = clock_->frame(tick);
+  if (!pair) return std::nullopt;
+  media_clock_t m{};
+  m.header.sim_time_ns = -1;
+  m.medium = std::filesystem::path(file_).filename().string();
+  m.index = pair->index;
+  m.host_time_ns = sync::to_ns(fence);
+  m.reason = pair->reason;
+  return m;
+}
+
+std::string Recording::trouble() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->trouble;
+}
+
+std::string Recording::note() const {
+  if (const std::string why = trouble(); !why.empty()) return why;
+  return dropped_ > 0 ? "the encoder was too busy for " + std::to_string(dropped_) + " pictures of the video" : "";
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,61 @@
+// What is kept of the pictures: a video file and snapshots. Both are written by threads of their own.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tactus/media_clock_t.hpp>
+#include <thread>
+
+#include "sync/time.h"
+#include "visual_node/settings.gen.h"
+#include "visual_node/video/frame_sink.h"
+#include "visual_node/video/slots.h"
+
+namespace tactus::visual {
+
+struct RecordingOptions {
+  std::string folder = ".";
+  bool video = true;
+  std::string snapshot;         // PNG file; empty: none
+  double snapshot_every_s = 1;  // it is written anew so often
+};
+
+// "video.mp4" in the folder, or "video.2.mp4" and so on when that exists.
+std::string next_video(const std::string& folder);
+
+class Recording {
+ public:
+  explicit Recording(RecordingOptions options);
+  ~Recording();
+
+  // Begins a new video file, for pictures of this size; the one before is finished in the background.
+  void begin(int width, int height, const Settings& settings);
+  // The picture of this tick was out at `fence`. read() fills the bytes given, sRGB, the lowest row first; it is
+  // called only when somebody wants them. Returns the pair to be published, if one is due; its header is not
+  // stamped.
+  std::optional<media_clock_t> add(std::int64_t tick, sync::HostTime fence,
+                                   const std::function<void(std::span<std::uint8_t>)>& read);
+  // Why there is no video although one was asked for; empty: there is one.
+  std::string trouble() const;
+  // Pictures that the encoder was too busy for; their slots repeat the picture before.
+  std::int64_t dropped() const { return dropped_; }
+  // One line for the reader of the node's health: the two above.
+  std::string note() const;
+
+ private:
+  struct Shared;  // with the writing thread
+
+  RecordingOptions options_;
+  std::shared_ptr<Shared> shared_;
+  std::unique_ptr<FrameSink> video_, snapshots_;
+  std::jthread ending_;
+  std::string file_;
+  std::optional<SlotClock> clock_;
+  sync::HostTime next_snapshot_{};
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace tactus::visual
