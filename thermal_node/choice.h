@@ -1,0 +1,23 @@
+// What a scene and the command line make of this node: its settings and its tool. Pure.
+#pragma once
+
+#include <string>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "thermal_node/settings.gen.h"
+
+namespace tactus::thermal {
+
+struct Choice {
+  Settings settings;
+  int tool = -1;  // index in scene.tools; -1: none
+  int tool_body = -1;
+  std::string problem;               // why there is no tool, one sentence; else empty
+  std::vector<std::string> refused;  // settings that do not fit, one sentence each
+};
+
+// tool_name: from the command line; empty: the scene's setting, else its first tool. set: name=value.
+Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
+
+}  // namespace tactus::thermal

@@ -1,0 +1,80 @@
+// thermal_node: renders the temperature of what a tool touches on a Peltier element, at 50 Hz.
+//
+//   in   CONTACT_EVENTS, CONTACTS      what the tool touches, how firmly and for how long
+//        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools and materials
+//   out  THERMAL_STATE                 every tick
+//        PRESENTED                     every begin and hit of its tool
+//
+// Losing the contacts returns the command to the temperature of resting skin; the loop never waits for another
+// node.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include "sync/node.h"
+#include "sync/presentation_reporter.h"
+#include "sync/scene_exchange.h"
+#include "thermal_node/choice.h"
+#include "thermal_node/renderer.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{
+      .node = "thermal_node",
+      .modality = "thermal",
+      .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
+      .rate_Hz = thermal::Settings{}.rate_Hz,
+      .about = "Renders the temperature of what a tool touches."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  std::string tool_name;
+  app.add_option("--tool", tool_name, "tool whose touch is felt; default: the scene's choice, else its first");
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  const auto wrong = thermal::choose(scene_t{}, "", options.set).refused;
+  if (!wrong.empty()) throw std::runtime_error(wrong.front());
+
+  sync::Node node(declaration, options);
+  sync::SceneReceiver scenes(node.bus());
+  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
+  auto& frames = node.bus().queue<contact_frame_t>(channels::kContacts, 4096);
+  sync::ContactStream stream(options.run_id);
+  sync::PresentationReporter reporter(declaration.modality);
+  thermal::Choice choice;
+  thermal::Ticks ticks;
+  std::optional<thermal::Renderer> renderer;
+  node.set_state(node_health_t::WAITING, "waits for the scene");
+
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    while (const auto m = events.pop()) stream.push(m->message, m->arrival);
+    while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
+    if (scenes.poll(now)) {
+      choice = thermal::choose(*scenes.scene(), tool_name, options.set);
+      for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
+      node.set_rate(choice.settings.rate_Hz);
+      node.set_tool(choice.tool);
+      node.set_state(node_health_t::WAITING, choice.problem);
+      renderer.reset();
+      if (choice.tool >= 0)
+        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body);
+    }
+    if (!renderer) continue;
+    const sync::HostTime arrival = std::max(events.count().newest_arrival, frames.count().newest_arrival);
+    const thermal::Tick tick = ticks.next(stream, now, arrival, choice.tool, choice.tool_body);
+    thermal_state_t state = renderer->step(tick);
+    node.bus().publish(channels::kThermalState, state);
+    for (const presentation_t& report : renderer->reports()) reporter.report(report);
+    reporter.publish(node.bus(), now);
+    node.count_rendered(static_cast<std::int64_t>(renderer->reports().size()));
+    if (renderer->input_lost())
+      node.set_state(node_health_t::INPUT_LOST, "no contacts: the command returns to resting skin");
+    else
+      node.set_state(node_health_t::RUNNING);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("thermal_node", e);
+}

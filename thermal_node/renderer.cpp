@@ -1,0 +1,128 @@
+#include "thermal_node/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::thermal {
+namespace {
+
+// Of what gives no temperature.
+constexpr double kRoom_degC = 23;
+// Colder than this is nothing, hotter no solid: tungsten melts at 3422 degC.
+constexpr double kColdest_degC = -273.15, kHottest_degC = 3422;
+
+SkinProperties skin_properties(const Settings& s) {
+  return {s.skin_rest_degC, effusivity(s.skin_conductivity_W_mK, s.skin_density_kg_m3, s.skin_specific_heat_J_kgK),
+          s.perfusion_1_s, s.air_conductance_W_m2K};
+}
+
+ControllerLimits limits(const Settings& s) {
+  return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
+}
+
+// As published: what is no quantity reads as none.
+float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
+
+bool usable(sync::How how) { return how != sync::How::kNone && how != sync::How::kStale; }
+
+}  // namespace
+
+Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body)
+    : settings_(settings),
+      materials_(std::move(materials)),
+      tool_(tool),
+      tool_body_(tool_body),
+      skin_(skin_properties(settings)),
+      controller_(limits(settings), settings.skin_rest_degC) {}
+
+// Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
+// the force and area of the touch itself and then weighted with its time.
+Renderer::Exchange Renderer::exchange(const sync::ContactIntegral& c, double contact_s, double interval_s) {
+  if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
+    return {};
+  const material_def_t& m = materials_[static_cast<std::size_t>(c.material)];
+  if (c.material != material_ || c.body != body_) {
+    material_ = c.material;
+    body_ = c.body;
+    const double object_degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
+    skin_.set_object({std::clamp(object_degC, kColdest_degC, kHottest_degC),
+                      effusivity(m.conductivity_W_mK, m.density_kg_m3, m.specific_heat_J_kgK)});
+  }
+  const double time_share = std::min(1.0, contact_s / interval_s);
+  const Press press{settings_.reference_force_N, settings_.reference_area_m2, settings_.pressure_exponent};
+  const double pressed = contact_share(c.force_N / time_share, c.area_m2 / time_share, press);
+  const double covered = c.area_m2 > 0 ? std::min(1.0, c.area_m2 / time_share / settings_.reference_area_m2) : 0;
+  return {contact_conductance_W_m2K(m.conductivity_W_mK) * pressed * time_share, covered * time_share};
+}
+
+// A touch that was over before this tick's interval but is heard of only now: its heat is still owed. The force
+// follows from the momentum of a plastic impact, m v, over the time of touch, as in sync/contact_integral.cpp.
+Renderer::Exchange Renderer::missed_touches(const Tick& tick, double interval_s) {
+  Exchange sum;
+  for (const contact_event_t& end : tick.events) {
+    if (end.kind != contact_event_t::END || end.tool != tool_ || sync::sim_time(end.time_ns) > tick.sim_begin)
+      continue;
+    const auto begin = std::find_if(tick.events.begin(), tick.events.end(), [&](const contact_event_t& e) {
+      return e.kind == contact_event_t::BEGIN && e.contact_id == end.contact_id;
+    });
+    if (begin == tick.events.end() || end.time_ns <= begin->time_ns) continue;
+    const double touch_s = static_cast<double>(end.time_ns - begin->time_ns) * 1e-9;
+    sync::ContactIntegral c;
+    c.force_N = static_cast<double>(begin->effective_mass_kg) * begin->approach_speed_m_s / interval_s;
+    c.material = begin->body_a == tool_body_ ? begin->material_b : begin->material_a;
+    c.body = begin->body_a == tool_body_ ? begin->body_b : begin->body_a;
+    const Exchange e = exchange(c, touch_s, interval_s);
+    sum.conductance_W_m2K += e.conductance_W_m2K;
+    sum.touched_share += e.touched_share;
+  }
+  return sum;
+}
+
+// Heat is a slow state: an event is applied in the tick in which it becomes due, however late, never dropped. The
+// skin is told with the end of the tick; where in the tick the element begins to move is known to half a tick.
+void Renderer::report(const contact_event_t& event, const Tick& tick) {
+  if (event.tool != tool_ || event.kind == contact_event_t::END) return;
+  presentation_t r{};
+  r.event_id = event.event_id;
+  r.part = presentation_t::WHOLE;
+  const sync::HostTime due = tick.map.to_host(sync::sim_time(event.time_ns));
+  r.scheduled_ns = std::max<std::int64_t>(0, sync::to_ns(due));
+  r.presented_ns = sync::to_ns(tick.end);
+  r.uncertainty_ns = (sync::from_seconds(1 / settings_.rate_Hz) / 2).count();
+  const bool late = tick.end - due > sync::from_seconds(settings_.late_after_s);
+  r.outcome = late ? presentation_t::LATE : presentation_t::PRESENTED;
+  reports_.push_back(r);
+}
+
+thermal_state_t Renderer::step(const Tick& tick) {
+  reports_.clear();
+  for (const contact_event_t& event : tick.events) report(event, tick);
+
+  const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
+  const bool lost = input_lost_ = !usable(tick.contact.how);
+  Exchange e = interval_s > 0 ? missed_touches(tick, interval_s) : Exchange{};
+  if (!lost) {
+    const Exchange now =
+        exchange(tick.contact, sync::to_seconds(tick.contact.contact_time), tick.contact_interval_s());
+    e.conductance_W_m2K += now.conductance_W_m2K;
+    e.touched_share += now.touched_share;
+  }
+  skin_.step(interval_s, e.conductance_W_m2K, e.touched_share);
+  const double wanted = lost ? settings_.skin_rest_degC : skin_.surface_degC();
+  const Command command = controller_.step(wanted, interval_s);
+
+  thermal_state_t out{};
+  out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));
+  out.tool = tool_;
+  out.material = e.conductance_W_m2K > 0 ? material_ : -1;
+  out.force_N = lost ? 0 : reading(tick.contact.force_N);
+  out.area_m2 = lost ? 0 : reading(tick.contact.area_m2);
+  out.heat_flux_W_m2 = static_cast<float>(skin_.heat_flux_W_m2());
+  out.skin_degC = static_cast<float>(skin_.surface_degC());
+  out.commanded_degC = static_cast<float>(command.command_degC);
+  out.limited = command.limited ? 1 : 0;
+  return out;
+}
+
+}  // namespace tactus::thermal

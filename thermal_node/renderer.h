@@ -1,0 +1,57 @@
+// The thermal sense of one tool: contacts in, skin temperature, command and reports of presentation out. Pure.
+#pragma once
+
+#include <cstdint>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <vector>
+
+#include "thermal_node/contact_model.h"
+#include "thermal_node/controller.h"
+#include "thermal_node/settings.gen.h"
+#include "thermal_node/skin_model.h"
+#include "thermal_node/ticks.h"
+
+namespace tactus::thermal {
+
+class Renderer {
+ public:
+  // materials: of the scene; tool, tool_body: index of the tool in the scene and its body.
+  Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body);
+
+  // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
+  // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
+  // model says.
+  thermal_state_t step(const Tick& tick);
+
+  // Whether the last step had no input that could be relied on.
+  bool input_lost() const { return input_lost_; }
+
+  // What became of the begin and hit events of the own tool in the last step, each exactly once.
+  const std::vector<presentation_t>& reports() const { return reports_; }
+
+ private:
+  // Means over the tick.
+  struct Exchange {
+    double conductance_W_m2K = 0;
+    double touched_share = 0;  // of the pad and of the time
+  };
+  Exchange exchange(const sync::ContactIntegral& contact, double contact_s, double interval_s);
+  Exchange missed_touches(const Tick& tick, double interval_s);
+  void report(const contact_event_t& event, const Tick& tick);
+
+  Settings settings_;
+  std::vector<material_def_t> materials_;
+  int tool_;
+  int tool_body_;
+  SkinModel skin_;
+  Controller controller_;
+  int material_ = -1;  // the one that is under the skin in the model
+  int body_ = -1;
+  bool input_lost_ = true;
+  std::vector<presentation_t> reports_;
+};
+
+}  // namespace tactus::thermal
