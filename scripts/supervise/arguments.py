@@ -1,0 +1,138 @@
+"""The command line of scripts/run: what may be asked for, checked before anything starts."""
+import argparse
+import csv
+import dataclasses
+import os
+import pathlib
+import time
+
+from refusal import Refusal
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+SCENES = REPOSITORY / "sim_node" / "scenes"
+SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
+REMOVABLE = ("sim_node", *SENSES, "sync_node")
+LONGEST_S = 86400  # a day of log fills most disks
+
+
+@dataclasses.dataclass
+class Plan:
+    """What one run does. All paths are absolute."""
+    scene: pathlib.Path
+    seconds: float
+    out: pathlib.Path
+    without: list
+    device: str  # "": the scene's
+    window: bool
+    listen: bool
+    realtime: str
+    seed: int
+    network: str
+    port: int
+    settings: dict  # node: list of "name=value"
+
+    def nodes(self):
+        """Names of the processes of this run; the order is that of starting."""
+        return [n for n in ("recorder", "sync_node", *SENSES, "sim_node") if n not in self.without]
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refusal(f"{message}; see scripts/run --help")
+
+
+def parse(words, here):
+    """Plan from the command line; `here` is the caller's directory. Raises Refusal."""
+    parser = Parser(add_help=False, allow_abbrev=False, prog="run")
+    parser.add_argument("scene", nargs="?", default=str(SCENES / "dark_room.sdf"))
+    parser.add_argument("--seconds", default="20")
+    parser.add_argument("--out")
+    parser.add_argument("--without", action="append", default=[])
+    parser.add_argument("--device", default="")
+    parser.add_argument("--window", action="store_true")
+    parser.add_argument("--listen", action="store_true")
+    parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
+    parser.add_argument("--port", default="7667")
+    parser.add_argument("--set", action="append", default=[])
+    a = parser.parse_args(words)
+    here = pathlib.Path(here)
+    for node in a.without:
+        if node not in REMOVABLE:
+            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join(REMOVABLE)}")
+    plan = Plan(scene=scene_file(here, a.scene), seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
+                out=out_folder(here, a.out), without=a.without, device=device(a.device, a.without),
+                window=a.window, listen=a.listen, realtime=a.realtime,
+                seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set))
+    if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
+                      "--window away and look at video.mp4")
+    return plan
+
+
+def number(option, text, least, most, unit, whole=False):
+    try:
+        value = int(text) if whole else float(text)
+    except ValueError:
+        value = None
+    if value is None or not least <= value <= most:
+        kind = "a whole number" if whole else "a number"
+        raise Refusal(f"{option} {text}: give {kind} from {least} to {most} {unit}".rstrip())
+    return value
+
+
+def scene_file(here, text):
+    path = here / text
+    if not path.is_file() and not os.path.dirname(text) and (SCENES / text).is_file():
+        path = SCENES / text
+    if not path.is_file():
+        names = ", ".join(sorted(p.name for p in SCENES.glob("*.sdf"))) or "none yet"
+        raise Refusal(f"sim_node: the scene {text} is not a file; give the path of an SDF world (in {SCENES}: {names})")
+    if not os.access(path, os.R_OK):
+        raise Refusal(f"sim_node: the scene {text} cannot be read; change its permissions")
+    return path.absolute()
+
+
+def out_folder(here, text):
+    """Where the results go; it is not made yet."""
+    path = here / text if text else here / "out" / time.strftime("%Y-%m-%d_%H-%M-%S")
+    while not text and path.exists():
+        path = path.with_name(path.name + "+")
+    if path.exists() and not path.is_dir():
+        raise Refusal(f"recorder: --out {path} is a file; name a folder")
+    if (path / "run.lcmlog").exists():
+        raise Refusal(f"recorder: --out {path} already holds a run; name another folder or remove that one")
+    existing = path
+    while not existing.exists():
+        existing = existing.parent
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise Refusal(f"recorder: the folder {path} for the results cannot be written; name another with --out")
+    return path.absolute()
+
+
+def device(spec, without):
+    """The node itself checks what the device is."""
+    if spec and "haptic_node" in without:
+        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
+    return spec
+
+
+def settings(words):
+    """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check)."""
+    found = {}
+    for word in words:
+        left, equals, value = word.partition("=")
+        node, dot, name = left.partition(".")
+        if not (equals and dot and name):
+            raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
+        table = REPOSITORY / node / "settings.csv"
+        if node not in REMOVABLE or not table.is_file():
+            raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join(SENSES)}")
+        with open(table, newline="", encoding="utf-8") as file:
+            names = [row["name"] for row in csv.DictReader(file)]
+        if name not in names:
+            raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
+        found.setdefault(node, []).append(f"{name}={value}")
+    return found

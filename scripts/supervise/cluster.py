@@ -1,0 +1,173 @@
+"""The running cluster: its processes, in the order in which they start and end."""
+import ctypes
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import services
+from arguments import REPOSITORY, SENSES
+from refusal import Refusal
+
+# TACTUS_BIN: programs of another build; scripts/run then installs and builds nothing.
+BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or REPOSITORY / "build" / "dev" / "bin").absolute()
+SUPERVISE = pathlib.Path(__file__).resolve().parent
+# Simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
+# Each group has so long to end before the next is asked: a sense that still closes its video has said all it had to say.
+STOP_ORDER = ((("sim_node",), 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
+PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
+PATIENCE_S = 15           # to close a video on a busy machine
+
+
+def commands(plan, run_id, git):
+    """{name: words} of every process of the plan."""
+    common = ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime,
+              "--out", str(plan.out)]
+    own = {
+        "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git],
+        "haptic_node": ["--device", plan.device] if plan.device else [],
+        # A run makes no noise unless it is asked to; with --listen the node finds the card.
+        "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
+        "visual_node": ["--window"] if plan.window else [],
+        "sim_node": [str(plan.scene)],
+    }
+    return {name: [str(BIN / name), *own.get(name, []), *common,
+                   *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
+
+
+def names_sound_card(plan):
+    return any(s.startswith("device=") for s in plan.settings.get("audio_node", []))
+
+
+def check(words):
+    """Lets every node check its options and files. Raises Refusal with the sentence of the first that objects."""
+    started = []
+    for name, command in words.items():
+        at = command.index("--out")
+        started.append((name, subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)))
+    refusals, warnings = [], []
+    for name, process in started:
+        try:
+            said = process.communicate(timeout=60)[1].strip()
+        except subprocess.TimeoutExpired:
+            process.kill()
+            said = process.communicate()[1].strip() + f"\n{name}: does not finish its checks in 60 s"
+        if process.returncode != 0:
+            refusals.append(said.split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
+        elif name == "sim_node" and said:
+            warnings.append(said)  # of the scene
+    if refusals:
+        raise Refusal(refusals[0])
+    print(*warnings, sep="\n", end="\n" if warnings else "", file=sys.stderr)
+
+
+def die_with_parent():
+    """For Popen: the child is killed when this process is, whatever kills it."""
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+
+
+class Cluster:
+    def __init__(self, plan, network, words, run_id):
+        self.plan, self.network, self.run_id = plan, network, run_id
+        self.folder = services.make_folder(plan.out)
+        self.in_use = services.hold(self.folder)
+        logs = plan.out / "logs"
+        logs.mkdir(exist_ok=True)
+        here = pathlib.Path.cwd()
+        self.services = {name: services.Service(self.folder, name, command, logs / f"{name}.log", here)
+                         for name, command in words.items()}
+        self.holder = self.table = None
+
+    def start(self):
+        """Supervisor, recorder and sync_node, the senses, the simulation. Raises Refusal."""
+        words = [*self.network.unshare, str(SUPERVISE / "inside"), str(self.folder),
+                 "private" if self.network.private else "host"]
+        if not self.network.unshare:
+            # Without a process namespace runsvdir must pass the end on to all below it: that is what HUP means to it.
+            words = ["setpriv", "--pdeathsig", "HUP", *words]
+        with open(self.plan.out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
+            self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+                                           preexec_fn=die_with_parent if self.network.unshare else None)
+        self.write_address()
+        for group in (("recorder", "sync_node"), SENSES, ("sim_node",)):
+            members = [self.services[name] for name in group if name in self.services]
+            for service in members:
+                if not service.start():
+                    raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
+            services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
+
+    def write_address(self):
+        """Where scripts/attach finds the cluster."""
+        names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in self.network.unshare]
+        (self.folder / "address").write_text(
+            f"holder={self.holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={self.run_id}\n"
+            f"url=udpm://239.255.76.67:{self.plan.port}?ttl=0\nport={self.plan.port}\nout={self.plan.out}\n", encoding="utf-8")
+        link = self.plan.out / "cluster"
+        link.unlink(missing_ok=True)
+        link.symlink_to(self.folder)
+
+    def show_table(self):
+        """The live table, once a second, until the end."""
+        words = [str(REPOSITORY / "scripts" / "attach"), str(self.plan.out), str(BIN / "watch")]
+        self.table = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
+
+    def end_table(self):
+        if self.table is not None:
+            kill_group(self.table)
+            self.table = None
+
+    def alive(self):
+        return self.holder is not None and self.holder.poll() is None
+
+    def lost(self):
+        """{node: why} of the nodes that could not be kept running."""
+        return {name: s.lost() for name, s in self.services.items() if s.lost()}
+
+    def stop(self):
+        """Ends everything in order and reaps it. Returns the nodes that had to be killed."""
+        self.end_table()
+        (self.folder / "stopping").touch()
+        if not self.alive():
+            return []
+        for names, grace_s in STOP_ORDER:
+            services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
+            if names == ("sim_node",):
+                time.sleep(PRESENT_THE_LAST_S)
+        stubborn = services.make_end(self.services.values(), PATIENCE_S)
+        self.end_supervisor()
+        return stubborn
+
+    def end_supervisor(self):
+        for pid in children(self.holder.pid) if self.network.unshare else [self.holder.pid]:
+            os.kill(pid, signal.SIGHUP)
+        try:
+            self.holder.wait(5)
+        except subprocess.TimeoutExpired:
+            self.holder.kill()
+            self.holder.wait()
+
+    def clean(self):
+        """Removes what only a running cluster needs."""
+        (self.plan.out / "cluster").unlink(missing_ok=True)
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.in_use.close()
+
+
+def children(pid):
+    try:
+        return [int(p) for p in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()]
+    except OSError:
+        return []
+
+
+def kill_group(process):
+    try:
+        os.killpg(process.pid, signal.SIGTERM)
+    except ProcessLookupError:
+        pass
+    process.wait()
