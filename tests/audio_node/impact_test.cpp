@@ -1,0 +1,187 @@
+#include "audio_node/impact.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "audio_node/renderer.h"
+#include "lcmtypes/vectors.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using std::numbers::pi;
+
+namespace {
+
+material_def_t material(double E, double nu, double rho, double alpha, double beta) {
+  material_def_t m{};
+  m.youngs_modulus_Pa = E, m.poissons_ratio = nu, m.density_kg_m3 = rho;
+  m.rayleigh_alpha_1_s = alpha, m.rayleigh_beta_s = beta, m.restitution = 0.6;
+  return m;
+}
+
+void add(scene_t& scene, std::int8_t kind, Eigen::Vector3d size, double mass_kg, int material_index) {
+  body_def_t body{};
+  body.id = scene.body_count++;
+  body.tool = -1;
+  body.is_static = mass_kg == 0;
+  body.mass_kg = mass_kg;
+  shape_def_t shape{};
+  shape.body = body.id, shape.kind = kind, shape.size_m = to_vec3(size), shape.material = material_index;
+  scene.bodies.push_back(body);
+  scene.shapes.push_back(shape);
+  scene.shape_count++;
+}
+
+// A wooden floor, a steel bar, a steel ball, a rubber ball, a steel shell.
+scene_t scene() {
+  scene_t s{};
+  s.materials = {material(1.1e10, .25, 750, 60, 2e-6), material(2e11, .29, 7850, 5, 3e-8),
+                 material(5e6, .48, 1100, 60, 1e-4)};
+  s.material_count = 3;
+  add(s, shape_def_t::BOX, {6, 6, 0.2}, 0, 0);
+  add(s, shape_def_t::BOX, {0.3, 0.03, 0.005}, 0.353, 1);
+  add(s, shape_def_t::SPHERE, {0.03, 0, 0}, 0.888, 1);
+  add(s, shape_def_t::SPHERE, {0.05, 0, 0}, 0.576, 2);
+  add(s, shape_def_t::SPHERE, {0.15, 0, 0}, 4, 1);
+  s.listener.orientation.w = 1;
+  return s;
+}
+
+contact_event_t hit(int a, int b, float speed, float mass, float curvature = 30) {
+  contact_event_t e{};
+  e.event_id = 5, e.kind = contact_event_t::HIT, e.body_a = a, e.body_b = b, e.material_a = e.material_b = -1;
+  e.approach_speed_m_s = speed, e.effective_mass_kg = mass, e.curvature_1_m = curvature;
+  e.point_m.x = 1;
+  return e;
+}
+
+Impacts impacts(const Settings& settings = {}) {
+  return Impacts(
+      scene(), [](std::int64_t) { return std::nullopt; }, settings, 48000, 1);
+}
+
+}  // namespace
+
+TEST_CASE("The contact time is that of Hertz") {
+  // A steel ball of 10 mm radius (32.9 g) on a thick steel plate at 0.1 m/s: by E* = 1.0917e11, T = 2.87 (m^2 / (R
+  // E*^2 v))^(1/5).
+  const Elastic steel{2e11, 0.29, 7850, 5, 3e-8, 0.6};
+  const double e = 2e11 / (1 - 0.29 * 0.29) / 2;
+  CHECK(contact_time_s(0.0329, 100, 0.1, steel, steel) ==
+        Approx(2.87 * std::pow(0.0329 * 0.0329 / (0.01 * e * e * 0.1), 0.2)));
+  SECTION("and falls with speed to the fifth root") {
+    CHECK(contact_time_s(1, 10, 32, steel, steel) == Approx(contact_time_s(1, 10, 1, steel, steel) / 2));
+  }
+}
+
+TEST_CASE("The spectrum of the pulse is that of a raised cosine") {
+  for (const double f : {0., 100., 999.9, 1000., 1500., 2000., 7321.}) {
+    // Midpoint rule over 2000 steps of 1 ms: error (2 pi f dt)^2 / 24 < 1e-4 of the whole.
+    double re = 0, im = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double t = (i + 0.5) / 2000 * 1e-3, w = (1 - std::cos(2 * pi * t / 1e-3)) / 2000;
+      re += w * std::cos(2 * pi * f * t), im += w * std::sin(2 * pi * f * t);
+    }
+    CHECK(pulse_spectrum(f, 1e-3) == Approx(std::hypot(re, im)).margin(1e-4));
+  }
+}
+
+TEST_CASE("A source is heard where it is") {
+  Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // looks along +x
+  const auto left = stereo_gain(listener, {0, 2, 0}, 0.3), right = stereo_gain(listener, {0, -2, 0}, 0.3);
+  const auto ahead = stereo_gain(listener, {2, 0, 0}, 0.3), far = stereo_gain(listener, {4, 0, 1}, 0.3);
+  CHECK(left.left == Approx(0.5));
+  CHECK(left.right == Approx(0).margin(1e-9));
+  CHECK(right.right == Approx(0.5));
+  CHECK(ahead.left == Approx(ahead.right));
+  CHECK(std::hypot(far.left, far.right) == Approx(1 / std::sqrt(17.0)));
+  SECTION("and a turn of the listener turns it too") {
+    listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y
+    CHECK(stereo_gain(listener, {2, 0, 0}, 0.3).right == Approx(0.5));
+  }
+  SECTION("and nearness does not make it infinite") { CHECK(stereo_gain(listener, {0, 0, 0}, 0.3).left < 4); }
+}
+
+TEST_CASE("Bodies sound by their shape, size, mass and material") {
+  const Impacts all = impacts();
+  SECTION("a steel bar by bending, first at 288 Hz less the correction of its thickness") {
+    // (beta r)^2 (1 + 3.1) / 2 = 1.1e-3
+    REQUIRE_FALSE(all.body(1).modes.empty());
+    CHECK(all.body(1).modes[0].frequency_Hz == Approx(288.2).epsilon(1.5e-3));
+    CHECK(all.body(1).modes[0].damping_1_s == Approx(damping_1_s(all.body(1).material, 288)).epsilon(1e-2));
+  }
+  SECTION("a small steel ball has no audible mode and only clicks") {
+    CHECK(all.body(2).modes.empty());
+    CHECK(all.strike(hit(0, 2, 1, 0.8f), {}).sides[1].click > 0);
+  }
+  SECTION("a ball lighter than a solid one is a shell") {
+    const double expected = spherical_shell(all.body(4).material, 0.15, {16000, 1})[0];
+    CHECK(all.body(4).modes[0].frequency_Hz == Approx(expected));
+  }
+  SECTION("a floor by a patch of it, which does not move as a whole") {
+    REQUIRE_FALSE(all.body(0).modes.empty());
+    CHECK(all.body(0).mass_kg == Approx(0.5 * 0.5 * 0.03 * 750));
+    CHECK(all.strike(hit(0, 2, 1, 0.8f), {}).sides[0].click == 0);
+  }
+  SECTION("all within the audible range and the number that is allowed") {
+    for (int id = 0; id < 5; ++id) {
+      CHECK(all.body(id).modes.size() <= 16);
+      for (const Mode& m : all.body(id).modes) {
+        CHECK(m.frequency_Hz >= 40);
+        CHECK(m.frequency_Hz <= 16000);
+        CHECK(m.damping_1_s > 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it cannot be heard") {
+  const Impacts all = impacts();
+  const auto rendered_peak = [&](const contact_event_t& e) {
+    auto crossing = std::make_unique<Crossing>();
+    auto renderer = std::make_unique<Renderer>(*crossing, 48000, 0.9, sync::Nanoseconds(30'000'000));
+    crossing->strikes.push(all.strike(e, sync::host_time(10'000'000)));
+    std::vector<float> x(2 * 4800);
+    renderer->render(x.data(), 4800, {});
+    float peak = 0;
+    for (const float s : x) peak = std::max(peak, std::abs(s));
+    return static_cast<double>(peak);
+  };
+  // Of the same spectrum (same contact time: speed 1 and mass 1 against mass 4 and speed 16, T ~ (m^2/v)^(1/5))
+  // the pressure is 64 times as much, the level 64^0.6 = 12.1 times.
+  const double weak = rendered_peak(hit(0, 1, 0.02f, 0.001f)), strong = rendered_peak(hit(0, 1, 0.32f, 0.004f));
+  CHECK(strong / weak == Approx(std::pow(64, 0.6)).epsilon(0.02));
+  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).inaudible);
+  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).inaudible);
+  SECTION("impacts at 0.5 m/s, heard from 1 m, peak between -26 dBFS (rubber) and -3 dBFS (a shell)") {
+    for (const int id : {1, 2, 3, 4}) {
+      const double peak = rendered_peak(hit(0, id, 0.5f, static_cast<float>(all.body(id).mass_kg), 100));
+      CAPTURE(id, peak);
+      CHECK(peak > 0.05);
+      CHECK(peak < 0.71);
+    }
+  }
+}
+
+TEST_CASE("No event, however wild, makes a strike that is no number") {
+  const Impacts all = impacts();
+  std::mt19937 random(6);
+  const float wild[] = {0, 1e-30f, 1e30f, 1, 3e38f};
+  for (int i = 0; i < 2000; ++i) {
+    contact_event_t e = hit(static_cast<int>(random() % 9) - 2, static_cast<int>(random() % 9), wild[random() % 5],
+                            wild[random() % 5], wild[random() % 5]);
+    e.material_a = static_cast<int>(random() % 6) - 2;
+    e.point_m.x = wild[random() % 5], e.point_m.y = -wild[random() % 5];
+    const Strike s = all.strike(e, {});
+    CHECK(s.pulse_samples >= 1);
+    CHECK(s.pulse_samples <= 960);
+    for (const StrikeSide& side : s.sides) {
+      CHECK(std::isfinite(side.impulse));
+      CHECK(std::isfinite(side.click));
+      CHECK(std::isfinite(side.left + side.right));
+    }
+  }
+}

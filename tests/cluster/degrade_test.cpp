@@ -1,0 +1,127 @@
+#include <signal.h>
+
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+// Rates hold within a factor of two, on a machine that has other work as well.
+void check_same_rates(const std::map<std::string, double>& before, const std::map<std::string, double>& now,
+                      const std::string& except) {
+  for (const auto& [node, rate] : before) {
+    if (node == except) continue;
+    INFO(node << ": " << rate << " Hz before, " << now.at(node) << " Hz now");
+    CHECK(now.at(node) > rate / 2);
+    CHECK(now.at(node) < rate * 2);
+  }
+}
+
+std::vector<std::string> without(const std::string& node) {
+  std::vector<std::string> rest = kNodes;
+  std::erase(rest, node);
+  return rest;
+}
+
+// Ids carry 24 bits of the incarnation of the simulation that gave them.
+bool of_incarnation(std::int64_t id, std::int64_t incarnation) {
+  return id >> 40 == sync::prefixed_id(incarnation, 0) >> 40;
+}
+
+}  // namespace
+
+TEST_CASE("DEGRADE-1: with audio_node stopped the others go on at their rates") {
+  Running c;
+  c.start();
+  const auto before = c.rates(2);
+  c.processes.signal("audio_node", SIGTERM);
+  CHECK(c.processes.wait_for_exit("audio_node", kPatience_s) == 0);
+  const std::int64_t hits = c.ear.hits(), felt = c.ear.rendered("haptic_node"), seen = c.ear.rendered("visual_node");
+  check_same_rates(before, c.rates(3), "audio_node");
+  CHECK(c.ear.health("audio_node") == nullptr);
+  CHECK(c.ear.wait_until([&] { return c.all_live(without("audio_node")); }, kPatience_s));
+  CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
+  CHECK(c.ear.wait_until([&] { return c.ear.rendered("haptic_node") > felt; }, kPatience_s));
+  CHECK(c.ear.wait_until([&] { return c.ear.rendered("visual_node") > seen; }, kPatience_s));
+}
+
+TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then shows now") {
+  Running c;
+  c.start();
+  const std::int64_t stale_at_start = c.ear.reports("visual_node", node_health_t::STALE);
+  const auto before = c.rates(2);
+  // Beside heavy load it may be stale now and then by itself: as often as before the freeze is no effect of it.
+  const std::int64_t usual = c.ear.reports("visual_node", node_health_t::STALE) - stale_at_start;
+  const std::int64_t frames = c.ear.ticks("visual_node");
+  const std::int64_t missed = c.ear.health("visual_node")->missed_ticks;
+  c.processes.signal("visual_node", SIGSTOP);
+  check_same_rates(before, c.rates(2), "visual_node");
+  CHECK(c.ear.health("visual_node") == nullptr);
+  const std::int64_t stale = c.ear.reports("visual_node", node_health_t::STALE);
+  c.processes.signal("visual_node", SIGCONT);
+
+  REQUIRE(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
+  c.ear.listen(1);
+  const node_health_t* h = c.ear.health("visual_node");
+  REQUIRE(h != nullptr);
+  CHECK(h->state == node_health_t::RUNNING);
+  CHECK(h->ticks > frames);
+  // Two frames last 33 ms and a report comes every 100 ms, so that it tells of them once at most.
+  CHECK(c.ear.reports("visual_node", node_health_t::STALE) - stale <= 1 + usual);
+  // It skipped what it missed: at its rate there were two seconds of frames.
+  CHECK(h->missed_ticks - missed > before.at("visual_node"));
+  for (const input_health_t& in : h->inputs) {
+    INFO(in.channel << " is " << in.age_ns << " ns old");
+    if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents) CHECK(in.age_ns < 500'000'000);
+  }
+  CHECK(c.all_live(kNodes));
+}
+
+TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all report it and go on, and nothing old hangs") {
+  Running c;
+  c.start();
+  REQUIRE(c.ear.wait_until([&] { return c.ear.force_N() > 0; }, kPatience_s));
+  REQUIRE(c.ear.wait_until([&] { return !c.ear.contact_ids().empty(); }, kPatience_s));
+  const std::int64_t first = c.ear.health("sim_node")->header.incarnation;
+  c.processes.kill("sim_node");
+
+  CHECK(c.ear.wait_until([&] { return c.ear.force_N() == 0 && c.ear.tool_state()->fade == 0; }, 5));
+  for (const std::string& node : kSenses) {
+    INFO(node);
+    CHECK(c.ear.wait_until(
+        [&] { return c.state(node, node_health_t::INPUT_LOST) || c.state(node, node_health_t::STALE); }, kPatience_s));
+  }
+  c.ear.listen(1);
+  for (const std::string& node : kSenses) {
+    INFO(node << ": " << c.processes.said(node));
+    CHECK(c.processes.running(node));
+  }
+  CHECK(c.ear.force_N() == 0);
+
+  c.processes.start("sim_node", {tapping_scene()});
+  REQUIRE(c.ear.wait_until([&] { return c.ear.rejoined("sim_node") == 1 && c.lives("sim_node"); }, kPatience_s));
+  const std::int64_t second = c.ear.health("sim_node")->header.incarnation;
+  REQUIRE(second != first);
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.ear.wait_until([&] { return c.ear.force_N() > 0; }, kPatience_s));
+  for (const tool_constraint_t& constraint : c.ear.tool_state()->constraints)
+    CHECK(of_incarnation(constraint.contact_id, second));
+  CHECK(c.ear.wait_until([&] { return !c.ear.contact_ids().empty(); }, kPatience_s));
+  for (const std::int64_t id : c.ear.contact_ids()) CHECK(of_incarnation(id, second));
+  UNSCOPED_INFO(c.words());
+  CHECK(c.all_live(kNodes));
+}
+
+TEST_CASE("A node that joins late gets the scene without anyone restarting") {
+  Running c;
+  const std::string late = GENERATE(as<std::string>{}, "haptic_node", "audio_node", "visual_node", "thermal_node");
+  c.processes.start("sim_node", {tapping_scene()});
+  REQUIRE(c.ear.wait_until([&] { return c.lives("sim_node"); }, kPatience_s));
+  c.ear.listen(1);
+  c.processes.start(late);
+  const bool joined = c.ear.wait_until([&] { return c.lives(late); }, kPatience_s);
+  INFO(c.words());
+  CHECK(joined);
+  CHECK(c.ear.rejoined("sim_node") == 0);
+}

@@ -1,0 +1,101 @@
+// The real supervision: what scripts/run does when nodes die.
+#include <nlohmann/json.hpp>
+
+#include "tests/cluster/ear.h"
+#include "tests/cluster/run_script.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+constexpr double kPatience_s = 60;
+
+// The run that writes to `out`, once it has a recorder; 0: it never came.
+std::int64_t run_id_of(const std::filesystem::path& out) {
+  for (int i = 0; i < 1200; ++i) {
+    const std::string address = contents(out / "cluster/address");
+    const std::size_t at = address.find("run_id=");
+    if (at != std::string::npos && std::filesystem::exists(out / "run.lcmlog")) return std::stoll(address.substr(at + 7));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
+  RunScript run;
+  // The network of this test, so that it can listen.
+  run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
+  const std::int64_t run_id = run_id_of(run.out());
+  INFO(run.processes.said("run"));
+  REQUIRE(run_id > 0);
+  Ear ear(run_id);
+  const auto all_live = [&] {
+    return std::all_of(kNodes.begin(), kNodes.end(), [&](const auto& n) { return ear.in_state(n, node_health_t::RUNNING); });
+  };
+  REQUIRE(ear.wait_until(all_live, kPatience_s));
+
+  std::vector<std::string> nodes = kNodes;
+  nodes.insert(nodes.end(), {"sync_node", "recorder"});
+  for (const std::string& node : nodes) {
+    INFO(node);
+    run.output_of({"sv", "kill", run.out() / "cluster/services" / node});
+    CHECK(ear.wait_until([&] { return ear.rejoined(node) == 1; }, kPatience_s));
+    CHECK(ear.wait_until(all_live, kPatience_s));
+  }
+  const std::int64_t hits = ear.hits();
+  CHECK(ear.wait_until([&] { return ear.hits() > hits; }, kPatience_s));
+  for (const std::string& node : nodes) CHECK(ear.rejoined(node) == 1);
+
+  run.processes.signal("run", SIGINT);
+  run.finish(kPatience_s);
+  const auto summary = nlohmann::json::parse(contents(run.out() / "summary.json"), nullptr, false);
+  INFO(run.processes.said("run"));
+  REQUIRE_FALSE(summary.is_discarded());
+  for (const std::string& node : kNodes) {
+    INFO(node);
+    CHECK(summary["nodes"][node]["restarts"] == 1);
+  }
+  CHECK(nothing_lives(5));
+}
+
+TEST_CASE("A node that keeps dying is left lost and named, and the others go on") {
+  RunScript run;
+  run.start({tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
+  const std::int64_t run_id = run_id_of(run.out());
+  REQUIRE(run_id > 0);
+  Ear ear(run_id);
+  REQUIRE(ear.wait_until([&] { return ear.in_state("thermal_node", node_health_t::RUNNING); }, kPatience_s));
+  const std::filesystem::path service = run.out() / "cluster/services/thermal_node";
+  for (int i = 0; i < 200 && !std::filesystem::exists(service / "lost"); ++i) {
+    run.processes.spawn("sv", {"sv", "kill", service});
+    run.processes.wait_for_exit("sv", 10);
+    ear.listen(0.1);
+  }
+  CHECK(contents(service / "lost").find("left down") != std::string::npos);
+  CHECK(ear.in_state("haptic_node", node_health_t::RUNNING));
+  CHECK(ear.in_state("audio_node", node_health_t::RUNNING));
+  CHECK(run.finish(kPatience_s) == 1);
+  CHECK(run.processes.said("run").find("thermal_node: could not be kept running") != std::string::npos);
+}
+
+TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
+  RunScript run;
+  run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out", run.out()});
+  REQUIRE(run_id_of(run.out()) > 0);
+  const std::string attach = repository() / "scripts/attach";
+  // Its own network: the logger there hears the cluster, and here nobody does.
+  const std::string log = run.folder.path() / "heard.lcmlog";
+  run.output_of({attach, run.out(), "timeout", "3", "lcm-logger", log}, 124);
+  CHECK(std::filesystem::file_size(log) > 10000);
+  const std::string processes = run.output_of({attach, run.out(), "sh", "-c", "cat /proc/[0-9]*/comm"});
+  CHECK(processes.find("sim_node") != std::string::npos);
+  CHECK(processes.find("cluster_test") == std::string::npos);
+  run.output_of({attach, run.out(), "pkill", "-KILL", "-x", "thermal_node"});
+  run.processes.signal("run", SIGINT);
+  run.finish(kPatience_s);
+  CHECK(run.processes.said("run").find("thermal_node died once") != std::string::npos);
+  run.output_of({attach, run.out(), "true"}, 1);
+}

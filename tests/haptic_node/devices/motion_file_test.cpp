@@ -1,0 +1,89 @@
+#include "haptic_node/devices/motion_file.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "haptic_node/devices/playback.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using Catch::Contains;
+using Eigen::Vector3d;
+
+namespace {
+
+Motion read(const std::string& text) {
+  std::istringstream in(text);
+  return read_motion(in, "stroke.csv");
+}
+sync::HostTime at_s(double s) { return sync::host_time(7) + sync::from_seconds(s); }
+
+}  // namespace
+
+TEST_CASE("A motion file is read with or without orientation") {
+  const Motion plain = read("time_s,x_m,y_m,z_m\n0,1,2,3\r\n0.5,4,5,6\n");
+  REQUIRE(plain.times_s.size() == 2);
+  CHECK(plain.positions_m[1] == Vector3d(4, 5, 6));
+  const Motion posed = read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,-0.8,0,0,-0.6\n");
+  CHECK(posed.orientations[1].w() == Approx(0.8));  // of the same half as its neighbour
+}
+
+TEST_CASE("What is wrong with a motion file is said with its line") {
+  CHECK_THROWS_WITH(read(""), Contains("stroke.csv, line 1") && Contains("time_s,x_m,y_m,z_m"));
+  CHECK_THROWS_WITH(read("t,x,y,z\n"), Contains("line 1"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n"), Contains("no row"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,zero,0\n"), Contains("line 3") && Contains("\"zero\""));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0\n"), Contains("line 2") && Contains("3 columns"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,nan\n"), Contains("line 2"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n1,0,0,0\n1,0,0,0\n"),
+                    Contains("line 3") && Contains("does not increase"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n1,0,0,0,2,0,0,0\n"), Contains("unit length"));
+  CHECK_THROWS_WITH(read_motion("/no/such/file.csv"), Contains("/no/such/file.csv") && Contains("cannot be read"));
+}
+
+TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, and rests at the last") {
+  const Motion motion = read("time_s,x_m,y_m,z_m\n10,0,0,0\n10.1,0.1,0,0\n10.2,0.2,0,0\n10.4,0.2,0.3,0\n");
+  Playback device(motion, Placement{2, {1, 0, 0}, 0.5});
+  CHECK(device.read(at_s(0)).position == Vector3d(1, 0, 0));
+  CHECK((device.read(at_s(0.2)).position - Vector3d(1.2, 0, 0)).norm() < 1e-12);
+  CHECK((device.read(at_s(0.1)).position - Vector3d(1.1, 0, 0)).norm() < 1e-12);
+  CHECK((device.read(at_s(0.1)).velocity - Vector3d(1, 0, 0)).norm() < 1e-9);  // 1 m/s * 2 * 0.5
+  device.write({0, 0, 100});
+  CHECK((device.read(at_s(0.8)).position - Vector3d(1.4, 0.6, 0)).norm() < 1e-12);
+  CHECK((device.read(at_s(9)).position - Vector3d(1.4, 0.6, 0)).norm() < 1e-12);
+  CHECK(device.read(at_s(9)).velocity.norm() == 0);
+}
+
+TEST_CASE("A playback turns evenly between two orientations") {
+  Playback device(read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,0.7071068,0,0,0.7071068\n"), {});
+  device.read(at_s(0));
+  const Eigen::AngleAxisd half(device.read(at_s(0.5)).orientation);
+  CHECK(half.angle() == Approx(M_PI / 4).epsilon(1e-6));
+}
+
+TEST_CASE("Recorded strokes play as they were recorded") {
+  const char* data = std::getenv("TACTUS_DATA");
+  if (!data) {
+    WARN("TACTUS_DATA is not set: recorded strokes are not played");
+    return;
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "tool_motion")) {
+    if (entry.path().extension() != ".csv") continue;
+    ++files;
+    const Motion motion = read_motion(entry.path().string());
+    REQUIRE(motion.times_s.size() > 100);
+    Playback device(motion, {});
+    device.read(at_s(0));
+    double worst = 0;
+    for (std::size_t i = 0; i < motion.times_s.size(); ++i) {
+      const DeviceState state = device.read(at_s(motion.times_s[i] - motion.times_s[0]));
+      // Times are rounded down to a nanosecond: at 10 m/s that is 10 nm.
+      worst = std::max(worst, (state.position - motion.positions_m[i]).norm());
+    }
+    CHECK(worst < 1e-8);
+  }
+  CHECK(files > 0);
+}

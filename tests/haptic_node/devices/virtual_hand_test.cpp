@@ -1,0 +1,75 @@
+#include "haptic_node/devices/virtual_hand.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::haptic;
+using Eigen::Vector3d;
+
+namespace {
+
+const HandImpedance kHand{0.1, 10, 300};
+
+MonotoneCubic still(const Vector3d& at) { return MonotoneCubic({0}, {at}, MonotoneCubic::Ends::kRest); }
+sync::HostTime at_ms(double ms) { return sync::host_time(1'000'000'000 + static_cast<std::int64_t>(ms * 1e6)); }
+
+}  // namespace
+
+TEST_CASE("A hand that is pushed evenly rests at force over stiffness from its path") {
+  VirtualHand hand(still({0.1, 0.2, 0.3}), false, kHand);
+  DeviceState state;
+  for (int ms = 0; ms < 2000; ++ms) {
+    state = hand.read(at_ms(ms));
+    hand.write({0, 0, 3});
+  }
+  // Decay: roots of 0.1 s^2 + 10 s + 300 are -50 +- 22i, so after 2 s nothing of the motion is left.
+  CHECK((state.position - Vector3d(0.1, 0.2, 0.31)).norm() < 1e-12);
+  CHECK(state.velocity.norm() < 1e-12);
+}
+
+TEST_CASE("A hand is integrated exactly, whatever the step") {
+  // m x'' + b x' + k x = F from rest: x(t) of an overdamped, an underdamped and a critical hand.
+  for (const HandImpedance& h :
+       {HandImpedance{0.1, 30, 300}, HandImpedance{0.1, 2, 300}, HandImpedance{0.1, 10, 250}}) {
+    const double a = h.damping_N_s_m / (2 * h.mass_kg), w2 = h.stiffness_N_m / h.mass_kg;
+    const auto closed = [&](double t) {
+      const double q = a * a - w2, rest = 1 / h.stiffness_N_m;
+      if (std::abs(q) < 1e-9) return rest * (1 - std::exp(-a * t) * (1 + a * t));
+      const double r = std::sqrt(std::abs(q));
+      return rest * (1 - std::exp(-a * t) * (q > 0 ? std::cosh(r * t) + a / r * std::sinh(r * t)
+                                                   : std::cos(r * t) + a / r * std::sin(r * t)));
+    };
+    for (const double step_ms : {0.25, 1.0, 7.0}) {
+      VirtualHand hand(still(Vector3d::Zero()), false, h);
+      for (double ms = 0; ms < 100; ms += step_ms) {
+        const DeviceState state = hand.read(at_ms(ms));
+        CHECK(state.position.x() == Approx(closed(ms * 1e-3)).margin(1e-12));
+        hand.write({1, 0, 0});
+      }
+    }
+  }
+}
+
+TEST_CASE("A hand follows its path and begins again, without a jump") {
+  const MonotoneCubic path({0, 0.5, 1}, {Vector3d::Zero(), {0.1, 0, 0}, Vector3d::Zero()},
+                           MonotoneCubic::Ends::kRest);
+  VirtualHand hand(path, true, kHand);
+  Vector3d last = hand.read(at_ms(0)).position;
+  CHECK(last == Vector3d::Zero());
+  for (int ms = 1; ms < 5000; ++ms) {
+    const DeviceState state = hand.read(at_ms(ms));
+    // Fastest on the path: 1.5 * 0.1 m / 0.5 s = 0.3 m/s; the hand overshoots that by less than half.
+    CHECK((state.position - last).norm() < 0.45e-3);
+    last = state.position;
+  }
+  // 0.5 s after a beginning it is near the far end. Lag of a second-order follower whose damper sees the target's
+  // velocity: m/k times the acceleration, at most 0.1/300 * 6 * 0.1/0.25 = 0.8 mm.
+  CHECK((hand.read(at_ms(5500)).position - Vector3d(0.1, 0, 0)).norm() < 0.0008);
+}
+
+TEST_CASE("A force that is not renewed is dropped") {
+  VirtualHand hand(still(Vector3d::Zero()), false, kHand);
+  hand.read(at_ms(0));
+  hand.write({0, 0, 8});
+  CHECK(hand.read(at_ms(3000)).position.norm() < 1e-9);
+}

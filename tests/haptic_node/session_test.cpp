@@ -1,0 +1,136 @@
+#include "haptic_node/session.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/haptic_node/world.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+using Catch::Contains;
+
+namespace {
+
+// As sent by a simulation of run 1.
+touch_model_t sent(double sim_ms, std::vector<touch_plane_t> planes, int tool = 0, std::int64_t incarnation = 1) {
+  touch_model_t m = model(sim_ms, std::move(planes), tool);
+  m.header.publish_time_ns = m.clock.host_ns;
+  m.header.incarnation = incarnation;
+  return m;
+}
+
+contact_events_t events_of(double sim_ms, std::vector<contact_event_t> list) {
+  contact_events_t m{};
+  m.header = sent(sim_ms, {}).header;
+  m.clock = sent(sim_ms, {}).clock;
+  m.pages = 1;
+  m.count = static_cast<std::int32_t>(list.size());
+  m.events = std::move(list);
+  return m;
+}
+
+Choice choice_of(const scene_t& s) { return choose(s, "", {}); }
+
+// The tool rests 2 mm under the floor of z = 0.005 + ...: see the bodies' pose.
+scene_t pressing_scene() {
+  scene_t s = scene();
+  s.bodies[1].pose.position_m.z = 0.003;
+  s.bodies[1].pose.orientation.w = 1;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("The tool and its settings are chosen by name, and what does not fit is said") {
+  scene_t s = scene();
+  s.tools.push_back(s.tools[0]);
+  s.tools[1].name = "finger";
+  s.setting_count = 2;
+  s.settings.resize(2);
+  s.settings[0].node = s.settings[1].node = "haptic_node";
+  s.settings[0].name = "force_limit";
+  s.settings[0].value = "3 N";
+  s.settings[1].name = "stale_after";
+  s.settings[1].value = "20ms";
+  CHECK(choose(s, "", {}).tool == 0);
+  CHECK(choose(s, "finger", {}).tool == 1);
+  CHECK(choose(s, "", {}).settings.force_limit_N == 3);
+  CHECK(choose(s, "", {"force_limit=2"}).settings.force_limit_N == 2);
+  CHECK(choose(s, "", {}).settings.stale_after_s == 0.02);
+  CHECK(choose(s, "toe", {}).tool == -1);
+  CHECK_THAT(choose(s, "toe", {}).problem, Contains("toe"));
+  CHECK_THAT(choose(scene_t{}, "", {}).problem, Contains("no tool"));
+  CHECK(choose(s, "", {"force=2"}).refused.size() == 1);
+  CHECK_THAT(limits_sentence(choose(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
+}
+
+TEST_CASE("A session touches what its own tool is told of, and nothing else") {
+  const scene_t s = pressing_scene();
+  Session session(s, choice_of(s), std::nullopt, 1);
+  const auto floor = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+  CHECK_FALSE(session.heard());
+  for (int ms = 0; ms < 100; ++ms) {
+    session.push(sent(ms, {floor}, 1), host_ms(ms));
+    CHECK(session.step(host_ms(ms)).force_N.norm() == 0);
+  }
+  CHECK_FALSE(session.heard());
+  TickOutput* out = nullptr;
+  for (int ms = 100; ms < 400; ++ms) {
+    session.push(sent(ms, {floor}), host_ms(ms));
+    session.push(sent(ms, {}, 1), host_ms(ms));
+    out = &session.step(host_ms(ms));
+  }
+  CHECK(session.heard());
+  CHECK_FALSE(session.lost());
+  CHECK(out->force_N.z() > 0.3);
+  CHECK(out->state.tool == 0);
+  CHECK(out->state.header.sim_time_ns == 399 * kMs);
+}
+
+TEST_CASE("Events that are repeated, as they are on the bus, are rendered once") {
+  const scene_t s = pressing_scene();
+  Session session(s, choice_of(s), std::nullopt, 1);
+  int begins = 0, hits = 0;
+  for (int ms = 0; ms < 300; ++ms) {
+    session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
+    if (ms >= 100 && ms < 150)
+      session.push(events_of(ms, {event(1, contact_event_t::BEGIN, 99.5), event(2, contact_event_t::HIT, 99.5)}),
+                   host_ms(ms));
+    for (const presentation_t& r : session.step(host_ms(ms)).reports) {
+      r.part == presentation_t::TRANSIENT ? ++hits : ++begins;
+      CHECK(r.outcome == presentation_t::PRESENTED);
+      CHECK(r.scheduled_ns == sync::to_ns(host_ms(99.5)));
+      // The transient in the tick that took it; the constraint was felt from the first one on.
+      CHECK(r.presented_ns == sync::to_ns(host_ms(r.part == presentation_t::TRANSIENT ? 100 : 0)));
+    }
+  }
+  CHECK(begins == 1);
+  CHECK(hits == 1);
+}
+
+TEST_CASE("A restarted simulation is followed, its first touch model comes without a kick") {
+  const scene_t s = pressing_scene();
+  Session session(s, choice_of(s), std::nullopt, 1);
+  double last = 0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    // Killed at 200 ms, back at 500 ms with a time of its own that begins at 0.
+    if (ms < 200) session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
+    if (ms >= 500) {
+      auto m = sent(ms - 500, {plane(99, Vector3d::Zero(), Vector3d::UnitZ())}, 0, 2);
+      m.clock.host_ns = m.header.publish_time_ns = sync::to_ns(host_ms(ms));
+      session.push(m, host_ms(ms));
+    }
+    const auto& out = session.step(host_ms(ms));
+    CHECK(std::abs(out.force_N.z() - last) < 0.2);
+    last = out.force_N.z();
+    if (ms >= 275 && ms < 500) CHECK(last == 0);
+    if (ms >= 500) CHECK(out.state.header.sim_time_ns == (ms - 500) * kMs);
+  }
+  CHECK(last > 0.3);
+}
+
+TEST_CASE("A device that the scene names but nobody knows is refused in one sentence") {
+  scene_t s = scene();
+  s.tools[0].device = "phantom";
+  CHECK_THROWS_WITH(Session(s, choice_of(s), std::nullopt, 1), Contains("phantom"));
+}

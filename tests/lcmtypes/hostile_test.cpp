@@ -1,0 +1,246 @@
+// What a hostile or damaged message can do to a receiver: nothing.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+#include "sync/decode.h"
+#include "tests/lcmtypes/samples.h"
+#include "tests/lcmtypes/schema.h"
+
+namespace {
+std::atomic<std::size_t> largest_allocation{0};
+}
+
+// Watches every allocation of this test program, so that a message that claims a billion elements is caught
+// claiming.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  std::size_t seen = largest_allocation;
+  while (size > seen && !largest_allocation.compare_exchange_weak(seen, size)) {
+  }
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return std::malloc(size ? size : 1);
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace tactus::test {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+const Schema& schema() {
+  static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");
+  return s;
+}
+
+template <class Message>
+constexpr bool kIsAsset = std::is_same_v<Message, scene_t> || std::is_same_v<Message, mesh_t>;
+
+// The border as nodes use it.
+template <class Message>
+std::optional<Message> border(const Bytes& bytes) {
+  if constexpr (kIsAsset<Message>)
+    return sync::decode_asset<Message>(bytes);
+  else
+    return sync::decode<Message>(bytes.data(), bytes.size());
+}
+
+// No element takes more than 512 bytes of memory per byte on the wire; 4 kB for what is not proportional.
+template <class Message>
+bool refused_cheaply(const Bytes& bytes) {
+  largest_allocation = 0;
+  const bool refused = !border<Message>(bytes);
+  return refused && largest_allocation <= 512 * bytes.size() + 4096;
+}
+
+template <class Message>
+Bytes encoded_sample(Samples& samples) {
+  Bytes bytes;
+  do {
+    Message m{};
+    samples.fill(m);
+    bytes = sync::encode(m);
+  } while (!kIsAsset<Message> && bytes.size() > channels::kMaxMessageBytes);
+  return bytes;
+}
+
+#define EVERY_MESSAGE                                                                                          \
+  touch_model_t, contact_events_t, contact_frame_t, world_state_t, tool_state_t, thermal_state_t, presented_t, \
+      node_health_t, sync_report_t, media_clock_t, scene_manifest_t, asset_request_t, asset_chunk_t, scene_t,  \
+      mesh_t, log_info_t
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("A valid message comes through unchanged", "", EVERY_MESSAGE) {
+  Samples samples(1);
+  for (int i = 0; i < 200; ++i) {
+    const Bytes bytes = encoded_sample<TestType>(samples);
+    const auto m = border<TestType>(bytes);
+    REQUIRE(m);
+    REQUIRE(sync::encode(*m) == bytes);
+    REQUIRE_NOTHROW(schema().walk(TestType::getTypeName(), bytes));
+  }
+}
+
+TEMPLATE_TEST_CASE("A message cut off anywhere, or with anything behind it, is refused", "", EVERY_MESSAGE) {
+  Samples samples(2);
+  for (int i = 0; i < 5; ++i) {
+    Bytes bytes = encoded_sample<TestType>(samples);
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      REQUIRE(
+          refused_cheaply<TestType>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))));
+    for (int extra = 0; extra < 16; ++extra) {
+      bytes.push_back(static_cast<std::uint8_t>(samples.whole(0, 255)));
+      REQUIRE(refused_cheaply<TestType>(bytes));
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("A message of another type is refused", "", EVERY_MESSAGE) {
+  Samples samples(3);
+  Bytes bytes = encoded_sample<TestType>(samples);
+  for (std::size_t bit = 0; bit < 64; ++bit) {
+    Bytes other = bytes;
+    other[bit / 8] ^= static_cast<std::uint8_t>(1u << (bit % 8));
+    REQUIRE(refused_cheaply<TestType>(other));
+  }
+  for (const auto fingerprint :
+       {touch_model_t::getHash(), node_health_t::getHash(), scene_t::getHash(), pose_t::getHash()}) {
+    if (fingerprint == TestType::getHash()) continue;
+    put(bytes, 0, fingerprint);
+    REQUIRE(refused_cheaply<TestType>(bytes));
+  }
+}
+
+TEMPLATE_TEST_CASE("A number that is none, in any field, is refused", "", EVERY_MESSAGE) {
+  Samples samples(4);
+  for (int i = 0; i < 5; ++i) {
+    const Bytes bytes = encoded_sample<TestType>(samples);
+    for (const Spot& spot : schema().walk(TestType::getTypeName(), bytes)) {
+      if (spot.type != "double" && spot.type != "float") continue;
+      INFO(spot.path);
+      for (const double poison :
+           {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+            -std::numeric_limits<double>::infinity()}) {
+        Bytes poisoned = bytes;
+        if (spot.type == "double")
+          put(poisoned, spot.offset, poison);
+        else
+          put(poisoned, spot.offset, static_cast<float>(poison));
+        REQUIRE(refused_cheaply<TestType>(poisoned));
+      }
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("A length that lies is refused without room being made for it", "", EVERY_MESSAGE) {
+  Samples samples(5);
+  for (int i = 0; i < 20; ++i) {
+    const Bytes bytes = encoded_sample<TestType>(samples);
+    for (const Spot& spot : schema().walk(TestType::getTypeName(), bytes)) {
+      if (!spot.is_count && spot.type != "string") continue;
+      INFO(spot.path);
+      const std::int32_t lies[] = {-1, std::numeric_limits<std::int32_t>::min(),
+                                   std::numeric_limits<std::int32_t>::max(), 1 << 20, 0x01000000};
+      for (const std::int32_t lie : lies) {
+        Bytes lying = bytes;
+        if (spot.type == "int8_t")
+          put(lying, spot.offset, static_cast<std::int8_t>(lie < 0 ? -1 : 127));
+        else
+          put(lying, spot.offset, lie);
+        REQUIRE(refused_cheaply<TestType>(lying));
+      }
+      if (spot.type != "string") continue;
+      Bytes lying = bytes;
+      put(lying, spot.offset, std::int32_t{0});  // a string has its final zero at least
+      REQUIRE(refused_cheaply<TestType>(lying));
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("An enumeration out of range is refused", "", EVERY_MESSAGE) {
+  Samples samples(6);
+  for (int i = 0; i < 20; ++i) {
+    const Bytes bytes = encoded_sample<TestType>(samples);
+    for (const Spot& spot : schema().walk(TestType::getTypeName(), bytes)) {
+      if (!spot.enumerated) continue;
+      INFO(spot.path);
+      for (const int wrong : {-1, -128, 100, 127}) {
+        Bytes altered = bytes;
+        if (spot.type == "int8_t")
+          put(altered, spot.offset, static_cast<std::int8_t>(wrong));
+        else
+          put(altered, spot.offset, std::int32_t{wrong});
+        REQUIRE(refused_cheaply<TestType>(altered));
+      }
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("A page outside its pages is refused", "", contact_events_t, contact_frame_t, world_state_t,
+                   scene_manifest_t) {
+  Samples samples(7);
+  const int wrong[][2] = {{0, 0}, {1, 1}, {-1, 1}, {5, 3}, {0, -1}, {std::numeric_limits<int>::max(), 2}};
+  for (const auto& [page, pages] : wrong) {
+    TestType m{};
+    samples.fill(m);
+    m.page = page, m.pages = pages;
+    INFO(page << " of " << pages);
+    CHECK(!valid(m));
+    CHECK(refused_cheaply<TestType>(sync::encode(m)));
+  }
+}
+
+TEMPLATE_TEST_CASE("Noise is refused, damage is refused or harmless", "", EVERY_MESSAGE) {
+  Samples samples(8);
+  const auto byte = [&] { return static_cast<std::uint8_t>(samples.whole(0, 255)); };
+  for (int i = 0; i < 2000; ++i) {
+    Bytes noise(static_cast<std::size_t>(samples.whole(0, 1500)));
+    for (auto& b : noise) b = byte();
+    REQUIRE(refused_cheaply<TestType>(noise));
+    if (noise.size() < 8) continue;
+    put(noise, 0, TestType::getHash());  // of the right type, the rest noise
+    largest_allocation = 0;
+    (void)border<TestType>(noise);
+    REQUIRE(largest_allocation <= 512 * noise.size() + 4096);
+  }
+  for (int i = 0; i < 2000; ++i) {
+    Bytes bytes = encoded_sample<TestType>(samples);
+    for (int flips = samples.whole(1, 8); flips > 0; --flips)
+      bytes[static_cast<std::size_t>(samples.whole(8, static_cast<int>(bytes.size()) - 1))] = byte();
+    largest_allocation = 0;
+    const auto m = border<TestType>(bytes);
+    REQUIRE(largest_allocation <= 512 * bytes.size() + 4096);
+    if (!m) continue;
+    REQUIRE(valid(*m));
+    REQUIRE_NOTHROW(schema().walk(TestType::getTypeName(), bytes));
+  }
+}
+
+TEST_CASE("A message that would be fragmented is refused, though it is valid") {
+  Samples samples(9);
+  world_state_t m{};
+  samples.fill(m);
+  m.bodies.resize(40);
+  for (auto& b : m.bodies) samples.fill(b);
+  m.count = 40;
+  const Bytes bytes = sync::encode(m);
+  REQUIRE(valid(m));
+  REQUIRE(bytes.size() > channels::kMaxMessageBytes);
+  CHECK(!border<world_state_t>(bytes));
+}
+
+TEST_CASE("The schema names every field of every type that is sent") {
+  CHECK(schema().structs().size() >= 30);
+  for (const auto& [name, fields] : schema().structs()) {
+    INFO(name);
+    CHECK(!fields.empty());
+  }
+}
+
+}  // namespace tactus::test

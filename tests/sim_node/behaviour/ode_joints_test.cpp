@@ -1,0 +1,137 @@
+#include <catch2/catch.hpp>
+
+#include "sim_node/behaviour/ode_joints.h"
+#include "sim_node/behaviour/solver.h"
+#include "tests/sim_node/small_worlds.h"
+
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+using Eigen::Vector3d;
+
+namespace {
+
+// A body at the origin, joined to the world or to a second, heavy one.
+struct Jointed {
+  WorldDef world = empty_world(0);
+  int parent = -1, child = 0;
+
+  explicit Jointed(bool to_body) {
+    child = add_body(world, "child", 1, Eigen::Matrix3d::Identity() * 0.01, at(0, 0, 0));
+    if (to_body) parent = add_body(world, "parent", 1e6, Eigen::Matrix3d::Identity() * 1e6, at(0, 0, 1));
+  }
+  // The child's orientation after a constant torque for so long.
+  Eigen::Quaterniond turned(const Vector3d& torque, double seconds) const {
+    Solver s(world, {});
+    const Vector3d axis = torque.normalized(), lever = axis.unitOrthogonal();
+    for (int i = 0; i < seconds / kStep; ++i) {
+      const Vector3d f = axis.cross(lever) * torque.norm() / 2;
+      s.add_force(child, f, s.bodies()[0].centre_m + lever);
+      s.add_force(child, -f, s.bodies()[0].centre_m - lever);
+      s.step();
+    }
+    return s.bodies()[0].orientation;
+  }
+};
+
+double angle_about(const Eigen::Quaterniond& q, const Vector3d& axis) { return 2 * std::atan2(q.vec().dot(axis), q.w()); }
+
+}  // namespace
+
+TEST_CASE("Angles and limits count as in SDF: the child turns against the parent about the axis, positive by the right hand") {
+  const bool to_body = GENERATE(false, true);
+  Jointed j(to_body);
+  SECTION("revolute") {
+    JointDef& joint = add_joint(j.world, JointKind::kRevolute, j.parent, j.child, {0, 0, 0}, {0, 0, 1});
+    joint.axes[0].lower = -0.2;
+    joint.axes[0].upper = 0.6;
+    CHECK(angle_about(j.turned({0, 0, 0.02}, 2), {0, 0, 1}) == Approx(0.6).margin(0.005));
+    CHECK(angle_about(j.turned({0, 0, -0.02}, 2), {0, 0, 1}) == Approx(-0.2).margin(0.005));
+    CHECK(angle_about(j.turned({0.02, 0, 0}, 1), {1, 0, 0}) == Approx(0).margin(1e-4));
+  }
+  SECTION("universal: the first axis is the parent's, the second the child's") {
+    JointDef& joint = add_joint(j.world, JointKind::kUniversal, j.parent, j.child, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    joint.axes[0].lower = -0.1;
+    joint.axes[0].upper = 0.5;
+    joint.axes[1].lower = -0.3;
+    joint.axes[1].upper = 0.7;
+    CHECK(angle_about(j.turned({0.02, 0, 0}, 2), {1, 0, 0}) == Approx(0.5).margin(0.005));
+    CHECK(angle_about(j.turned({-0.02, 0, 0}, 2), {1, 0, 0}) == Approx(-0.1).margin(0.005));
+    CHECK(angle_about(j.turned({0, 0.02, 0}, 2), {0, 1, 0}) == Approx(0.7).margin(0.005));
+    CHECK(angle_about(j.turned({0, -0.02, 0}, 2), {0, 1, 0}) == Approx(-0.3).margin(0.005));
+    CHECK(angle_about(j.turned({0, 0, 0.02}, 1), {0, 0, 1}) == Approx(0).margin(1e-4));
+  }
+  SECTION("universal: each axis has its own spring") {
+    JointDef& joint = add_joint(j.world, JointKind::kUniversal, j.parent, j.child, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    for (int axis = 0; axis < 2; ++axis) joint.axes[axis].damping = 0.1;
+    joint.axes[0].stiffness = 1;
+    joint.axes[0].reference = 0.2;
+    joint.axes[1].stiffness = 1;
+    const Eigen::Quaterniond q = j.turned({0, 1e-9, 0}, 5);
+    CHECK(angle_about(q, {1, 0, 0}) == Approx(0.2).margin(1e-3));
+    CHECK(angle_about(q, {0, 1, 0}) == Approx(0).margin(1e-3));
+  }
+  SECTION("a ball turns all ways, a fixed joint none, a damper brakes the ball") {
+    JointDef& joint = add_joint(j.world, JointKind::kBall, j.parent, j.child, {0, 0, 0}, {1, 0, 0});
+    // Half alpha t (t + h), the sum of the steps.
+    const double free = 0.5 * 2 * 0.5 * 0.501;
+    for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)})
+      CHECK(angle_about(j.turned(0.02 * axis, 0.5), axis) == Approx(free).epsilon(1e-3));
+    joint.axes[0].damping = 0.1;
+    // Driven against the damper: rate approaches torque / damping with time constant inertia / damping = 0.1 s.
+    CHECK(angle_about(j.turned({0, 0, 0.02}, 0.5), {0, 0, 1}) == Approx(0.2 * (0.5 - 0.1 * (1 - std::exp(-5.0)))).epsilon(2e-3));
+    joint.kind = JointKind::kFixed;
+    CHECK(angle_about(j.turned({0, 0, 0.02}, 0.5), {0, 0, 1}) == Approx(0).margin(1e-4));
+  }
+}
+
+TEST_CASE("A slider moves along its axis, up to its stop") {
+  const bool to_body = GENERATE(false, true);
+  Jointed j(to_body);
+  JointDef& joint = add_joint(j.world, JointKind::kPrismatic, j.parent, j.child, {0, 0, 0}, {0, 1, 0});
+  joint.axes[0].upper = 0.3;
+  joint.axes[0].friction = 0.5;
+  Solver s(j.world, {});
+  for (int i = 0; i < 400; ++i) {
+    s.add_force(j.child, {1, 0.4, 2}, s.bodies()[0].centre_m);
+    s.step();
+  }
+  CHECK(s.bodies()[0].position_m.norm() < 1e-4);  // held by friction and guide
+  for (int i = 0; i < 2000; ++i) {
+    s.add_force(j.child, {1, 1.5, 2}, s.bodies()[0].centre_m);
+    s.step();
+  }
+  CHECK(s.bodies()[0].position_m.y() == Approx(0.3).margin(0.002));
+  CHECK(std::hypot(s.bodies()[0].position_m.x(), s.bodies()[0].position_m.z()) < 1e-4);
+}
+
+TEST_CASE("A driven damper turns at torque over damping, however light what it brakes") {
+  for (const double inertia : {1e-2, 1e-4, 1e-6}) {
+    WorldDef w = empty_world(0);
+    const int rotor = add_body(w, "rotor", 0.1, Eigen::Matrix3d::Identity() * inertia, at(0, 0, 0));
+    JointDef& joint = add_joint(w, JointKind::kRevolute, -1, rotor, {0, 0, 0}, {0, 0, 1});
+    joint.axes[0].damping = 1e-2;
+    Solver s(w, {});
+    for (int i = 0; i < 12000; ++i) {
+      s.add_force(rotor, {0, 0.01, 0}, s.bodies()[0].centre_m + Vector3d(1, 0, 0));
+      s.add_force(rotor, {0, -0.01, 0}, s.bodies()[0].centre_m - Vector3d(1, 0, 0));
+      s.step();
+    }
+    CHECK(s.bodies()[0].spin_rad_s.z() == Approx(2).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("A passive force neither gains energy nor overshoots, however stiff and damped") {
+  for (const double stiffness : {0.0, 1.0, 1e4, 1e9})
+    for (const double damping : {0.0, 1e-3, 1.0, 1e6}) {
+      const double inertia = 0.01;
+      double q = 0.1, v = 0, energy = 0.5 * stiffness * q * q;
+      for (int i = 0; i < 2000; ++i) {
+        v += kStep * ode::passive_force(q, v, stiffness, 0, damping, inertia, kStep) / inertia;
+        q += kStep * v;
+        const double now = 0.5 * inertia * v * v + 0.5 * stiffness * q * q;
+        INFO(stiffness << " " << damping);
+        REQUIRE(now <= energy * (1 + 1e-9) + 1e-15);
+        energy = now;
+      }
+    }
+}

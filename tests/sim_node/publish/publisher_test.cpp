@@ -1,0 +1,229 @@
+#include "sim_node/publish/publisher.h"
+
+#include <catch2/catch.hpp>
+#include <iostream>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "sync/contact_stream.h"
+
+using namespace tactus;
+using namespace tactus::sim;
+
+namespace {
+
+// A sender and a receiver in this process.
+struct Wire {
+  sync::Bus bus{sync::Identity{"sim_node", 1, 99, 1}, {.memory = true}};
+  sync::Queue<touch_model_t>& touch = bus.queue<touch_model_t>(channels::kTouchModel, 100000);
+  sync::Queue<contact_events_t>& events = bus.queue<contact_events_t>(channels::kContactEvents, 100000);
+  sync::Queue<contact_frame_t>& contacts = bus.queue<contact_frame_t>(channels::kContacts, 100000);
+  sync::Queue<world_state_t>& world = bus.queue<world_state_t>(channels::kWorldState, 100000);
+};
+
+contact_t contact(int i, int points) {
+  contact_t c{};
+  c.contact_id = i + 1;
+  c.body_b = 1;
+  c.material_a = c.material_b = c.tool = -1;
+  c.normal.z = 1;
+  c.point_count = static_cast<std::int8_t>(points);
+  c.points.resize(static_cast<std::size_t>(points));
+  return c;
+}
+
+contact_event_t event(std::int64_t id, std::int64_t time_ns) {
+  contact_event_t e{};
+  e.event_id = id;
+  e.contact_id = 1;
+  e.time_ns = time_ns;
+  e.body_b = 1;
+  e.material_a = e.material_b = e.tool = -1;
+  e.normal.z = 1;
+  e.effective_mass_kg = 1;
+  return e;
+}
+
+std::vector<BodyMotion> moving(std::size_t count) {
+  std::vector<BodyMotion> bodies(count);
+  for (BodyMotion& b : bodies) b.velocity_m_s = {1, 0, 0};
+  return bodies;
+}
+
+}  // namespace
+
+TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the budget of datagrams") {
+  Wire wire;
+  Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
+  const std::vector<BodyMotion> bodies = moving(3000);
+  std::vector<touch_model_t> models(1);
+  const std::vector<contact_event_t> none;
+  const std::vector<contact_t> tool;
+  const auto contacts = [](std::vector<contact_t>& out) {
+    out.clear();
+    for (int i = 0; i < 2000; ++i) out.push_back(contact(i, 1 + i % 4));
+  };
+  constexpr int kTicks = 3000;
+  double bytes = 0, datagrams = 0;
+  std::map<std::int64_t, std::set<int>> world_pages, contact_pages;
+  std::map<std::int64_t, std::unordered_map<int, int>> seen_bodies, seen_contacts;
+  std::map<std::int64_t, int> world_of, contacts_of;
+  float rate = 0;
+  int wrong = 0, largest = 0, most_slow = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const sync::SimTime now = sync::sim_time(i * std::int64_t{1'000'000});
+    publisher.publish({now, &models, &none, &tool, {bodies, contacts}}, {now, sync::host_time(5'000'000'000 + i * std::int64_t{1'000'000}), 1});
+    wire.bus.drain(sync::host_time(5'000'000'000 + i * std::int64_t{1'000'000}));
+    int slow = 0;
+    const auto count = [&](const auto& m) {
+      bytes += m.getEncodedSize();
+      ++datagrams;
+      largest = std::max(largest, m.getEncodedSize());
+      wrong += m.clock.sim_ns != sync::to_ns(now);
+    };
+    while (const auto m = wire.world.pop()) {
+      count(m->message);
+      ++slow;
+      rate = m->message.rate_Hz;
+      world_of[m->message.header.sim_time_ns] = m->message.pages;
+      wrong += !world_pages[m->message.header.sim_time_ns].insert(m->message.page).second;
+      for (const body_state_t& b : m->message.bodies) ++seen_bodies[m->message.header.sim_time_ns][b.body];
+    }
+    while (const auto m = wire.contacts.pop()) {
+      count(m->message);
+      if (m->message.group == contact_frame_t::TOOL) continue;
+      ++slow;
+      contacts_of[m->message.header.sim_time_ns] = m->message.pages;
+      wrong += !contact_pages[m->message.header.sim_time_ns].insert(m->message.page).second;
+      for (const contact_t& c : m->message.contacts) ++seen_contacts[m->message.header.sim_time_ns][static_cast<int>(c.contact_id)];
+    }
+    while (const auto m = wire.touch.pop()) count(m->message);
+    most_slow = std::max(most_slow, slow);
+  }
+  CHECK(wrong == 0);
+  CHECK(most_slow <= 2);
+  CHECK(largest <= static_cast<int>(channels::kMaxMessageBytes));
+  CHECK(wire.bus.refused() == 0);
+  for (const auto* inbox : {static_cast<sync::InboxBase*>(&wire.world), static_cast<sync::InboxBase*>(&wire.contacts)}) {
+    CHECK(inbox->count().sequence.gaps() == 0);
+    CHECK(inbox->count().bad == 0);
+  }
+  // Every snapshot but those on their way at the end is whole.
+  std::size_t whole_worlds = 0, whole_contacts = 0;
+  for (const auto& [time, pages] : world_pages)
+    if (static_cast<int>(pages.size()) == world_of[time]) {
+      ++whole_worlds;
+      CHECK(seen_bodies[time].size() == 3000);
+    }
+  for (const auto& [time, pages] : contact_pages)
+    if (static_cast<int>(pages.size()) == contacts_of[time]) {
+      ++whole_contacts;
+      CHECK(seen_contacts[time].size() == 2000);
+    }
+  CHECK(whole_worlds + 1 >= world_pages.size());
+  CHECK(whole_contacts + 1 >= contact_pages.size());
+  const double seconds = kTicks * 1e-3;
+  CHECK(rate == Approx(static_cast<double>(whole_worlds) / seconds).epsilon(0.1));
+  std::cout << "3000 bodies, 2000 contacts: " << bytes / seconds / 1e6 << " MB/s in " << datagrams / seconds
+            << " datagrams/s; world " << whole_worlds / seconds << " Hz (told " << rate << "), contacts "
+            << whole_contacts / seconds << " Hz\n";
+}
+
+TEST_CASE("Each step: touch, events, contacts of tools, and only then what is slow") {
+  Wire wire;
+  Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
+  const std::vector<BodyMotion> bodies = moving(3);
+  std::vector<touch_model_t> models(2);
+  const std::vector<contact_event_t> events{event(5, 0)};
+  const std::vector<contact_t> tool{contact(0, 1)};
+  publisher.publish({sync::sim_time(0), &models, &events, &tool, {bodies, [](auto& out) { out.clear(); }}}, {});
+  wire.bus.drain(sync::host_time(1));
+  std::vector<std::pair<std::int64_t, std::string>> order;
+  const auto note = [&](auto& queue, const char* name) {
+    while (const auto m = queue.pop()) order.emplace_back(m->message.header.publish_time_ns, name);
+  };
+  note(wire.touch, "touch");
+  note(wire.events, "events");
+  note(wire.contacts, "contacts");
+  note(wire.world, "world");
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string all;
+  for (const auto& [time, name] : order) all += name + " ";
+  // The tool's contacts, then world and contacts of the others in turns.
+  CHECK(all == "touch touch events contacts world contacts ");
+}
+
+TEST_CASE("Every event is repeated each step for 50 ms, and a storm loses none") {
+  YoungEvents young(4);
+  std::map<std::int64_t, int> sent;
+  std::int64_t id = 0;
+  const int per_step = GENERATE(1, 20, 60);
+  for (int i = 0; i < 400; ++i) {
+    std::vector<contact_event_t> fresh;
+    for (int k = 0; i < 300 && k < per_step; ++k) fresh.push_back(event(id++, i * std::int64_t{1'000'000}));
+    young.add(fresh, sync::sim_time(i * std::int64_t{1'000'000}));
+    const auto& due = young.due(sync::sim_time(i * std::int64_t{1'000'000}));
+    CHECK(due.size() <= 64);
+    std::set<std::int64_t> unique;
+    for (const auto& e : due) {
+      CHECK(unique.insert(e.event_id).second);
+      ++sent[e.event_id];
+    }
+  }
+  CHECK(sent.size() == static_cast<std::size_t>(id));
+  CHECK(young.overflow() == 0);
+  if (per_step == 1)
+    for (const auto& [event_id, times] : sent) CHECK(times == 50);
+}
+
+TEST_CASE("Only what moves is told, its rest once, and everything once a second and to a newcomer") {
+  Snapshots snapshots(60, 2000, sync::Nanoseconds(1'000'000));
+  std::vector<BodyMotion> bodies(40);
+  bodies[7].velocity_m_s = {0.5, 0, 0};
+  std::map<std::int64_t, std::vector<body_state_t>> told;
+  std::map<std::int64_t, int> full;
+  int tick = 0;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i, ++tick) {
+      if (bodies[7].velocity_m_s.x() > 0) bodies[7].position_m.x() += 0.0005;
+      snapshots.tick(sync::sim_time(tick * std::int64_t{1'000'000}), {bodies, [](auto& out) { out.clear(); }}, [](contact_frame_t&) {},
+                     [&](world_state_t& m) {
+                       full[m.header.sim_time_ns] = m.full;
+                       auto& list = told[m.header.sim_time_ns];
+                       list.insert(list.end(), m.bodies.begin(), m.bodies.end());
+                     });
+    }
+  };
+  run(500);
+  int all = 0;
+  for (const auto& [time, list] : told) {
+    if (full[time]) {
+      ++all;
+      CHECK(list.size() == 40);
+    } else {
+      REQUIRE(list.size() == 1);
+      CHECK(list[0].body == 7);
+    }
+  }
+  CHECK(all == 1);
+  bodies[7].velocity_m_s.setZero();
+  told.clear();
+  run(200);
+  int mentioned = 0;
+  for (const auto& [time, list] : told) mentioned += static_cast<int>(list.size());
+  // Where it came to rest, and that it rests.
+  CHECK(mentioned >= 1);
+  CHECK(mentioned <= 2);
+  CHECK(told.begin()->second.back().velocity_m_s.x == 0);
+  told.clear();
+  snapshots.want_full();
+  run(30);
+  CHECK(told.begin()->second.size() == 40);
+  told.clear();
+  full.clear();
+  run(2000);
+  int fulls = 0;
+  for (const auto& [time, is_full] : full) fulls += is_full;
+  CHECK(fulls == 2);
+}

@@ -1,0 +1,60 @@
+#include "sim_node/publish/sim_pacer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace tactus;
+using namespace tactus::sim;
+
+namespace {
+
+constexpr std::int64_t kStart = 7'000'000'000'000;
+constexpr std::int64_t kMs = 1'000'000;
+
+}  // namespace
+
+TEST_CASE("A loop that keeps its time has an exact map") {
+  SimPacer pacer;
+  for (int i = 1; i < 3000; ++i) {
+    const sync::TimeMap map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + i * kMs));
+    CHECK(map.rate == 1);
+    CHECK(sync::to_ns(map.host) - sync::to_ns(map.sim) == kStart);
+  }
+  CHECK(pacer.realtime_factor() == Approx(1));
+}
+
+TEST_CASE("A missed tick is a slew, not a jump") {
+  SimPacer pacer;
+  std::int64_t late = 0, last = 0;
+  for (int i = 1; i < 500; ++i) {
+    if (i == 100) late = kMs;
+    const sync::TimeMap map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + late + i * kMs));
+    const std::int64_t offset = sync::to_ns(map.host) - sync::to_ns(map.sim);
+    if (i > 1) CHECK(std::abs(offset - last) <= 50'000);  // 5 % of a tick
+    CHECK(map.rate > 0.94);
+    last = offset;
+  }
+  CHECK(last == Approx(kStart + kMs).margin(10));
+}
+
+TEST_CASE("A simulation at half speed says so, and its map keeps up") {
+  SimPacer pacer;
+  sync::TimeMap map;
+  for (int i = 1; i <= 3000; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + 2 * i * kMs));
+  CHECK(map.rate == Approx(0.5).epsilon(1e-6));
+  CHECK(pacer.realtime_factor() == Approx(0.5));
+  // Behind by the time in which it follows, 20 ms of the world, at most.
+  CHECK(std::abs(sync::to_ns(map.host) - (kStart + 6000 * kMs)) <= 20 * kMs);
+}
+
+TEST_CASE("The map never runs backwards, even over a stop") {
+  SimPacer pacer;
+  std::int64_t pause = 0, last = 0;
+  for (int i = 1; i < 2000; ++i) {
+    if (i == 1000) pause = 2'000 * kMs;
+    const sync::TimeMap map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + pause + i * kMs));
+    CHECK(sync::to_ns(map.host) > last);
+    CHECK(map.rate > 0);
+    last = sync::to_ns(map.host);
+  }
+}

@@ -1,0 +1,131 @@
+// Our own elements: materials, tools, settings.
+#include "scene_file.h"
+#include "sim_node/scene/materials.h"
+
+using namespace tactus;
+using namespace tactus::sim;
+
+namespace {
+std::string refusal(const std::string& inside) {
+  SceneFile file(world(inside));
+  return file.refusal();
+}
+WorldDef load(const std::string& inside) {
+  SceneFile file(world(inside));
+  const WorldDef w = file.load();
+  CHECK(file.warnings.empty());
+  return w;
+}
+const material_def_t& material(const WorldDef& w, const std::string& name) {
+  for (const auto& m : w.materials)
+    if (m.name == name) return m;
+  FAIL("no material " + name);
+  return w.materials.front();
+}
+}  // namespace
+
+TEST_CASE("The table of materials is complete, in range, and every figure has a source") {
+  const auto materials = builtin_materials();
+  CHECK(materials.size() >= 12);
+  for (const char* name : {"steel", "aluminium", "copper", "glass", "granite", "ceramic", "oak", "abs", "rubber", "foam", "skin",
+                           "concrete", "felt"}) {
+    INFO(name);
+    CHECK(std::count_if(materials.begin(), materials.end(), [&](const auto& m) { return m.name == name; }) == 1);
+  }
+  for (const auto& m : materials) CHECK(m.friction_static >= m.friction_dynamic);
+}
+
+TEST_CASE("A row of the table that is wrong is refused with its number") {
+  const std::string header =
+      "name,youngs_modulus_Pa,poissons_ratio,density_kg_m3,rayleigh_alpha_1_s,rayleigh_beta_s,friction_static,friction_dynamic,"
+      "restitution,conductivity_W_mK,specific_heat_J_kgK,temperature_degC,any_source\n";
+  CHECK(parse_materials(header + "a,1e9,0.3,1000,1,1e-6,0.5,0.4,0.5,1,1000,23,\"one, two\"\n").size() == 1);
+  CHECK_THROWS_WITH(parse_materials(header + "a,1e9,0.3,1000,1,1e-6,0.5,0.4,0.5,1,1000,23,\n"), Catch::Contains("materials.csv:2"));
+  CHECK_THROWS_WITH(parse_materials(header + "a,1e9,0.7,1000,1,1e-6,0.5,0.4,0.5,1,1000,23,x\n"), Catch::Contains("poissons_ratio"));
+  CHECK_THROWS_WITH(parse_materials(header + "a,1e9\n"), Catch::Contains("cells"));
+}
+
+TEST_CASE("A scene changes a material, makes one of another, or a new one") {
+  const WorldDef w = load("<tactus:material name='steel' temperature='45degC'/>"
+                          "<tactus:material name='warm_oak' base='oak' temperature='40' density='900kg/m3'/>"
+                          "<tactus:material name='new' youngs_modulus='3GPa' poissons_ratio='0.3' density='1200' rayleigh_alpha='1'"
+                          " rayleigh_beta='1us' friction_static='0.5' friction_dynamic='0.4' restitution='0.5' conductivity='1'"
+                          " specific_heat='900' temperature='23'/>");
+  CHECK(material(w, "steel").temperature_degC == 45);
+  CHECK(material(w, "steel").density_kg_m3 == 7850);
+  CHECK(material(w, "warm_oak").density_kg_m3 == 900);
+  CHECK(material(w, "warm_oak").conductivity_W_mK == material(w, "oak").conductivity_W_mK);
+  CHECK(material(w, "oak").temperature_degC == 23);
+  CHECK(material(w, "new").youngs_modulus_Pa == Approx(3e9));
+  CHECK(material(w, "new").rayleigh_beta_s == Approx(1e-6));
+}
+
+TEST_CASE("A material that cannot be is refused with its line") {
+  CHECK_THAT(refusal("\n<tactus:material name='x' density='1200'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("lacks"));
+  CHECK_THAT(refusal("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
+  CHECK_THAT(refusal("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
+  CHECK_THAT(refusal("<tactus:material name='steel' density='-1'/>"), Catch::Contains("between 1 and 25000"));
+  CHECK_THAT(refusal("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(refusal("<tactus:material name='steel' densty='7'/>"), Catch::Contains("no attribute \"densty\""));
+  CHECK_THAT(refusal("<model name='m'>\n<tactus:surface material='stel'/><link name='l'/></model>"),
+             Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"stel\"") && Catch::Contains("steel"));
+}
+
+TEST_CASE("A tool is a body after all others, at the first point of its path") {
+  const WorldDef w = load("<tactus:tool name='hand' radius='8mm' mass='120g' material='skin' device='playback:x.csv' loop='true'>"
+                          "<tactus:waypoint time='0s' position='1 2 3'/><tactus:waypoint time='500ms' position='1 2 2'/></tactus:tool>"
+                          "<model name='m'><link name='l'/></model>");
+  REQUIRE(w.bodies.size() == 2);
+  REQUIRE(w.tools.size() == 1);
+  const tool_def_t& t = w.tools[0];
+  CHECK(w.bodies[1].tool == 0);
+  CHECK(w.bodies[0].tool == -1);
+  CHECK(t.body == 1);
+  CHECK(w.bodies[1].pose.translation() == Eigen::Vector3d(1, 2, 3));
+  CHECK(t.radius_m == Approx(0.008));
+  CHECK(t.mass_kg == Approx(0.12));
+  CHECK(w.materials[static_cast<std::size_t>(t.material)].name == "skin");
+  CHECK(t.device == "playback:x.csv");
+  CHECK(t.loop == 1);
+  REQUIRE(t.waypoint_count == 2);
+  CHECK(t.waypoints[1].time_s == 0.5);
+  CHECK(t.waypoints[1].position_m.z == 2);
+}
+
+TEST_CASE("A tool that cannot be is refused with its line") {
+  const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
+  CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
+  CHECK_THAT(refusal("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
+             Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("times must grow"));
+  CHECK_THAT(refusal("<tactus:tool name='h'><tactus:waypoint time='1' position='0 0'/></tactus:tool>"), Catch::Contains("3 finite"));
+  CHECK_THAT(refusal("<tactus:tool name='h'><tactus:waypoint time='1'/></tactus:tool>"), Catch::Contains("position"));
+  CHECK_THAT(refusal("<tactus:tool name='h' radius='2m'>" + point + "</tactus:tool>"), Catch::Contains("radius"));
+  CHECK_THAT(refusal("<tactus:tool name='h' loop='maybe'>" + point + "</tactus:tool>"), Catch::Contains("true or false"));
+  CHECK_THAT(refusal("<tactus:tool name='h' material='air'>" + point + "</tactus:tool>"), Catch::Contains("\"air\""));
+  CHECK_THAT(refusal("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
+}
+
+TEST_CASE("Settings of nodes are passed on as written, after their check") {
+  const WorldDef w = load("<tactus:audio_node presentation_delay='25ms' device='virtual'/>");
+  REQUIRE(w.settings.size() == 2);
+  CHECK(w.settings[0].node == "audio_node");
+  CHECK(w.settings[0].name == "presentation_delay");
+  CHECK(w.settings[0].value == "25ms");
+}
+
+TEST_CASE("A setting that a node does not have, or out of range, is refused with its line") {
+  CHECK_THAT(refusal("\n<tactus:audio_node presentation_dely='25ms'/>"),
+             Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
+  CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
+             Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
+  CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+}
+
+TEST_CASE("A node that is not built here is warned of and passed on: a sixth sense may live elsewhere") {
+  SceneFile file(world("\n<tactus:smell_node strength='3'/>"));
+  const WorldDef w = file.load();
+  REQUIRE(w.settings.size() == 1);
+  CHECK(w.settings[0].node == "smell_node");
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:4: /sdf/world[@name=\"w\"]/tactus:smell_node "));
+}

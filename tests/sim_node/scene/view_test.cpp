@@ -1,0 +1,76 @@
+#include "sim_node/scene/view.h"
+
+#include "scene_file.h"
+
+using namespace tactus::sim;
+using Eigen::Vector3d;
+
+namespace {
+WorldDef load(const std::string& inside) {
+  SceneFile file(world(inside));
+  const WorldDef w = file.load();
+  CHECK(file.warnings.empty());
+  return w;
+}
+const std::string kGui = "<gui><camera name='c'><pose>1 2 3 0 0 1.5707963267948966</pose></camera></gui>";
+const std::string kSensor =
+    "<model name='m'><static>true</static><pose>5 0 0 0 0 0</pose><link name='l'><sensor name='s' type='camera'><pose>0 0 1 0 0 0"
+    "</pose><camera><horizontal_fov>0.75</horizontal_fov><image><width>4</width><height>3</height></image><clip><near>0.1</near>"
+    "<far>9</far></clip></camera></sensor></link></model>";
+}  // namespace
+
+TEST_CASE("The camera is ours, else that of the window, else a sensor's, else one that sees all") {
+  const WorldDef ours = load("<tactus:camera pose='0 0 1 0 0 0' fov='90deg'/>" + kGui);
+  CHECK(ours.camera.translation() == Vector3d(0, 0, 1));
+  CHECK(ours.camera_fov_rad == Approx(EIGEN_PI / 2));
+  const WorldDef window = load(kGui + kSensor);
+  CHECK(window.camera.translation() == Vector3d(1, 2, 3));
+}
+
+TEST_CASE("A camera sensor is the camera where there is no other, and then it is no unsupported sensor") {
+  const WorldDef w = load(kSensor);
+  CHECK((w.camera.translation() - Vector3d(5, 0, 1)).norm() < 1e-9);
+  CHECK(w.camera_fov_rad == 0.75);
+}
+
+TEST_CASE("A camera that nobody placed has every body in view") {
+  const WorldDef w = load("<model name='a'><pose>3 4 0 0 0 0</pose><link name='l'>" + collision("<box><size>1 1 1</size></box>") +
+                          "</link></model><model name='b'><pose>-1 0 2 0 0 0</pose><link name='l'>" +
+                          collision("<sphere><radius>0.5</radius></sphere>") + "</link></model>");
+  const double across = std::tan(w.camera_fov_rad / 2), up = across * 0.75;  // a picture of 4:3
+  for (const BodyDef& b : w.bodies) {
+    const Vector3d p = w.camera.inverse() * b.pose.translation();
+    CHECK(p.x() > 0.5);
+    CHECK(std::abs(p.y()) < across * p.x());
+    CHECK(std::abs(p.z()) < up * p.x());
+  }
+  CHECK(w.camera.linear().determinant() == Approx(1));
+}
+
+TEST_CASE("A camera looks from one point at another, and the listener is there too unless placed") {
+  const WorldDef w = load("<tactus:camera position='-1 0 1' look_at='0 0 0'/>");
+  CHECK((w.camera.linear().col(0) - Vector3d(1, 0, -1).normalized()).norm() < 1e-9);
+  CHECK(w.camera.linear().col(2).z() > 0);
+  CHECK(w.listener.isApprox(w.camera));
+  CHECK(load("<tactus:listener pose='1 1 1 0 0 0'/>").listener.translation() == Vector3d(1, 1, 1));
+}
+
+TEST_CASE("Light from everywhere and background: as given, else SDF's defaults") {
+  CHECK(load("").ambient == Vector3d(0.4, 0.4, 0.4));
+  CHECK(load("").background == Vector3d(0.7, 0.7, 0.7));
+  const WorldDef w = load("<scene><ambient>0.25 0.5 0.75 1</ambient><background>0 0 0 1</background></scene>");
+  CHECK((w.ambient - Vector3d(0.25, 0.5, 0.75)).norm() < 1e-6);
+  CHECK(w.background == Vector3d(0, 0, 0));
+}
+
+TEST_CASE("A camera that cannot be is refused with its line") {
+  const auto refusal = [](const std::string& element) {
+    SceneFile file(world(element));
+    return file.refusal();
+  };
+  CHECK_THAT(refusal("<tactus:camera/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its pose"));
+  CHECK_THAT(refusal("\n<tactus:camera pose='0 0 1 0 0'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("6 finite"));
+  CHECK_THAT(refusal("<tactus:camera pose='0 0 nan 0 0 0'/>"), Catch::Contains("6 finite"));
+  CHECK_THAT(refusal("<tactus:camera pose='0 0 1 0 0 0' fov='200deg'/>"), Catch::Contains("fov"));
+  CHECK_THAT(refusal("<tactus:camera position='0 0 1'/>"), Catch::Contains("look_at"));
+}

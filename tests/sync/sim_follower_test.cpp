@@ -1,0 +1,48 @@
+#include "sync/sim_follower.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+constexpr std::int64_t kMs = 1'000'000;
+
+header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t run = 1) {
+  header_t h{};
+  h.incarnation = incarnation;
+  h.publish_time_ns = publish_ns;
+  h.run_id = run;
+  return h;
+}
+}  // namespace
+
+TEST_CASE("The first simulation heard is followed, a new one replaces it, the old one is ignored") {
+  SimFollower f(1);
+  CHECK_FALSE(f.map(host_time(0)));
+  CHECK(f.follow(header(1, 0), {0, 0, 1}, host_time(0)) == Follow::kRestart);
+  CHECK(f.follow(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == Follow::kSame);
+  CHECK(f.follow(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == Follow::kRestart);
+  CHECK(f.follow(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == Follow::kIgnore);
+  SECTION("until its successor has been silent for 0.3 s") {
+    CHECK(f.follow(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == Follow::kRestart);
+    CHECK(f.incarnation() == 1);
+  }
+}
+
+TEST_CASE("A message that was overtaken does not turn the map back") {
+  SimFollower f(1);
+  f.follow(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
+  f.follow(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
+  CHECK(f.map(host_time(11 * kMs))->sim == sim_time(5 * kMs));
+  CHECK(f.map(host_time(11 * kMs))->rate == 1);
+}
+
+TEST_CASE("A paused or slow world maps by its rate") {
+  TimeMap slow{sim_time(0), host_time(0), 0.5};
+  CHECK(slow.to_host(sim_time(10)) == host_time(20));
+  CHECK(slow.to_sim(host_time(20)) == sim_time(10));
+  TimeMap paused{sim_time(3), host_time(7), 0};
+  CHECK(paused.to_sim(host_time(1000)) == sim_time(3));
+  CHECK(paused.to_host(sim_time(1000)) == host_time(7));
+}

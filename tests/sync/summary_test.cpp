@@ -1,0 +1,245 @@
+#include "sync/summary.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "sync/recorder.h"
+#include "tests/sync/presentation_matcher_fixture.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr std::int64_t kOffsetNs = 1'700'000'000'123'456'000;
+
+// A log of a run as the recorder would have written it; times are ms as in MatcherFixture.
+struct RunLog {
+  std::shared_ptr<MemorySink::State> state = std::make_shared<MemorySink::State>();
+  LogWriter writer{std::make_unique<MemorySink>(state)};
+  std::map<std::string, std::int64_t> seq;
+
+  explicit RunLog(bool with_info = true) {
+    if (!with_info) return;
+    log_info_t info{};
+    info.header = header_of("recorder", 1, 0, MatcherFixture::kBase);
+    info.scene = "room.sdf";
+    info.git = "abc";
+    info.seed = 42;
+    info.seconds = 10;
+    info.realtime_offset_ns = kOffsetNs;
+    info.live_from_ns = MatcherFixture::kBase;
+    write(channels::kLogInfo, info, -1);
+  }
+  template <class Message>
+  void write(const char* channel, const Message& m, double ms) {
+    writer.write((to_ns(MatcherFixture::at(ms)) + kOffsetNs) / 1000, channel, encode(m));
+    writer.flush();
+  }
+  template <class Message>
+  void send(const char* channel, Message m, double ms) {
+    m.header.seq = seq[channel + std::to_string(m.header.source)]++;
+    write(channel, m, ms);
+  }
+  void health(const std::string& node, const std::string& modality, double ms, double rate_Hz,
+              std::int64_t incarnation = 1, std::int8_t state_ = node_health_t::RUNNING, std::int64_t missed = 0) {
+    node_health_t m = MatcherFixture::health_message(node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms,
+                                                     incarnation, state_);
+    m.nominal_rate_Hz = rate_Hz;
+    m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
+    m.missed_ticks = missed;
+    m.note = "SCHED_FIFO 60, memory locked";
+    Histogram h;
+    h.add(Nanoseconds(static_cast<std::int64_t>(incarnation) * 100'000));
+    m.tick = m.wake = h.to_message();
+    send(channels::kNodeHealth, m, ms);
+  }
+  RunSummary summary(SummaryOptions options = {}) const {
+    RunSummary s(std::move(options));
+    LogScanner scanner(state->bytes);
+    for (LogEvent e; scanner.next(e);) s.add(e);
+    s.end_of_log(scanner.damaged_regions());
+    return s;
+  }
+};
+
+void ordinary_run(RunLog& log) {
+  for (int ms = 0; ms <= 10000; ms += 20) {
+    if (ms % 100 == 0) {
+      log.health("audio_node", "audio", ms, 750);
+      log.health("visual_node", "visual", ms, 60);
+    }
+    world_state_t world{};
+    world.header = header_of("sim_node", 100, 0, to_ns(MatcherFixture::at(ms)));
+    world.header.sim_time_ns = std::int64_t{ms} * 990'000;  // one per cent slow
+    world.pages = 1;
+    log.send(channels::kWorldState, world, ms);
+    if (ms < 1000 || ms > 9000 || ms % 100 != 20) continue;
+    const int id = ms;
+    log.send(channels::kContactEvents, MatcherFixture::event_message(id, ms - 1, contact_event_t::HIT, 100), ms);
+    log.send(channels::kPresented, MatcherFixture::presented_message("audio_node", "audio", id, ms + 19), ms + 1);
+    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", id, ms + 12), ms + 2);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("The summary of a run holds what the contract promises") {
+  RunLog log;
+  ordinary_run(log);
+  const RunSummary s = log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}});
+  CHECK(s.failure().empty());
+  const Json j = Json::parse(to_json(s));
+  CHECK(j["scene"] == "room.sdf");
+  CHECK(j["seconds"] == 10);
+  CHECK(j["seed"] == 42);
+  CHECK(j["git"] == "abc");
+  CHECK(j["realtime_factor"] == Approx(0.99));
+  CHECK(j["nodes"]["audio_node"]["rate_hz"].get<double>() == Approx(750));
+  CHECK(j["nodes"]["audio_node"]["ticks"] == 7500);
+  CHECK(j["nodes"]["audio_node"]["restarts"] == 0);
+  CHECK(j["nodes"]["audio_node"]["scheduling"] == "SCHED_FIFO 60, memory locked");
+  for (const char* q : {"p50", "p99", "p999", "max"}) {
+    CHECK(j["nodes"]["audio_node"]["tick_us"].contains(q));
+    CHECK(j["nodes"]["audio_node"]["wake_us"].contains(q));
+  }
+  CHECK(j["contacts"]["hit"] == 80);
+  CHECK(j["contacts"]["begin"] == 0);
+  CHECK(j["contacts"]["end"] == 0);
+  CHECK(j["contacts"]["presented"] == Json({{"haptic", 0}, {"audio", 80}, {"visual", 80}, {"thermal", 0}}));
+  for (const char* outcome : {"lost", "stalled", "dropped_by_profile"}) CHECK(j["contacts"][outcome] == 0);
+  CHECK(j["asynchrony_ms"]["audio_visual"]["n"] == 80);
+  CHECK(j["asynchrony_ms"]["audio_visual"]["p50"].get<double>() == Approx(-7).margin(0.1));
+  CHECK(j["asynchrony_ms"]["haptic_audio"] == Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}}));
+  CHECK(j["asynchrony_ms"].contains("haptic_visual"));
+  CHECK(j["bus"]["WORLD_STATE"]["messages"] == 501);
+  CHECK(j["bus"]["WORLD_STATE"]["gaps"] == 0);
+  CHECK_FALSE(j["bus"].contains("LOG_INFO"));  // did not cross the bus
+  CHECK_THAT(to_text(s), Catch::Contains("audio to visual"));
+}
+
+TEST_CASE("What the caller knows better replaces what the log says") {
+  RunLog log;
+  ordinary_run(log);
+  const RunSummary s = log.summary(
+      {.scene = "other.sdf", .git = "def", .seconds = 20, .seed = 1, .nodes = {}, .restarts = {{"audio_node", 4}}});
+  const Json j = Json::parse(to_json(s));
+  CHECK(j["scene"] == "other.sdf");
+  CHECK(j["git"] == "def");
+  CHECK(j["seconds"] == 20);
+  CHECK(j["seed"] == 1);
+  CHECK(j["nodes"]["audio_node"]["restarts"] == 4);
+}
+
+TEST_CASE("Incarnations of a node are added up") {
+  RunLog log;
+  for (int ms = 0; ms <= 4000; ms += 100) log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
+  for (int ms = 4200; ms <= 5000; ms += 100) log.health("audio_node", "audio", ms, 100, 2, node_health_t::WAITING);
+  for (int ms = 5100; ms <= 9000; ms += 100) log.health("audio_node", "audio", ms, 1000, 2, node_health_t::RUNNING, 7);
+  const auto nodes = log.summary().nodes();
+  const NodeSummary& n = nodes.at("audio_node");
+  CHECK(n.restarts == 1);
+  CHECK(n.missed_ticks == 12);
+  CHECK(n.rate_Hz == Approx(1000));  // the waiting, at another rate, is not counted
+  CHECK(n.tick.count() == 2);
+  CHECK(n.tick.max() == Nanoseconds(200'000));
+  CHECK(n.alive_at_end);
+}
+
+TEST_CASE("A run with a loss, or without a node that must be there, is a failure that is named") {
+  RunLog log;
+  ordinary_run(log);
+  log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8100, contact_event_t::HIT, 100), 10001);
+  for (int ms = 10100; ms < 14000; ms += 100) log.health("visual_node", "visual", ms, 60);
+  const SummaryOptions options{.scene = {}, .git = {}, .seconds = {}, .seed = {},
+                               .nodes = {"audio_node", "visual_node", "haptic_node"}, .restarts = {}};
+  const std::string why = log.summary(options).failure();
+  CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
+  CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));
+  CHECK_THAT(why, Catch::Contains("visual lost 1 of 81 owed contact events"));
+  CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 owed contact events"));
+}
+
+TEST_CASE("Missing messages are counted as gaps, and bytes that are no message as bad") {
+  RunLog log;
+  for (int ms = 0; ms <= 1000; ms += 100) {
+    if (ms == 500) log.seq["NODE_HEALTH" + std::to_string(static_cast<std::int32_t>(fnv1a_32("a")))] += 3;
+    log.health("a", "", ms, 10);
+  }
+  log.writer.write((to_ns(MatcherFixture::at(1001)) + kOffsetNs) / 1000, channels::kNodeHealth,
+                   std::vector<std::uint8_t>(20, 1));
+  log.writer.flush();
+  const auto bus = log.summary().channels();
+  CHECK(bus.at("NODE_HEALTH").gaps == 3);
+  CHECK(bus.at("NODE_HEALTH").bad == 1);
+  CHECK(bus.at("NODE_HEALTH").messages == 12);
+}
+
+TEST_CASE("A damaged log is summarised as far as it is intact") {
+  RunLog log;
+  ordinary_run(log);
+  auto& bytes = log.state->bytes;
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2),
+            bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2 + 300), std::uint8_t{0xff});
+  const RunSummary s = log.summary();
+  CHECK(s.damaged_regions() >= 1);
+  CHECK(s.matcher().hits() >= 79);
+  CHECK(s.nodes().at("visual_node").alive_at_end);
+
+  SECTION("and one damaged time stamp does not end the world") {
+    LogScanner scanner(log.state->bytes);
+    RunSummary jumped({});
+    int n = 0;
+    for (LogEvent e; scanner.next(e);) {
+      if (++n == 700) e.timestamp_us += 1'000'000'000'000;
+      jumped.add(e);
+    }
+    jumped.end_of_log(1);
+    CHECK(jumped.failure() == s.failure());
+    CHECK(jumped.recorded_seconds() == Approx(10.0));
+  }
+}
+
+TEST_CASE("An empty log, and one without its head, can be summarised") {
+  RunSummary empty({});
+  empty.end_of_log(0);
+  CHECK(Json::parse(to_json(empty))["seconds"] == 0);
+  CHECK(empty.failure().empty());
+
+  RunLog log(false);
+  ordinary_run(log);
+  const RunSummary s = log.summary();
+  CHECK(s.failure().empty());
+  CHECK(s.matcher().modalities().at("audio").presented == 80);
+  CHECK(s.seconds() == Approx(10.0));
+}
+
+TEST_CASE("The logs of a restarted recorder make one run") {
+  RunLog whole;
+  ordinary_run(whole);
+  RunSummary s({});
+  for (int i = 0; i < 2; ++i) {
+    LogScanner scanner(whole.state->bytes);
+    for (LogEvent e; scanner.next(e);) s.add(e);
+    s.end_of_log(0);
+  }
+  // The same events again, within a run: nothing is owed twice.
+  CHECK(s.matcher().hits() <= 160);
+  CHECK(s.failure().empty());
+  CHECK(s.recorded_seconds() == Approx(20.0));
+}
+
+TEST_CASE("The head of another log that crossed the bus in a replay does not change the time") {
+  RunLog log;
+  log_info_t other{};
+  other.header = header_of("recorder", 99, 0, 5, 3);
+  other.scene = "other.sdf";
+  other.realtime_offset_ns = 1;
+  other.live_from_ns = std::numeric_limits<std::int64_t>::max();
+  log.write(channels::kLogInfo, other, 0);
+  ordinary_run(log);
+  const RunSummary s = log.summary();
+  CHECK(s.scene() == "room.sdf");
+  CHECK(s.matcher().hits() == 80);
+}

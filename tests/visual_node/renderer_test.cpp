@@ -1,0 +1,189 @@
+#include "visual_node/gl/renderer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "test_scene.h"
+#include "visual_node/egl/display.h"
+#include "visual_node/frame/marker.h"
+#include "visual_node/scene_view/scene_view.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+
+// IEC 61966-2-1.
+double srgb(double linear) {
+  linear = std::clamp(linear, 0.0, 1.0);
+  return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
+}
+
+Display& display() {
+  static const auto context = [] {
+    quiet_software_renderer();
+    return make_headless(-1);
+  }();
+  return *context;
+}
+
+struct Image {
+  std::vector<std::uint8_t> rgba = std::vector<std::uint8_t>(kWidth * kHeight * 4);
+  // x from the left, y from the top.
+  Eigen::Vector3d at(int x, int y) const {
+    const auto i = static_cast<std::size_t>(((kHeight - 1 - y) * kWidth + x) * 4);
+    return {static_cast<double>(rgba[i]), static_cast<double>(rgba[i + 1]), static_cast<double>(rgba[i + 2])};
+  }
+};
+
+Image render(const scene_t& scene, const Settings& settings = {}, std::vector<Rect> overlay = {}) {
+  display();
+  const SceneView view(scene, {}, settings);
+  Renderer renderer(kWidth, kHeight, settings.shadow_size);
+  renderer.load(view.geometries(), view.lighting());
+  std::vector<Eigen::Isometry3d> poses;
+  for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
+  DrawList list = view.draw(poses, {});
+  list.overlay = std::move(overlay);
+  renderer.draw(list);
+  renderer.wait();
+  Image image;
+  renderer.picture().read(image.rgba);
+  return image;
+}
+
+// A floor of 10 m at z = 0 seen straight from above, the middle of the picture at the origin; picture up is +x.
+scene_t floor_from_above(double height_m) {
+  scene_t scene = test::empty_scene();
+  test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::PLANE, {10, 10, 0});
+  scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, height_m) *
+                                           Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitY())));
+  return scene;
+}
+
+// Pixels per metre on that floor.
+double scale_px(double height_m) { return kWidth / 2 / std::tan(0.5) / height_m; }
+
+// 8 bits, and what the device's own encoding as sRGB errs.
+constexpr double kTolerance = 2;
+
+}  // namespace
+
+TEST_CASE("The middle of a lit sphere has the colour that the formula gives") {
+  scene_t scene = test::empty_scene();
+  test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::SPHERE, {0.5, 0, 0});
+  visual_def_t& v = scene.visuals[0];
+  v.diffuse = to_vec3f({0.6, 0.3, 0.1});
+  v.specular = test::grey(0.2f);
+  v.ambient = test::grey(0.5f);
+  v.emissive = to_vec3f({0, 0, 0.05});
+  scene.ambient = test::grey(0.1f);
+  light_def_t lamp = test::spot({0, 0, 1.5}, 1, 1);
+  lamp.kind = light_def_t::POINT;
+  lamp.specular = test::grey(1);
+  lamp.attenuation_quadratic = 0.2f;
+  lamp.casts_shadow = 0;
+  scene.lights = {lamp};
+  const Eigen::Vector3d colour = render(scene).at(kWidth / 2, kHeight / 2);
+
+  // The surface point nearest to the eye is (1.5, 0, 0), its normal (-1, 0, 0), which is also the way to the eye.
+  const Eigen::Vector3d to(-1.5, 0, 1.5);
+  const double d = to.norm(), cosine = 1.5 / d, strength = 1 / (1 + 0.2 * d * d);
+  const double t = cosine;  // of the reflected ray to the eye: 2 (n l) (n v) - l v with v = n
+  const double lobe = t / (16 - 16 * t + t);
+  for (int c = 0; c < 3; ++c) {
+    const double diffuse = std::array{0.6, 0.3, 0.1}[static_cast<std::size_t>(c)], emissive = c == 2 ? 0.05 : 0;
+    const double linear = emissive + 0.5 * 0.1 * 0.75 + strength * (diffuse * cosine + 0.2 * lobe);
+    CHECK(colour[c] == Approx(srgb(linear)).margin(kTolerance));
+  }
+}
+
+TEST_CASE("A spot lights its cone and nothing else") {
+  scene_t scene = floor_from_above(4);
+  scene.lights = {test::spot({0, 0, 2}, 0.6, 0.8)};
+  const Image image = render(scene);
+  const auto at = [&](double angle_rad) {
+    return image.at(kWidth / 2 + static_cast<int>(2 * std::tan(angle_rad) * scale_px(4)), kHeight / 2).x();
+  };
+  CHECK(at(0) == Approx(srgb(0.5)).margin(kTolerance));
+  CHECK(at(0.2) == Approx(srgb(0.5 * std::cos(0.2))).margin(kTolerance));
+  CHECK(at(0.45) == 0);
+  CHECK(at(0.6) == 0);
+}
+
+TEST_CASE("Lamps of every kind and number are drawn") {
+  scene_t scene = floor_from_above(4);
+  light_def_t sun = test::spot({0, 0, 2}, 1, 1);
+  sun.kind = light_def_t::DIRECTIONAL;
+  sun.diffuse = test::grey(0.1f);
+  light_def_t soft = test::spot({0, 0, 2}, 0.2, 1.2);
+  soft.falloff = 2;
+  soft.diffuse = test::grey(0.2f);
+  light_def_t near = test::spot({0, 0, 2}, 1, 1);
+  near.kind = light_def_t::POINT;
+  near.range_m = 1;  // does not reach the floor
+  scene.lights = {sun, soft, near, sun, sun};
+  const Image image = render(scene);
+  CHECK(image.at(kWidth / 2, kHeight / 2).x() == Approx(srgb(0.5 * (0.3 + 0.2))).margin(kTolerance));
+  const double angle = 0.4, inside = (std::cos(angle) - std::cos(0.6)) / (std::cos(0.1) - std::cos(0.6));
+  const double linear = 0.5 * (0.3 + 0.2 * inside * inside * std::cos(angle));
+  const int x = kWidth / 2 + static_cast<int>(std::lround(2 * std::tan(angle) * scale_px(4)));
+  CHECK(image.at(x, kHeight / 2).x() == Approx(srgb(linear)).margin(kTolerance));
+}
+
+TEST_CASE("A ball under a spot casts a shadow where the ray through its edge says") {
+  scene_t scene = floor_from_above(6);
+  test::add_visual(scene, test::add_body(scene, {0.3, 0, 1}), shape_def_t::SPHERE, {0.2, 0, 0});
+  scene.lights = {test::spot({-1, 0, 3}, 1.2, 1.4)};
+  scene.lights[0].direction = to_vec3(Eigen::Vector3d(0.5, 0, -1).normalized());
+  const auto floor_at = [&](const Image& image, double x) {  // picture up is +x
+    return image.at(kWidth / 2, kHeight / 2 - static_cast<int>(std::lround(x * scale_px(6)))).x();
+  };
+  // The ray from the lamp through the ball's centre meets the floor at -1 + 1.3 * 3 / 2 = 0.95.
+  const Image with = render(scene);
+  CHECK(floor_at(with, 0.95) == 0);
+  CHECK(floor_at(with, 0.95 + 0.6) > 20);
+  CHECK(floor_at(with, -0.3) > 20);
+  SECTION("and none when shadows are switched off") {
+    Settings settings;
+    settings.shadows = false;
+    CHECK(floor_at(render(scene, settings), 0.95) > 20);
+  }
+}
+
+TEST_CASE("A lit floor does not shadow itself") {
+  scene_t scene = floor_from_above(4);
+  test::add_visual(scene, 0, shape_def_t::BOX, {6, 6, 0.1});  // a box casts, a plane does not
+  scene.lights = {test::spot({0, 0, 2}, 1.4, 1.5)};
+  const Image image = render(scene);
+  for (int x = kWidth / 2 - 100; x < kWidth / 2 + 100; ++x)
+    for (const int y : {200, 240, 280}) CHECK(image.at(x, y).x() > 150);
+}
+
+TEST_CASE("The marker in a drawn picture is read back from it") {
+  std::vector<Rect> overlay;
+  const std::vector<std::int64_t> events{0x123456789abcdef0, 17};
+  append_marker(overlay, 4711, events, kHeight);
+  const Image image = render(test::empty_scene(), {}, overlay);
+  std::vector<std::uint8_t> luma;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) luma.push_back(static_cast<std::uint8_t>(image.at(x, y).y()));
+  const auto first = read_marker(luma, kWidth, kHeight, 0), second = read_marker(luma, kWidth, kHeight, 1);
+  REQUIRE(first);
+  REQUIRE(second);
+  CHECK(first->frame == 4711);
+  CHECK(first->event == 0x9abcdef0);
+  CHECK(second->event == 17);
+}
+
+TEST_CASE("A shader that does not compile is named with file and line") {
+  display();
+  const std::string good = "#version 330 core\nvoid main() { gl_Position = vec4(0); }\n";
+  const std::string bad = "#version 330 core\nout vec4 colour;\nvoid main() {\n  colour = nothing;\n}\n";
+  CHECK_THROWS_WITH(Program("a.vert", good, "b.frag", bad), Catch::Contains("b.frag:4"));
+  CHECK_THROWS_WITH(Program("a.vert", good, "b.frag", bad, "#define X 1\n#define Y 2\n"),
+                    Catch::Contains("b.frag:4"));
+  CHECK_THROWS_WITH(Program("nowhere"), Catch::Contains("nowhere.vert"));
+}
