@@ -141,8 +141,8 @@ bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() 
 bool valid(const node_health_t& m) {
   return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
          between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) && sane_not_negative(m.nominal_rate_Hz) &&
-         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && sane(m.tick) && sane(m.wake) &&
-         m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
+         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) &&
+         sane(m.wake) && m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
 }
 bool valid(const log_info_t& m) {
   return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0;

@@ -120,6 +120,7 @@ void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_H
 
 void Node::end_tick(HostTime now) {
   tick_.add(now - tick_begin_);
+  if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
   if (is_realtime() && guard_.tick(tick_begin_, now)) {
     leave_realtime();
     scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
@@ -176,7 +177,8 @@ node_health_t Node::health_message(HostTime now) {
 }
 
 void Node::report(HostTime now) {
-  next_report_ = std::max(next_report_ + kReportPeriod, now);
+  next_report_ += kReportPeriod;
+  if (next_report_ <= now) next_report_ = now + kReportPeriod;  // after a stall one report, not two in a row
   if (!overridden_) {
     health_.ticks = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
     health_.missed_ticks = loop_.deadlines().missed();

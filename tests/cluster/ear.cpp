@@ -41,7 +41,6 @@ void Ear::take_in() {
     if (!ours(m->message.header)) continue;
     Heard& heard = heard_[m->message.node];
     if (heard.health.header.incarnation != m->message.header.incarnation) ++heard.incarnations;
-    ++heard.reports[m->message.state];
     heard.health = std::move(m->message);
     heard.arrival = m->arrival;
   }
@@ -100,12 +99,6 @@ std::int64_t Ear::bad(const std::string& node) const {
   if (const auto it = heard_.find(node); it != heard_.end())
     for (const input_health_t& in : it->second.health.inputs) sum += in.bad;
   return sum;
-}
-
-std::int64_t Ear::reports(const std::string& node, std::int8_t state) const {
-  const auto it = heard_.find(node);
-  if (it == heard_.end() || !it->second.reports.contains(state)) return 0;
-  return it->second.reports.at(state);
 }
 
 std::int64_t Ear::rejoined(const std::string& node) const {

@@ -32,8 +32,6 @@ class Ear {
   std::int64_t rendered(const std::string& node) const;
   // Rejected messages, over all inputs of a node.
   std::int64_t bad(const std::string& node) const;
-  // Health reports that a node sent in a state so far, ten a second.
-  std::int64_t reports(const std::string& node, std::int8_t state) const;
   // Times that a node was heard with another incarnation than before.
   std::int64_t rejoined(const std::string& node) const;
 
@@ -54,7 +52,6 @@ class Ear {
     node_health_t health;
     sync::HostTime arrival;
     std::int64_t incarnations = 0;
-    std::map<std::int8_t, std::int64_t> reports;  // by state
   };
   struct Snapshot {
     std::int64_t incarnation = 0, sim_time_ns = -1;

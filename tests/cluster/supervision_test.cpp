@@ -11,14 +11,16 @@ namespace {
 
 constexpr double kPatience_s = 60;
 
-// The run that writes to `out`, once it has a recorder; 0: it never came.
-std::int64_t run_id_of(const std::filesystem::path& out) {
+// The id of the run that was started, once it has a recorder. Ends the test, with what the run said, when it never comes.
+std::int64_t run_id_of(RunScript& run) {
   for (int i = 0; i < 1200; ++i) {
-    const std::string address = contents(out / "cluster/address");
+    const std::string address = contents(run.out() / "cluster/address");
     const std::size_t at = address.find("run_id=");
-    if (at != std::string::npos && std::filesystem::exists(out / "run.lcmlog")) return std::stoll(address.substr(at + 7));
+    if (at != std::string::npos && std::filesystem::exists(run.out() / "run.lcmlog")) return std::stoll(address.substr(at + 7));
+    if (!run.processes.running("run")) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
+  FAIL("the run does not come up (status " << run.finish(0) << "): " << run.processes.said("run"));
   return 0;
 }
 
@@ -28,22 +30,21 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
   RunScript run;
   // The network of this test, so that it can listen.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
-  const std::int64_t run_id = run_id_of(run.out());
-  INFO(run.processes.said("run"));
-  REQUIRE(run_id > 0);
-  Ear ear(run_id);
+  Ear ear(run_id_of(run));
   const auto all_live = [&] {
     return std::all_of(kNodes.begin(), kNodes.end(), [&](const auto& n) { return ear.in_state(n, node_health_t::RUNNING); });
   };
-  REQUIRE(ear.wait_until(all_live, kPatience_s));
+  const bool alive = ear.wait_until(all_live, kPatience_s);
+  INFO(run.processes.said("run"));
+  REQUIRE(alive);
 
   std::vector<std::string> nodes = kNodes;
   nodes.insert(nodes.end(), {"sync_node", "recorder"});
   for (const std::string& node : nodes) {
     INFO(node);
     run.output_of({"sv", "kill", run.out() / "cluster/services" / node});
-    CHECK(ear.wait_until([&] { return ear.rejoined(node) == 1; }, kPatience_s));
-    CHECK(ear.wait_until(all_live, kPatience_s));
+    REQUIRE(ear.wait_until([&] { return ear.rejoined(node) == 1; }, kPatience_s));
+    REQUIRE(ear.wait_until(all_live, kPatience_s));
   }
   const std::int64_t hits = ear.hits();
   CHECK(ear.wait_until([&] { return ear.hits() > hits; }, kPatience_s));
@@ -64,9 +65,7 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
 TEST_CASE("A node that keeps dying is left lost and named, and the others go on") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
-  const std::int64_t run_id = run_id_of(run.out());
-  REQUIRE(run_id > 0);
-  Ear ear(run_id);
+  Ear ear(run_id_of(run));
   REQUIRE(ear.wait_until([&] { return ear.in_state("thermal_node", node_health_t::RUNNING); }, kPatience_s));
   const std::filesystem::path service = run.out() / "cluster/services/thermal_node";
   for (int i = 0; i < 200 && !std::filesystem::exists(service / "lost"); ++i) {
@@ -84,7 +83,7 @@ TEST_CASE("A node that keeps dying is left lost and named, and the others go on"
 TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out", run.out()});
-  REQUIRE(run_id_of(run.out()) > 0);
+  run_id_of(run);
   const std::string attach = repository() / "scripts/attach";
   // Its own network: the logger there hears the cluster, and here nobody does.
   const std::string log = run.folder.path() / "heard.lcmlog";

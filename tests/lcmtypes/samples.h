@@ -159,6 +159,7 @@ class Samples {
     m.owes = whole(0, 7), m.tool = whole(-1, 3), m.state = static_cast<std::int8_t>(whole(0, 4));
     m.nominal_rate_Hz = real(0, 1000), m.rate_Hz = real(0, 1000), m.ticks = whole(0, 99),
     m.missed_ticks = whole(0, 99);
+    m.stale_ticks = whole(0, 99);
     fill(m.tick), fill(m.wake);
     m.contacts_rendered = whole(0, 99), m.realtime_factor = real(0, 1), m.kernel_drops = whole(-1, 9);
     fill_list(m.input_count, m.inputs, 0, 6);
