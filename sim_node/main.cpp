@@ -62,6 +62,11 @@ int main(int argc, char** argv) try {
   auto& healths = node.bus().queue<node_health_t>(channels::kNodeHealth, 256);
   std::set<std::int64_t> known;
   std::vector<tool_state_t> news;
+
+  // A fixed time: it is nobody in particular that is given it, and nobody is waited for.
+  node.set_state(node_health_t::WAITING, "offers the scene; its time has not begun");
+  const sync::HostTime begin = sync::host_now() + sync::from_seconds(settings.scene_grace_s);
+  for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) scene_sender.poll(now);
   node.set_state(node_health_t::RUNNING);
 
   while (node.running()) {

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-CELL, CELLS, ROWS = 4, 68, 4
+CELL, CELLS, ROWS = 4, 68, 12
 
 
 def _crc8(data):
@@ -44,7 +44,7 @@ def frame_number(frame):
 
 
 def decode_frame(frame):
-    """Low 32 bits of the ids of the events that flash in this frame, newest first, at most 4."""
+    """Low 32 bits of the ids of the events that flash in this frame, newest first, at most 12."""
     rows = (decode_row(frame, row) for row in range(ROWS))
     first = next(rows)
     if first is None:

@@ -26,7 +26,7 @@ TEST_CASE("A marker is read back from the picture, also when compression has dis
   for (int trial = 0; trial < 300; ++trial) {
     const auto frame = static_cast<std::uint32_t>(random() & 0xffffff);
     std::vector<std::int64_t> events;
-    for (unsigned i = random() % 6; i > 0; --i)
+    for (unsigned i = random() % 15; i > 0; --i)
       events.push_back(static_cast<std::int64_t>(random()) << 32 | random());
     std::vector<Rect> overlay;
     append_marker(overlay, frame, events, 480);

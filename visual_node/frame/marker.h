@@ -19,7 +19,7 @@ namespace tactus::visual {
 
 inline constexpr int kMarkerCell_px = 4;
 inline constexpr int kMarkerCells = 4 + 24 + 32 + 8;
-inline constexpr int kMarkerRows = 4;
+inline constexpr int kMarkerRows = 12;
 
 struct Marker {
   std::uint32_t frame = 0;  // modulo 2^24
