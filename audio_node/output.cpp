@@ -6,6 +6,9 @@
 namespace tactus::audio {
 namespace {
 
+// A card that has not started by then is said not to; USB cards take about a second.
+constexpr sync::Nanoseconds kPatience{5'000'000'000};
+
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
@@ -18,7 +21,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority)
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
-      crossing_(std::make_unique<Crossing>()) {}
+      crossing_(std::make_shared<Crossing>()) {}
 
 void Output::configure(Settings settings) {
   if (!device_.empty()) settings.device = device_;
@@ -33,26 +36,49 @@ bool Output::keep_open(sync::HostTime now) {
     trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
     close();
   }
-  if (now < retry_at_) return false;
+  if (opening_)
+    end_opening(now);
+  else if (now >= retry_at_)
+    begin_to_open(now);
+  return stream_ != nullptr;
+}
+
+void Output::begin_to_open(sync::HostTime now) {
+  opening_since_ = now;
+  opened_with_ = settings_;
+  renderer_ = std::make_shared<Renderer>(*crossing_, settings_.sample_rate_Hz, settings_.limiter_ceiling,
+                                         sync::from_seconds(settings_.late_limit_s));
+  const StreamOptions options{settings_.device,
+                              static_cast<int>(settings_.sample_rate_Hz),
+                              settings_.period_frames,
+                              settings_.latency_periods,
+                              folder_,
+                              fifo_priority_};
+  opening_.emplace([options, crossing = crossing_, renderer = renderer_] {
+    return std::make_unique<Stream>(options, [crossing, renderer](float* out, int frames, const BlockTime& time) {
+      renderer->render(out, frames, time);
+    });
+  });
+}
+
+void Output::end_opening(sync::HostTime now) {
+  if (!opening_->done()) {
+    if (now - opening_since_ > kPatience)
+      trouble_ = "the sound card \"" + opened_with_.device +
+                 "\" does not start; choose another --audio-device or \"virtual\"";
+    return;
+  }
   try {
-    renderer_ = std::make_unique<Renderer>(*crossing_, settings_.sample_rate_Hz, settings_.limiter_ceiling,
-                                           sync::from_seconds(settings_.late_limit_s));
-    const StreamOptions options{settings_.device,
-                                static_cast<int>(settings_.sample_rate_Hz),
-                                settings_.period_frames,
-                                settings_.latency_periods,
-                                folder_,
-                                fifo_priority_};
-    stream_ = std::make_unique<Stream>(
-        options,
-        [r = renderer_.get()](float* out, int frames, const BlockTime& time) { r->render(out, frames, time); });
+    stream_ = opening_->take();
     medium_ = stream_->medium();
     trouble_.clear();
+    // The scene may have chosen another card meanwhile.
+    if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
     trouble_ = e.what();
     retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
   }
-  return stream_ != nullptr;
+  opening_.reset();
 }
 
 void Output::close() {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "audio_node/device/stream.h"
+#include "audio_node/opening.h"
 #include "audio_node/settings.gen.h"
 
 namespace tactus::audio {
@@ -17,8 +18,8 @@ class Output {
   // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the
   // limits.
   void configure(Settings settings);
-  // Once a tick: opens the stream when there is none and it is time, closes it when it is dead. True when it
-  // plays.
+  // Once a tick: opens the stream, in a thread of its own, when there is none and it is time; closes it when it is
+  // dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
   // False when nothing plays or the queue is full; then the strike will never sound.
@@ -38,17 +39,20 @@ class Output {
   const Settings& settings() const { return settings_; }
 
  private:
+  void begin_to_open(sync::HostTime now);
+  void end_opening(sync::HostTime now);
   void close();
 
   std::string folder_, device_;
   int fifo_priority_;
-  Settings settings_;
+  Settings settings_, opened_with_;
   std::string trouble_, medium_, told_;
-  sync::HostTime retry_at_{};
+  sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
-  // In this order: the stream's callback uses the renderer, the renderer the queues.
-  std::unique_ptr<Crossing> crossing_;
-  std::unique_ptr<Renderer> renderer_;
+  // The stream's callback owns its share of both.
+  std::shared_ptr<Crossing> crossing_;
+  std::shared_ptr<Renderer> renderer_;
+  std::optional<Opening<Stream>> opening_;
   std::unique_ptr<Stream> stream_;
 };
 

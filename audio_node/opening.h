@@ -1,0 +1,46 @@
+// Makes something in a thread of its own, because making it may block for ever: PortAudio 19.6 waits without limit
+// for the first callback of a card that opens but does not start. Whoever waits for it asks; nobody is held.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+
+namespace tactus::audio {
+
+template <class T>
+class Opening {
+ public:
+  // make runs in the new thread and owns all that it uses: it may outlive this object.
+  explicit Opening(std::function<std::unique_ptr<T>()> make) : state_(std::make_shared<State>()) {
+    std::thread([state = state_, make = std::move(make)] {
+      try {
+        state->made = make();
+      } catch (...) {
+        state->error = std::current_exception();
+      }
+      state->done.store(true, std::memory_order_release);
+    }).detach();
+  }
+
+  // True once it has ended, in one way or the other.
+  bool done() const { return state_->done.load(std::memory_order_acquire); }
+  // What was made; rethrows what make threw. Only when done, once.
+  std::unique_ptr<T> take() {
+    if (state_->error) std::rethrow_exception(state_->error);
+    return std::move(state_->made);
+  }
+
+ private:
+  struct State {
+    std::atomic<bool> done{false};
+    std::unique_ptr<T> made;
+    std::exception_ptr error;
+  };
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace tactus::audio
