@@ -48,6 +48,20 @@ void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& li
   glUniformBlockBinding(surface_->id(), glGetUniformBlockIndex(surface_->id(), "Lights"), 0);
   geometries_.clear();
   for (const Triangles& t : geometries) geometries_.push_back(std::make_unique<GeometryBuffer>(t));
+  warm_up(lighting);
+}
+
+// Drivers compile a program when it first draws: a software renderer took 0.2 s for the first flash.
+void Renderer::warm_up(const Lighting& lighting) {
+  DrawList list;
+  list.lighting = lighting;
+  list.instances.resize(1);
+  list.opaque = list.translucent = {{.geometry = 0, .first = 0, .count = 1}};
+  list.glows.push_back(
+      {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
+  list.overlay.emplace_back();
+  draw(list);
+  wait();
 }
 
 void Renderer::draw(const DrawList& list) {
