@@ -11,12 +11,14 @@ namespace {
 
 constexpr double kPatience_s = 60;
 
-// The id of the run that was started, once it has a recorder. Ends the test, with what the run said, when it never comes.
+// The id of the run that was started, once it has a recorder. Ends the test, with what the run said, when it never
+// comes.
 std::int64_t run_id_of(RunScript& run) {
   for (int i = 0; i < 1200; ++i) {
     const std::string address = contents(run.out() / "cluster/address");
     const std::size_t at = address.find("run_id=");
-    if (at != std::string::npos && std::filesystem::exists(run.out() / "run.lcmlog")) return std::stoll(address.substr(at + 7));
+    if (at != std::string::npos && std::filesystem::exists(run.out() / "run.lcmlog"))
+      return std::stoll(address.substr(at + 7));
     if (!run.processes.running("run")) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -32,7 +34,8 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
   Ear ear(run_id_of(run));
   const auto all_live = [&] {
-    return std::all_of(kNodes.begin(), kNodes.end(), [&](const auto& n) { return ear.in_state(n, node_health_t::RUNNING); });
+    return std::all_of(kNodes.begin(), kNodes.end(),
+                       [&](const auto& n) { return ear.in_state(n, node_health_t::RUNNING); });
   };
   const bool alive = ear.wait_until(all_live, kPatience_s);
   INFO(run.processes.said("run"));
@@ -64,7 +67,8 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
 
 TEST_CASE("A node that keeps dying is left lost and named, and the others go on") {
   RunScript run;
-  run.start({tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
+  run.start(
+      {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
   Ear ear(run_id_of(run));
   REQUIRE(ear.wait_until([&] { return ear.in_state("thermal_node", node_health_t::RUNNING); }, kPatience_s));
   const std::filesystem::path service = run.out() / "cluster/services/thermal_node";
@@ -82,7 +86,8 @@ TEST_CASE("A node that keeps dying is left lost and named, and the others go on"
 
 TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
   RunScript run;
-  run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out", run.out()});
+  run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out",
+             run.out()});
   run_id_of(run);
   const std::string attach = repository() / "scripts/attach";
   // Its own network: the logger there hears the cluster, and here nobody does.
@@ -93,6 +98,10 @@ TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
   CHECK(processes.find("sim_node") != std::string::npos);
   CHECK(processes.find("cluster_test") == std::string::npos);
   run.output_of({attach, run.out(), "pkill", "-KILL", "-x", "thermal_node"});
+  // The supervisor has noticed: what dies while the run is being stopped is no death.
+  const std::filesystem::path deaths = run.out() / "cluster/services/thermal_node/deaths";
+  for (int i = 0; i < 600 && !std::filesystem::exists(deaths); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   run.processes.signal("run", SIGINT);
   run.finish(kPatience_s);
   CHECK(run.processes.said("run").find("thermal_node died once") != std::string::npos);
