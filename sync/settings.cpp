@@ -21,6 +21,7 @@ constexpr std::array kUnits{
     Unit{"mN", "N", 1e-3},   Unit{"N/mm", "N/m", 1e3},  Unit{"kN/m", "N/m", 1e3},   Unit{"mJ", "J", 1e-3},
     Unit{"g", "kg", 1e-3},   Unit{"mm/s", "m/s", 1e-3}, Unit{"cm/s", "m/s", 1e-2},  Unit{"deg", "rad", std::numbers::pi / 180},
     Unit{"kPa", "Pa", 1e3},  Unit{"MPa", "Pa", 1e6},    Unit{"GPa", "Pa", 1e9},     Unit{"%", "1", 1e-2},
+    Unit{"ppm", "1", 1e-6},
     Unit{"mW", "W", 1e-3},   Unit{"cm2", "m2", 1e-4},   Unit{"mm2", "m2", 1e-6},
 };
 

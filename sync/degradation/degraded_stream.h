@@ -1,0 +1,160 @@
+// Streams on their way from the bus to a renderer, with the operators of its profile in between. Without a profile
+// they pass through untouched. Pure.
+//
+// A message that is let through late carries the newest publication time and clock of its stream: it is old news
+// of the world, not a message from before a restart. Its arrival stays the true one, since loss is judged on raw
+// arrivals.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <tactus/contact_events_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "sync/degradation/chance.h"
+#include "sync/degradation/snapshot.h"
+#include "sync/degradation/stack.h"
+
+namespace tactus::sync {
+
+// One decision, for the log.
+struct Decision {
+  std::uint64_t key = 0;
+  bool is_event = false;
+  SimTime time{};
+  Verdict verdict;
+  HostTime arrival{};
+};
+using Decisions = std::vector<Decision>;
+
+// What waits to be let through, in order of its time; what is let through at the same time keeps its order.
+// Bounded: when full the oldest is dropped and counted.
+template <class Message>
+class Waiting {
+ public:
+  static constexpr std::size_t kMost = 8192;
+  void push(HostTime release, Message m, HostTime arrival) {
+    waiting_.emplace(release, std::make_pair(std::move(m), arrival));
+    if (waiting_.size() <= kMost) return;
+    waiting_.erase(waiting_.begin());
+    ++dropped_;
+  }
+  std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
+    if (waiting_.empty() || waiting_.begin()->first > now) return std::nullopt;
+    auto first = std::move(waiting_.begin()->second);
+    waiting_.erase(waiting_.begin());
+    return first;
+  }
+  bool empty() const { return waiting_.empty(); }
+  std::int64_t dropped() const { return dropped_; }
+
+ private:
+  std::multimap<HostTime, std::pair<Message, HostTime>> waiting_;
+  std::int64_t dropped_ = 0;
+};
+
+// What identifies one message among those that repeat or page the same thing.
+template <class Message>
+std::uint64_t wire_key(const Message& m) {
+  return mixed(mixed(static_cast<std::uint64_t>(m.header.incarnation), static_cast<std::uint64_t>(m.header.seq)),
+               static_cast<std::uint64_t>(m.header.source));
+}
+
+// Snapshots: each is decided on once, with its first page, and the others share its fate.
+template <class Message>
+class DegradedSnapshots {
+ public:
+  // decisions: where those are noted; null: nowhere.
+  void push(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
+    note_newest(m);
+    const SimTime time = sim_time(m.header.sim_time_ns);
+    if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
+    if (stack.lost_on_wire(wire_key(m), time)) return;
+    Verdict v = verdict_on(m, arrival, stack, decisions);
+    if (v.dropped()) {
+      if (v.conceal != Conceal::kZero) return;
+      make_zero(m);
+    } else if (stack.changes_values()) {
+      change_values(m, stack);
+    }
+    // Later pages of a snapshot that waits wait as long as its first.
+    const HostTime release = std::max(v.release, arrival);
+    if (v.twice) waiting_.push(release, m, arrival);
+    waiting_.push(release, std::move(m), arrival);
+  }
+  // The next message that is let through by now, and when it arrived.
+  std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
+    auto next = waiting_.pop(now);
+    if (next) freshen(next->first);
+    return next;
+  }
+
+ private:
+  static constexpr std::size_t kRemembered = 256;
+
+  Verdict verdict_on(const Message& m, HostTime arrival, Stack& stack, Decisions* decisions) {
+    const std::uint64_t key = snapshot_key(m);
+    if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
+    const std::vector<Signal> signals = signals_of(m);
+    Item item{.key = key, .time = sim_time(m.header.sim_time_ns), .arrival = arrival, .signals = signals};
+    for (const Signal& s : signals)
+      if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
+    const Verdict v = stack.decide(item);
+    verdicts_.emplace(key, v);
+    order_.push_back(key);
+    if (order_.size() > kRemembered) {
+      verdicts_.erase(order_.front());
+      order_.pop_front();
+    }
+    if (decisions && v.touched) decisions->push_back({key, false, item.time, v, arrival});
+    return v;
+  }
+  void note_newest(const Message& m) {
+    const bool same = m.header.incarnation == incarnation_;
+    if (same && m.header.publish_time_ns < newest_publish_ns_ && !epoch(m)) return;
+    incarnation_ = m.header.incarnation;
+    newest_publish_ns_ = m.header.publish_time_ns;
+    if constexpr (requires { m.clock; }) newest_clock_ = m.clock;
+  }
+  bool epoch(const Message& m) const { return m.header.publish_time_ns < newest_publish_ns_ - 1'000'000'000; }
+  void freshen(Message& m) {
+    if (m.header.incarnation != incarnation_) return;
+    m.header.publish_time_ns = newest_publish_ns_;
+    if constexpr (requires { m.clock; }) m.clock = newest_clock_;
+  }
+
+  Waiting<Message> waiting_;
+  std::map<std::uint64_t, Verdict> verdicts_;
+  std::deque<std::uint64_t> order_;
+  std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
+  sim_clock_t newest_clock_{};
+};
+
+// Events: each is decided on once, by its id, when it is first heard of; repetitions change nothing.
+class DegradedEvents {
+ public:
+  void push(const contact_events_t& m, HostTime arrival, Stack& stack, Decisions* decisions);
+  // The next message that is let through by now, and when its events arrived: one with only its header and clock
+  // comes through at once.
+  std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);
+  // Events that the profile dropped since the last call; whoever owes them says so.
+  std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
+
+ private:
+  static constexpr std::size_t kRemembered = 8192;  // as sync/contact_stream.cpp
+  static constexpr std::size_t kMostDropped = 4096;
+  bool first_heard(std::int64_t id);
+
+  Waiting<contact_events_t> waiting_;
+  contact_events_t newest_{};  // header and clock
+  std::set<std::int64_t> seen_;
+  std::deque<std::int64_t> order_;
+  std::vector<contact_event_t> dropped_;
+};
+
+}  // namespace tactus::sync

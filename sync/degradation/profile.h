@@ -1,0 +1,106 @@
+// A degradation profile: what shall be wrong with each sense, as data. Read from XML, refused whole when it is
+// wrong.
+//
+//   <profile name="late sound" seed="7">
+//     <degrade modality="audio" delay="40ms" jitter="3ms normal" loss="5% burst=3"/>
+//   </profile>
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sync/degradation/deadband.h"
+#include "sync/degradation/jitter.h"
+#include "sync/degradation/loss.h"
+
+namespace tactus::sync {
+
+// presentation: the output comes later by the full value, under every policy. network: the news comes later, which
+// a playout delay may absorb.
+enum class DelayKind : std::uint8_t { kPresentation, kNetwork };
+// What a missing update is replaced by: the last one, or nothing felt, heard, seen.
+enum class Conceal : std::uint8_t { kHold, kZero };
+
+struct DelayDef {
+  double delay_s = 0;
+  DelayKind kind = DelayKind::kPresentation;
+};
+struct RateDef {
+  double rate_Hz = 0;
+  double phase_s = 0;
+};
+struct QuantiseDef {
+  Quantity quantity = Quantity::kForce;
+  double step = 0;   // linear: in the unit of the quantity
+  double ratio = 0;  // logarithmic: neighbouring levels differ by this factor, > 1; 0: linear
+  double floor = 0;  // logarithmic: the least level above 0
+};
+// A change of values: gain, bias or low-pass.
+struct ValueDef {
+  Quantity quantity = Quantity::kForce;
+  double value = 0;  // factor, offset in the unit of the quantity, or Hz
+};
+struct ReorderDef {
+  double share = 0;  // of all are held back
+  double by_s = 0;
+};
+// What is wrong with the output itself: a slow renderer, not a slow network. 0: nothing.
+struct OutputDef {
+  double frame_rate_Hz = 0;    // visual
+  double resolution = 0;       // visual, factor on width and height
+  double dropout_s = 0;        // audio: silence of this length,
+  double dropout_every_s = 0;  // so often
+  double force_step_N = 0;     // haptic
+  double response_s = 0;       // thermal: time constant
+
+  bool any() const {
+    return frame_rate_Hz > 0 || resolution > 0 || dropout_s > 0 || force_step_N > 0 || response_s > 0;
+  }
+};
+
+// One <degrade>: the operators act in the order of the members.
+struct Rule {
+  std::string modality;
+  int line = 0;
+  // When, s of simulated time since the profile came into force.
+  double from_s = 0;
+  std::optional<double> until_s;
+  // What it is applied to; empty: everything. Two bodies in any order; a material of one of two surfaces.
+  std::string body_a, body_b, material;
+
+  std::optional<QuantiseDef> quantise;
+  std::optional<ValueDef> gain, bias, lowpass;
+  std::optional<RateDef> rate;
+  std::optional<DeadbandDef> deadband;
+  std::optional<LossDef> loss;
+  std::optional<double> wire_loss;  // share of messages, repetitions and pages each by itself
+  bool off = false;
+  std::optional<DelayDef> delay;
+  std::optional<JitterDef> jitter;
+  std::optional<double> skew;  // the sense's clock runs slow by this share: it falls behind ever more
+  std::optional<ReorderDef> reorder;
+  std::optional<double> duplicate;  // share of all that come twice
+  std::optional<Conceal> freeze;    // nothing new comes
+  Conceal conceal = Conceal::kHold;
+  OutputDef output;
+
+  bool filtered() const { return !material.empty() || !body_a.empty(); }
+};
+
+struct Profile {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<Rule> rules;
+};
+
+// Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is wrong; then nothing is changed.
+// file: the name for messages. No rules: a profile that degrades nothing.
+Profile parse_profile(const std::string& xml, const std::string& file);
+
+// Fills what an attribute of <degrade> says into the rule. Throws std::invalid_argument with one sentence.
+void parse_operator(Rule& rule, const std::string& name, const std::string& value);
+
+}  // namespace tactus::sync

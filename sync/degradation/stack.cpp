@@ -1,0 +1,176 @@
+#include "sync/degradation/stack.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sync/degradation/chance.h"
+#include "sync/degradation/quantise.h"
+#include "sync/identity.h"
+
+namespace tactus::sync {
+namespace {
+
+// Which decision about an item a random number is for.
+enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicateDraw, kWireDraw };
+
+constexpr std::size_t kRememberedValues = 4096;
+
+double slot_s(const RateDef& rate, std::int64_t slot) {
+  return static_cast<double>(slot) / rate.rate_Hz + rate.phase_s;
+}
+
+}  // namespace
+
+Stack::Stack(const Profile& profile, const std::string& modality, SimTime start) : start_(start) {
+  for (std::size_t i = 0; i < profile.rules.size(); ++i) {
+    const Rule& rule = profile.rules[i];
+    if (rule.modality != modality) continue;
+    // Two senses, or two rules of one, draw different numbers for the same event.
+    Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}, {}};
+    for (Chain* chain : {&a.events, &a.snapshots}) {
+      if (rule.loss) chain->loss.emplace(*rule.loss);
+      if (rule.jitter) chain->jitter.emplace(*rule.jitter);
+      if (rule.deadband) chain->deadband.emplace(*rule.deadband);
+    }
+    changes_values_ |= rule.quantise || rule.gain || rule.bias || rule.lowpass;
+    rules_.push_back(std::move(a));
+  }
+}
+
+bool Stack::in_time(const Rule& rule, SimTime t) const {
+  const double s = to_seconds(t - start_);
+  return s >= rule.from_s && (!rule.until_s || s < *rule.until_s);
+}
+
+bool Stack::concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
+                     std::int32_t body_b) const {
+  const auto named = [](const std::vector<std::string>& names, std::int32_t i, const std::string& name) {
+    return i >= 0 && i < static_cast<std::int32_t>(names.size()) && names[static_cast<std::size_t>(i)] == name;
+  };
+  if (!rule.material.empty() && !named(names_.materials, material_a, rule.material) &&
+      !named(names_.materials, material_b, rule.material))
+    return false;
+  if (rule.body_a.empty()) return true;
+  const auto& bodies = names_.bodies;
+  return (named(bodies, body_a, rule.body_a) && named(bodies, body_b, rule.body_b)) ||
+         (named(bodies, body_a, rule.body_b) && named(bodies, body_b, rule.body_a));
+}
+
+// Rate, deadband, loss, off, freeze: what is not let through at all. An event that a rate makes wait is not
+// dropped.
+bool Stack::dropped(Active& a, Chain& chain, const Item& item, Verdict& v) {
+  const Rule& rule = a.rule;
+  const auto drop = [&](Why why, Conceal conceal) {
+    v.why = why;
+    v.conceal = conceal;
+    return true;
+  };
+  if (rule.off) return drop(Why::kOff, Conceal::kZero);
+  if (rule.freeze) return drop(Why::kFreeze, *rule.freeze);
+  if (rule.rate && !item.is_event) {
+    const auto slot = static_cast<std::int64_t>(
+        std::floor((to_seconds(item.time - start_) - rule.rate->phase_s) * rule.rate->rate_Hz));
+    if (slot <= chain.newest_slot) return drop(Why::kRate, Conceal::kHold);
+    chain.newest_slot = slot;
+  }
+  if (chain.deadband && !item.is_event && !chain.deadband->send(item.time, item.signals, item.speed_m_s))
+    return drop(Why::kDeadband, Conceal::kHold);
+  if (chain.loss && chain.loss->lose(uniform(mixed(a.seed, kLossDraw), item.key)))
+    return drop(Why::kLoss, rule.conceal);
+  return false;
+}
+
+void Stack::held(Active& a, Chain& chain, const Item& item, Verdict& v) {
+  const Rule& rule = a.rule;
+  Nanoseconds hold{0};
+  if (rule.rate && item.is_event) {
+    // The next instant at which news is let through.
+    const double t = to_seconds(item.time - start_);
+    const auto slot = static_cast<std::int64_t>(std::ceil((t - rule.rate->phase_s) * rule.rate->rate_Hz));
+    hold += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
+  }
+  if (rule.delay) {
+    const Nanoseconds delay = from_seconds(rule.delay->delay_s);
+    if (rule.delay->kind == DelayKind::kNetwork)
+      hold += delay;
+    else if (rule.filtered() && item.is_event)
+      v.shift += delay;
+  }
+  if (chain.jitter) hold += chain.jitter->next(uniform(mixed(a.seed, kJitterDraw), item.key));
+  v.release += std::max(Nanoseconds(0), hold);
+  if (chain.jitter && chain.jitter->keeps_order()) v.release = std::max(v.release, chain.last_release);
+  chain.last_release = v.release;
+  if (rule.reorder && uniform(mixed(a.seed, kReorderDraw), item.key) < rule.reorder->share)
+    v.release += from_seconds(rule.reorder->by_s);
+  if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) v.twice = true;
+}
+
+Verdict Stack::decide(const Item& item) {
+  Verdict v;
+  v.release = item.arrival;
+  for (Active& a : rules_) {
+    // A snapshot holds many things: only its values can be told apart by what they concern.
+    if (!in_time(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
+    if (item.is_event && !concerns(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
+    Chain& chain = item.is_event ? a.events : a.snapshots;
+    v.touched = true;
+    if (dropped(a, chain, item, v)) return v;
+    held(a, chain, item, v);
+  }
+  return v;
+}
+
+bool Stack::lost_on_wire(std::uint64_t message, SimTime now) {
+  return std::any_of(rules_.begin(), rules_.end(), [&](const Active& a) {
+    return a.rule.wire_loss && in_time(a.rule, now) &&
+           uniform(mixed(a.seed, kWireDraw), message) < *a.rule.wire_loss;
+  });
+}
+
+Nanoseconds Stack::presentation_delay(SimTime now) const {
+  Nanoseconds sum{0};
+  for (const Active& a : rules_) {
+    if (!in_time(a.rule, now) || a.rule.filtered()) continue;
+    if (a.rule.delay && a.rule.delay->kind == DelayKind::kPresentation) sum += from_seconds(a.rule.delay->delay_s);
+    if (a.rule.skew) sum += from_seconds(*a.rule.skew * (to_seconds(now - start_) - a.rule.from_s));
+  }
+  return sum;
+}
+
+OutputDef Stack::output(SimTime now) const {
+  OutputDef sum;
+  const auto worse = [](double& a, double b) { a = a == 0 ? b : b == 0 ? a : std::min(a, b); };
+  for (const Active& a : rules_) {
+    if (!in_time(a.rule, now)) continue;
+    const OutputDef& o = a.rule.output;
+    worse(sum.frame_rate_Hz, o.frame_rate_Hz);
+    worse(sum.resolution, o.resolution);
+    sum.force_step_N = std::max(sum.force_step_N, o.force_step_N);
+    sum.response_s += o.response_s;
+    if (o.dropout_s > 0) sum.dropout_s = o.dropout_s, sum.dropout_every_s = o.dropout_every_s;
+  }
+  return sum;
+}
+
+double Stack::changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+                      std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b) {
+  for (Active& a : rules_) {
+    const Rule& r = a.rule;
+    if (!in_time(r, t) || (r.filtered() && !concerns(r, material_a, material_b, body_a, body_b))) continue;
+    if (r.quantise && r.quantise->quantity == quantity) value = quantised(*r.quantise, value);
+    if (r.gain && r.gain->quantity == quantity) value *= r.gain->value;
+    if (r.bias && r.bias->quantity == quantity) value += r.bias->value;
+    if (r.lowpass && r.lowpass->quantity == quantity) {
+      if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
+      const auto [it, fresh] = a.lowpass.try_emplace({id, component}, Filtered{value, t});
+      if (!fresh && t > it->second.time) {
+        it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(t - it->second.time));
+        it->second.time = t;
+      }
+      value = it->second.value;
+    }
+  }
+  return value;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,191 @@
+#include "sync/degradation/degraded_stream.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "sync/contact_stream.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kEpoch = 5'000'000'000'000;  // of the host's clock
+
+Stack stack_of(const std::string& attributes) {
+  return Stack(parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml"),
+               "audio", {});
+}
+
+header_t header(int ms, std::int64_t seq) {
+  header_t h{};
+  h.sim_time_ns = ms * kMs;
+  h.publish_time_ns = kEpoch + ms * kMs;
+  h.run_id = 1;
+  h.source = 7;
+  h.incarnation = 99;
+  h.seq = seq;
+  return h;
+}
+sim_clock_t clock_at(int ms) { return {ms * kMs, kEpoch + ms * kMs, 1}; }
+HostTime arrival(int ms) { return host_time(kEpoch + ms * kMs + 200'000); }
+
+contact_event_t event(std::int64_t id, int ms) {
+  contact_event_t e{};
+  e.event_id = id;
+  e.contact_id = id;
+  e.kind = contact_event_t::HIT;
+  e.time_ns = ms * kMs;
+  e.approach_speed_m_s = 1;
+  return e;
+}
+
+// All events that are younger than 50 ms, as sim_node repeats them.
+contact_events_t events_at(int ms, const std::vector<contact_event_t>& all, std::int64_t seq) {
+  contact_events_t m{};
+  m.header = header(ms, seq);
+  m.clock = clock_at(ms);
+  m.pages = 1;
+  for (const contact_event_t& e : all)
+    if (e.time_ns <= ms * kMs && e.time_ns > (ms - 50) * kMs) m.events.push_back(e);
+  m.count = static_cast<std::int32_t>(m.events.size());
+  return m;
+}
+
+contact_frame_t page_at(int ms, int page, int pages, std::int64_t seq) {
+  contact_frame_t m{};
+  m.header = header(ms, seq);
+  m.clock = clock_at(ms);
+  m.group = contact_frame_t::OTHER;
+  m.page = page;
+  m.pages = pages;
+  contact_t c{};
+  c.contact_id = 100 + page;
+  c.normal_force_N = static_cast<float>(ms);
+  m.contacts = {c};
+  m.count = 1;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Without a profile everything passes at once, as it is") {
+  Stack none;
+  DegradedSnapshots<contact_frame_t> frames;
+  DegradedEvents events;
+  frames.push(page_at(3, 0, 1, 0), arrival(3), none, nullptr);
+  events.push(events_at(3, {event(1, 2)}, 0), arrival(3), none, nullptr);
+  const auto f = frames.pop(arrival(3));
+  REQUIRE(f);
+  CHECK(f->first.contacts.at(0).normal_force_N == 3);
+  const auto e = events.pop(arrival(3));
+  REQUIRE(e);
+  CHECK(e->first.events.size() == 1);
+  CHECK_FALSE(frames.pop(arrival(100)));
+}
+
+TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") {
+  Stack stack = stack_of("loss=\"50%\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  Decisions decisions;
+  for (int ms = 0; ms < 200; ++ms)
+    for (int page = 0; page < 3; ++page)
+      frames.push(page_at(ms, page, 3, 3 * ms + page), arrival(ms), stack, &decisions);
+  std::map<std::int64_t, int> pages;
+  while (const auto m = frames.pop(arrival(1000))) ++pages[m->first.header.sim_time_ns];
+  for (const auto& [time, n] : pages) CHECK(n == 3);
+  CHECK(decisions.size() == 200);
+  CHECK(std::abs(static_cast<int>(pages.size()) - 100) < 5 * std::sqrt(50));
+}
+
+TEST_CASE("An event is decided on once: what is lost is not brought back by its repetitions") {
+  Stack stack = stack_of("loss=\"40%\"");
+  DegradedEvents degraded;
+  Decisions decisions;
+  std::vector<contact_event_t> all;
+  for (int i = 0; i < 500; ++i) all.push_back(event(1000 + i, 2 * i));
+  ContactStream stream(1);
+  std::set<std::int64_t> heard;
+  for (int ms = 0; ms < 1100; ++ms) {
+    degraded.push(events_at(ms, all, ms), arrival(ms), stack, &decisions);
+    while (const auto m = degraded.pop(arrival(ms))) stream.push(m->first, m->second);
+    for (const contact_event_t& e : stream.take_events(SimTime::max())) CHECK(heard.insert(e.event_id).second);
+  }
+  CHECK(decisions.size() == 500);
+  const auto dropped = degraded.take_dropped();
+  CHECK(heard.size() + dropped.size() == 500);
+  for (const contact_event_t& e : dropped) CHECK_FALSE(heard.contains(e.event_id));
+  CHECK(std::abs(static_cast<int>(dropped.size()) - 200) < 5 * std::sqrt(120));
+}
+
+TEST_CASE("A long network delay is no restart: all events come, once, later by just the delay") {
+  const int delay_ms = GENERATE(40, 500, 3000);
+  Stack stack = stack_of("delay=\"" + std::to_string(delay_ms) + "ms network\"");
+  DegradedEvents degraded;
+  DegradedSnapshots<contact_frame_t> frames;
+  std::vector<contact_event_t> all;
+  for (int i = 0; i < 100; ++i) all.push_back(event(1 + i, 7 * i));
+  ContactStream stream(1);
+  int heard = 0;
+  for (int ms = 0; ms < 1000 + delay_ms; ++ms) {
+    degraded.push(events_at(ms, all, ms), arrival(ms), stack, nullptr);
+    frames.push(page_at(ms, 0, 1, ms), arrival(ms), stack, nullptr);
+    while (const auto m = degraded.pop(arrival(ms))) stream.push(m->first, m->second);
+    while (const auto m = frames.pop(arrival(ms))) stream.push(m->first, m->second);
+    for (const contact_event_t& e : stream.take_events(SimTime::max())) {
+      ++heard;
+      CHECK(ms * kMs - e.time_ns == delay_ms * kMs);
+    }
+  }
+  CHECK(heard == 100);
+  CHECK(stream.restarts() == 0);
+  // What it knows of the contacts is old by the delay; how the clocks lie is not.
+  const auto map = stream.map(arrival(1000 + delay_ms));
+  REQUIRE(map);
+  CHECK(std::abs(to_ns(map->to_sim(host_time(kEpoch + 5 * kMs))) - 5 * kMs) <= kMs / 4);
+  CHECK(stream.state_at(sim_time(990 * kMs)).value.at(0).normal_force_N == Approx(990));
+}
+
+TEST_CASE("A frozen stream that shows zero lets go of every contact") {
+  Stack stack = stack_of("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  for (int ms = 0; ms < 30; ++ms) frames.push(page_at(ms, 0, 1, ms), arrival(ms), stack, nullptr);
+  int n = 0;
+  while (const auto m = frames.pop(arrival(100))) {
+    const std::int64_t ms = m->first.header.sim_time_ns / kMs;
+    CHECK(m->first.contacts.empty() == (ms >= 10 && ms < 20));
+    CHECK(m->first.count == static_cast<std::int32_t>(m->first.contacts.size()));
+    ++n;
+  }
+  CHECK(n == 30);
+}
+
+TEST_CASE("A log played anew brings its events again") {
+  Stack stack = stack_of("delay=\"10ms network\"");
+  DegradedEvents degraded;
+  int heard = 0;
+  for (int round = 0; round < 2; ++round)
+    for (int ms = 0; ms < 2000; ++ms) {
+      degraded.push(events_at(ms, {event(5, 100)}, ms), arrival(2000 * round + ms), stack, nullptr);
+      while (const auto m = degraded.pop(arrival(2000 * round + ms)))
+        heard += static_cast<int>(m->first.events.size());
+    }
+  CHECK(heard == 2);
+}
+
+TEST_CASE("Values are changed in each message, and stay valid") {
+  Stack stack = stack_of("gain=\"-2\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  frames.push(page_at(3, 0, 1, 0), arrival(3), stack, nullptr);
+  CHECK(frames.pop(arrival(3))->first.contacts.at(0).normal_force_N == 0);
+  Stack half = stack_of("gain=\"0.5 velocity\"");
+  DegradedEvents events;
+  events.push(events_at(3, {event(1, 2)}, 0), arrival(3), half, nullptr);
+  float speed = 0;
+  while (const auto m = events.pop(arrival(3)))
+    for (const contact_event_t& e : m->first.events) speed = e.approach_speed_m_s;
+  CHECK(speed == 0.5f);
+}

@@ -1,0 +1,109 @@
+#include "sync/degradation/profile.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus::sync;
+
+namespace {
+
+Rule rule_of(const std::string& attributes) {
+  return parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml").rules.at(0);
+}
+
+std::string refusal(const std::string& xml) {
+  try {
+    parse_profile(xml, "p.xml");
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+std::string refusal_of(const std::string& attributes) {
+  return refusal("<profile>\n<degrade modality=\"audio\" " + attributes + "/></profile>");
+}
+
+}  // namespace
+
+TEST_CASE("A profile is read with its units") {
+  const Profile p = parse_profile(R"(<profile name="late sound" seed="7">
+    <degrade modality="audio" delay="40ms" jitter="3ms normal" loss="5% burst=3"/>
+    <degrade modality="haptic" from="2s" until="1min" material="steel" gain="0.5 force"/>
+    <degrade modality="wind" bodies="ball floor" off="true"/>
+  </profile>)",
+                                  "p.xml");
+  CHECK(p.name == "late sound");
+  CHECK(p.seed == 7);
+  REQUIRE(p.rules.size() == 3);
+  const Rule& audio = p.rules[0];
+  CHECK(audio.line == 2);
+  CHECK(audio.delay->delay_s == Approx(0.040));
+  CHECK(audio.delay->kind == DelayKind::kPresentation);
+  CHECK(audio.jitter->shape == JitterShape::kNormal);
+  CHECK(audio.jitter->scale_s == Approx(0.003));
+  CHECK(audio.jitter->keep_order);
+  CHECK(audio.loss->share == Approx(0.05));
+  CHECK(audio.loss->mean_burst == 3);
+  CHECK_FALSE(audio.filtered());
+  CHECK(p.rules[1].filtered());
+  CHECK(p.rules[1].from_s == 2);
+  CHECK(p.rules[1].until_s == Approx(60));
+  CHECK(p.rules[1].gain->value == 0.5);
+  CHECK((p.rules[2].off && p.rules[2].body_b == "floor"));
+}
+
+TEST_CASE("Every operator is read") {
+  CHECK(rule_of(R"(delay="1ms network")").delay->kind == DelayKind::kNetwork);
+  const Rule j = rule_of(R"(jitter="pareto 2ms order=free correlation=0.5")");
+  CHECK((j.jitter->shape == JitterShape::kPareto && !j.jitter->keep_order && j.jitter->correlation == 0.5));
+  CHECK(rule_of(R"(jitter="trace=1ms,2ms,0.5ms")").jitter->trace_s == std::vector<double>{0.001, 0.002, 0.0005});
+  CHECK(rule_of(R"(rate="5Hz phase=20ms")").rate->phase_s == Approx(0.020));
+  const auto d = rule_of(R"(deadband="10% force floor=5mN lowpass=20Hz adaptive=0.2")").deadband;
+  CHECK((d->fraction == Approx(0.1) && d->quantity == Quantity::kForce && d->floor == Approx(0.005) &&
+         d->lowpass_Hz == 20 && d->adaptive_s_m == 0.2));
+  CHECK(rule_of(R"(quantise="1cm/s velocity")").quantise->step == Approx(0.01));
+  CHECK(rule_of(R"(quantise="10% log floor=1mN")").quantise->ratio == Approx(1.1));
+  CHECK(rule_of(R"(bias="-0.1N")").bias->value == -0.1);
+  CHECK(rule_of(R"(lowpass="20Hz velocity")").lowpass->quantity == Quantity::kVelocity);
+  CHECK(rule_of(R"(freeze="zero")").freeze == Conceal::kZero);
+  CHECK(rule_of(R"(loss="1%" conceal="zero")").conceal == Conceal::kZero);
+  CHECK(rule_of(R"(duplicate="1%")").duplicate == Approx(0.01));
+  CHECK(rule_of(R"(reorder="5% by=10ms")").reorder->by_s == Approx(0.01));
+  CHECK(rule_of(R"(skew="200ppm")").skew == Approx(200e-6));
+  CHECK(rule_of(R"(wire_loss="2%")").wire_loss == Approx(0.02));
+  CHECK(rule_of(R"(frame_rate="20Hz" resolution="50%")").output.resolution == Approx(0.5));
+  CHECK(rule_of(R"(dropout="20ms every=1s")").output.dropout_s == Approx(0.02));
+  CHECK(rule_of(R"(force_step="0.1N")").output.force_step_N == Approx(0.1));
+  CHECK(rule_of(R"(response="2s")").output.response_s == 2);
+}
+
+TEST_CASE("A wrong profile is refused whole, with line and reason") {
+  CHECK_THAT(refusal("no xml"), Catch::StartsWith("p.xml:"));
+  CHECK_THAT(refusal("<profile>\n\n<degrade modality=\"audio\""), Catch::StartsWith("p.xml:"));
+  CHECK_THAT(refusal("<sdf/>"), Catch::Contains("begins with <profile>"));
+  CHECK_THAT(refusal("<profile colour=\"red\"/>"), Catch::Contains("no \"colour\""));
+  CHECK_THAT(refusal("<profile seed=\"x\"/>"), Catch::Contains("no whole number"));
+  CHECK_THAT(refusal("<profile>\n<delay/></profile>"), Catch::StartsWith("p.xml:2: <delay> is not known"));
+  CHECK_THAT(refusal("<profile>\n<degrade delay=\"1ms\"/></profile>"), Catch::Contains("needs a modality"));
+  CHECK_THAT(refusal_of(""), Catch::Contains("does nothing"));
+  CHECK_THAT(refusal_of("from=\"1s\""), Catch::Contains("does nothing"));
+  CHECK_THAT(refusal_of("delay=\"40mss\""),
+             Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is no unit of s"));
+  CHECK_THAT(refusal_of("delay=\"-1ms\""), Catch::Contains("between 0 and 60"));
+  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" means nothing here"));
+  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" means nothing here"));
+  CHECK_THAT(refusal_of("delay=\"\""), Catch::Contains("needs a value"));
+  CHECK_THAT(refusal_of("delai=\"1ms\""), Catch::Contains("no operator \"delai\""));
+  CHECK_THAT(refusal_of("loss=\"90% burst=2\""), Catch::Contains("impossible"));
+  CHECK_THAT(refusal_of("loss=\"nan\""), Catch::Contains("no number"));
+  CHECK_THAT(refusal_of("freeze=\"maybe\""), Catch::Contains("choose hold or zero"));
+  CHECK_THAT(refusal_of("delay=\"1ms\" from=\"5s\" until=\"5s\""), Catch::Contains("until must be after from"));
+  CHECK_THAT(refusal_of("off=\"true\" bodies=\"ball\""), Catch::Contains("name two bodies"));
+  CHECK_THAT(refusal_of("dropout=\"2s every=1s\""), Catch::Contains("shorter than the time"));
+  CHECK_THAT(refusal("<profile><degrade modality=\"a\" off=\"true\"><x/></degrade></profile>"),
+             Catch::Contains("no elements"));
+}
+
+TEST_CASE("A profile without rules degrades nothing") {
+  CHECK(parse_profile("<profile/>", "p.xml").rules.empty());
+}
