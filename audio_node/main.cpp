@@ -14,8 +14,8 @@
 #include "audio_node/output.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
-#include "sync/presentation_reporter.h"
 #include "sync/scene_exchange.h"
+#include "sync/sense.h"
 
 using namespace tactus;
 
@@ -56,10 +56,10 @@ int main(int argc, char** argv) try {
 
   sync::Node node(kAudio, options);
   sync::SceneReceiver scene(node.bus());
-  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
-  auto& frames = node.bus().queue<contact_frame_t>(channels::kContacts, 4096);
+  sync::Sense sense(node);
+  auto& events = sense.events();
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   sync::ContactStream contacts(options.run_id);
-  sync::PresentationReporter reporter(kAudio.modality);
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
   std::int64_t scenes = 0;
@@ -71,6 +71,8 @@ int main(int argc, char** argv) try {
          sync::apply_settings(settings, audio::setting_fields(), kAudio.node, from_scene, options.set))
       std::cerr << refused << std::endl;
     output.configure(settings);
+    sense.set_own_delay(sync::from_seconds(settings.presentation_delay_s));
+    sense.set_output_latency(output.latency());
   };
   const auto mesh = [&](std::int64_t hash) -> std::optional<audio::Extent> {
     const sync::Asset* asset = scene.asset(hash);
@@ -82,7 +84,9 @@ int main(int argc, char** argv) try {
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
+    sense.step(now);
     if (scene.poll(now)) {
+      sense.set_scene(*scene.scene());
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
@@ -94,25 +98,22 @@ int main(int argc, char** argv) try {
     if (const auto map = contacts.map(now); map && impacts) {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
-        const auto scheduled = map->to_host(sync::sim_time(event.time_ns)) +
-                               sync::from_seconds(output.settings().presentation_delay_s);
-        if (!output.submit(impacts->strike(event, scheduled)))
-          reporter.report(event.event_id, presentation_t::WHOLE, scheduled, sync::host_time(-1),
-                          sync::Nanoseconds(0), presentation_t::DROPPED_LATE);
+        const sync::HostTime scheduled =
+            sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
+        output.submit(impacts->strike(event, scheduled));
       }
     }
     while (const auto report = output.next_report()) {
-      reporter.report(*report);
+      sense.report(*report);
       node.count_rendered(report->presented_ns >= 0 ? 1 : 0);
     }
     while (const auto pair = output.next_pair()) publish_pair(node.bus(), output.medium(), *pair);
-    reporter.publish(node.bus(), now);
+    sense.publish(now);
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
-    const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);
     node.set_state(!impacts                   ? node_health_t::WAITING
                    : !plays                   ? node_health_t::OUTPUT_LOST
-                   : now - heard > kInputLost ? node_health_t::INPUT_LOST
+                   : now - sense.newest_arrival() > kInputLost ? node_health_t::INPUT_LOST
                                               : node_health_t::RUNNING,
                    output.note());
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());

@@ -9,6 +9,10 @@ namespace {
 // A card that has not started by then is said not to; USB cards take about a second.
 constexpr sync::Nanoseconds kPatience{5'000'000'000};
 
+// One until the callback's turn comes, one more that a card of normal priority is given.
+constexpr int kCallbackPeriods = 2;
+constexpr std::size_t kMostUnsounded = 1024;
+
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
@@ -88,10 +92,29 @@ void Output::close() {
   past_callbacks_ += callbacks, past_underflows_ += underflows;
 }
 
-bool Output::submit(const Strike& strike) { return stream_ && crossing_->strikes.push(strike); }
+void Output::submit(const Strike& strike) {
+  if ((stream_ && crossing_->strikes.push(strike)) || unsounded_.size() >= kMostUnsounded) return;
+  presentation_t report{};
+  report.event_id = strike.event_id;
+  report.part = presentation_t::WHOLE;
+  report.scheduled_ns = sync::to_ns(strike.scheduled);
+  report.presented_ns = -1;
+  report.outcome = presentation_t::DROPPED_LATE;
+  unsounded_.push_back(report);
+}
+
+sync::Nanoseconds Output::latency() const {
+  const double periods = settings_.latency_periods + kCallbackPeriods;
+  return sync::from_seconds((periods * settings_.period_frames + Limiter::kDelay) / settings_.sample_rate_Hz);
+}
 
 std::optional<presentation_t> Output::next_report() {
   presentation_t report;
+  if (!unsounded_.empty()) {
+    report = unsounded_.front();
+    unsounded_.pop_front();
+    return report;
+  }
   if (!crossing_->reports.pop(report)) return std::nullopt;
   return report;
 }

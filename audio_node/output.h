@@ -1,6 +1,7 @@
 // The output of the node: a stream with its renderer, opened again when it is lost.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
 
@@ -22,8 +23,8 @@ class Output {
   // dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
-  // False when nothing plays or the queue is full; then the strike will never sound.
-  bool submit(const Strike& strike);
+  // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
+  void submit(const Strike& strike);
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
@@ -35,6 +36,9 @@ class Output {
   // Since the start, over all streams.
   std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
   std::int64_t underflows() const { return past_underflows_ + (stream_ ? stream_->underflows() : 0); }
+  // From the arrival of an event to the sample that it may start on, at the most: the callback's turn, what the card holds,
+  // and the limiter.
+  sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
 
@@ -54,6 +58,7 @@ class Output {
   std::shared_ptr<Renderer> renderer_;
   std::optional<Opening<Stream>> opening_;
   std::unique_ptr<Stream> stream_;
+  std::deque<presentation_t> unsounded_;
 };
 
 }  // namespace tactus::audio

@@ -14,8 +14,8 @@
 
 #include "haptic_node/session.h"
 #include "sync/node.h"
-#include "sync/presentation_reporter.h"
 #include "sync/scene_exchange.h"
+#include "sync/sense.h"
 
 using namespace tactus;
 
@@ -44,14 +44,15 @@ int main(int argc, char** argv) try {
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
-  auto& touch = node.bus().queue<touch_model_t>(channels::kTouchModel, 256);
-  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
-  sync::PresentationReporter reporter(declaration.modality);
+  sync::Sense sense(node);
+  auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
+  auto& events = sense.events();
   std::optional<haptic::Session> session;
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
+    sense.step(now);
     if (scenes.poll(now)) {
       session.reset();
       const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
@@ -60,18 +61,23 @@ int main(int argc, char** argv) try {
       std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
                 << "\n";
       node.set_tool(choice.tool);
+      sense.set_scene(*scenes.scene(), choice.tool);
+      sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
       node.set_state(node_health_t::WAITING, session ? "waits for a touch model" : choice.problem);
     }
     while (const auto m = touch.pop())
-      if (session && m->order != sync::Arrival::kOld) session->push(m->message, m->arrival);
+      if (session) session->push(m->message, m->arrival);
     while (const auto m = events.pop())
       if (session) session->push(m->message, m->arrival);
     if (!session) continue;
-    haptic::TickOutput& out = session->step(now);
+    haptic::TickOutput& out = session->step(now, {.delay = sense.delay(),
+                                                  .touch_delay = sense.profile_delay(),
+                                                  .force_step_N = sense.output().force_step_N,
+                                                  .touch_arrival = touch.count().newest_arrival});
     node.bus().publish(channels::kToolState, out.state);
-    for (const presentation_t& report : out.reports) reporter.report(report);
-    reporter.publish(node.bus(), now);
+    for (const presentation_t& report : out.reports) sense.report(report);
+    sense.publish(now);
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");

@@ -12,6 +12,13 @@ namespace {
 // A device drops a force that is not renewed for so long; what happened since then was without force.
 constexpr sync::Nanoseconds kWatchdog = VirtualHand::kWatchdog;
 
+// The force in levels of `step_N` of its size; 0: as it is.
+Eigen::Vector3d stepped(const Eigen::Vector3d& force_N, double step_N) {
+  const double size = force_N.norm();
+  if (!(step_N > 0) || !(size > 0)) return force_N;
+  return force_N * (std::round(size / step_N) * step_N / size);
+}
+
 SurfaceLimits surface_limits(const Settings& s) {
   return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
           s.surface_speed_limit_m_s};
@@ -84,7 +91,7 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   if (in.fresh && in.map) loop_delay_.observe(sync::to_seconds(in.map->to_sim(in.now) - *model_time_));
-  const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now)) : std::nullopt;
+  const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   surfaces_.step(in.fresh, sim_now, proxy_.position(), dt);
 }
 
@@ -126,7 +133,9 @@ void Renderer::take_events(const TickInput& in) {
     if (e.tool != tool_) continue;
     const sync::HostTime happened = in.map->to_host(sync::sim_time(e.time_ns));
     if (e.kind == contact_event_t::HIT)
-      transients_.schedule(hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s)), out_.reports);
+      transients_.schedule(
+          hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s) + in.transient_delay),
+          out_.reports);
     if (e.kind == contact_event_t::BEGIN)
       owed_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr, out_.reports);
   }
@@ -193,7 +202,7 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Eigen::Vector3d constraint = constraint_force(dt);
   const bool felt = fade_.value() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = fade_.value() * (constraint + transient);
+  const Eigen::Vector3d wanted = stepped(fade_.value() * (constraint + transient), in.force_step_N);
   out_.force_N = safety_.limit(wanted, moved_, dt);
   // The transient takes its part of what the limits left.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;

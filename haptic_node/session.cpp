@@ -1,5 +1,7 @@
 #include "haptic_node/session.h"
 
+#include <algorithm>
+
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
@@ -22,13 +24,18 @@ Session::Session(const scene_t& scene, const Choice& choice, const std::optional
       touch_(choice.tool, own_run),
       events_(own_run) {}
 
-TickOutput& Session::step(sync::HostTime now) {
+TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
   TickInput in;
   in.now = now;
   in.device = device_->read(now);
   in.fresh = touch_.take();
+  // A commanded gap is not a loss.
   in.touch_arrival = touch_.arrival();
+  if (in.touch_arrival && degraded.touch_arrival) in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
   in.map = touch_.map(now);
+  in.transient_delay = degraded.delay;
+  in.touch_delay = degraded.touch_delay;
+  in.force_step_N = degraded.force_step_N;
   // Events are published when their time is reached, so all that have come are due.
   std::vector<contact_event_t> due;
   if (in.map) due = events_.take_events(sync::SimTime::max());

@@ -14,6 +14,15 @@
 
 namespace tactus::haptic {
 
+// What a policy or a profile does to this sense.
+struct Degraded {
+  sync::Nanoseconds delay{0};        // of hit transients, on top of the setting
+  sync::Nanoseconds touch_delay{0};  // by which touch models are held back
+  double force_step_N = 0;           // of the force that is commanded; 0: none
+  // When the newest touch model really arrived; nothing: as it came here.
+  std::optional<sync::HostTime> touch_arrival;
+};
+
 class Session {
  public:
   // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. Throws
@@ -26,7 +35,7 @@ class Session {
 
   // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
   // the next.
-  TickOutput& step(sync::HostTime now);
+  TickOutput& step(sync::HostTime now, const Degraded& degraded = {});
 
   bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
   bool lost() const { return renderer_.lost(); }

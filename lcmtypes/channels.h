@@ -16,6 +16,10 @@ inline constexpr const char* kPresented = "PRESENTED";           // presented_t
 inline constexpr const char* kNodeHealth = "NODE_HEALTH";        // node_health_t
 inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_t
 inline constexpr const char* kMediaClock = "MEDIA_CLOCK";        // media_clock_t
+inline constexpr const char* kPlayout = "PLAYOUT";               // playout_t
+inline constexpr const char* kPlayoutRequest = "PLAYOUT_REQUEST";  // playout_request_t
+inline constexpr const char* kDegradation = "DEGRADATION";       // degradation_t
+inline constexpr const char* kDegraded = "DEGRADED";             // degraded_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 
 // Bulk port, so that assets never queue before a force. Receivers listen on both ports: a replayed log has one.

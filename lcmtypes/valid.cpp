@@ -1,5 +1,6 @@
 #include "lcmtypes/valid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
@@ -7,6 +8,8 @@ namespace {
 
 // Farther than any scene and faster than any body: beyond this a number is garbage, though finite.
 constexpr double kMaxMagnitude = 1e9;
+// A minute: what is presented later than that is another event.
+constexpr long kMaxDelay_ns = 60'000'000'000;
 
 bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
 bool sane_not_negative(double x) { return sane(x) && x >= 0; }
@@ -43,10 +46,10 @@ bool sane(const contact_event_t& e) {
 }
 
 bool sane(const contact_t& c) {
-  if (!between(c.kind, contact_t::POINT, contact_t::SURFACE) || c.body_a < 0 || c.body_b < 0 || c.material_a < -1 ||
-      c.material_b < -1 || c.tool < -1 || !unit(c.normal) || !sane(c.depth_m) || !sane_not_negative(c.area_m2) ||
-      !sane_not_negative(c.normal_force_N) || !sane_not_negative(c.impulse_N_s) || !sane(c.sliding_velocity_m_s) ||
-      !sane(c.rolling_velocity_m_s) || !between(c.point_count, 1, 4))
+  if (!between(c.kind, contact_t::POINT, contact_t::SURFACE) || c.body_a < 0 || c.body_b < 0 ||
+      c.material_a < -1 || c.material_b < -1 || c.tool < -1 || !unit(c.normal) || !sane(c.depth_m) ||
+      !sane_not_negative(c.area_m2) || !sane_not_negative(c.normal_force_N) || !sane_not_negative(c.impulse_N_s) ||
+      !sane(c.sliding_velocity_m_s) || !sane(c.rolling_velocity_m_s) || !between(c.point_count, 1, 4))
     return false;
   for (const contact_point_t& p : c.points)
     if (!sane(p.a_world_m) || !sane(p.b_world_m) || !sane(p.a_body_m) || !sane(p.b_body_m)) return false;
@@ -70,8 +73,15 @@ bool sane(const touch_applied_t& a) { return sane(a.impulse_N_s) && sane(a.energ
 bool sane(const tool_constraint_t& c) {
   return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
 }
+bool sane(const playout_entry_t& e) {
+  return !e.modality.empty() && between(e.delay_ns, -kMaxDelay_ns, kMaxDelay_ns);
+}
+bool sane(const decision_t& d) {
+  return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.why, 0, 5) && d.held_ns >= 0 &&
+         between(d.twice, 0, 1);
+}
 bool sane(const presentation_t& p) {
-  return between(p.part, presentation_t::WHOLE, presentation_t::TRANSIENT) && p.scheduled_ns >= -1 &&
+  return between(p.part, presentation_t::WHOLE, presentation_t::TRANSIENT) && p.ready_ns >= -1 && p.scheduled_ns >= -1 &&
          p.presented_ns >= -1 && p.uncertainty_ns >= 0 &&
          between(p.outcome, presentation_t::PRESENTED, presentation_t::INAUDIBLE);
 }
@@ -81,9 +91,7 @@ bool sane(const histogram_t& h) {
   return h.max_ns >= 0;
 }
 bool sane(const input_health_t& i) { return i.age_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0; }
-bool sane(const asset_ref_t& a) {
-  return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF);
-}
+bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF); }
 bool sane(const material_def_t& m) {
   // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
@@ -98,14 +106,15 @@ bool sane(const shape_def_t& s, int bodies, int materials) {
          sane_not_negative(s.size_m.y) && sane_not_negative(s.size_m.z);
 }
 bool sane(const visual_def_t& v) {
-  return sane(v.ambient) && sane(v.diffuse) && sane(v.specular) && sane(v.emissive) && sane_not_negative(v.shininess) &&
-         sane_not_negative(v.alpha);
+  return sane(v.ambient) && sane(v.diffuse) && sane(v.specular) && sane(v.emissive) &&
+         sane_not_negative(v.shininess) && sane_not_negative(v.alpha);
 }
 bool sane(const light_def_t& l) {
   return between(l.kind, light_def_t::POINT, light_def_t::SPOT) && sane(l.pose) && unit(l.direction) &&
          sane(l.diffuse) && sane(l.specular) && sane_not_negative(l.range_m) && sane(l.attenuation_constant) &&
          sane(l.attenuation_linear) && sane(l.attenuation_quadratic) && sane_not_negative(l.intensity) &&
-         sane_not_negative(l.inner_angle_rad) && sane_not_negative(l.outer_angle_rad) && sane_not_negative(l.falloff);
+         sane_not_negative(l.inner_angle_rad) && sane_not_negative(l.outer_angle_rad) &&
+         sane_not_negative(l.falloff);
 }
 bool sane(const waypoint_t& w) { return sane_not_negative(w.time_s) && sane(w.position_m); }
 
@@ -140,13 +149,27 @@ bool valid(const tool_state_t& m) {
 bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
   return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
-         between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) && sane_not_negative(m.nominal_rate_Hz) &&
-         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) &&
-         sane(m.wake) && m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
+         between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) &&
+         sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
+         m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&
+         sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
 }
-bool valid(const log_info_t& m) {
-  return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0;
+bool valid(const degradation_t& m) {
+  return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
+         page_of(m.page, m.pages) && m.text.size() <= 1200;
 }
+bool valid(const degraded_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.decisions); }
+bool valid(const playout_t& m) {
+  return sane(m.header) && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
+         sane_not_negative(m.lockstep_Hz) && all_sane(m.entries) &&
+         std::none_of(m.entries.begin(), m.entries.end(), [](const playout_entry_t& e) { return e.delay_ns < 0; });
+}
+bool valid(const playout_request_t& m) {
+  return sane(m.header) && m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
+         between(m.aligner, playout_request_t::FIXED, playout_request_t::VIRTUAL_TIME) &&
+         between(m.base_ns, 0, kMaxDelay_ns) && between(m.budget_ns, 0, kMaxDelay_ns) && all_sane(m.entries);
+}
+bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0; }
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
          between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);

@@ -6,10 +6,14 @@
 #include <tactus/asset_request_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/mesh_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -26,10 +30,14 @@ bool valid(const asset_chunk_t&);
 bool valid(const asset_request_t&);
 bool valid(const contact_events_t&);
 bool valid(const contact_frame_t&);
+bool valid(const degradation_t&);
+bool valid(const degraded_t&);
 bool valid(const log_info_t&);
 bool valid(const media_clock_t&);
 bool valid(const mesh_t&);
 bool valid(const node_health_t&);
+bool valid(const playout_request_t&);
+bool valid(const playout_t&);
 bool valid(const presented_t&);
 bool valid(const scene_manifest_t&);
 bool valid(const scene_t&);

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <utility>
 
+#include "sync/degradation/profile_exchange.h"
 #include "sync/kernel_drops.h"
 
 namespace tactus::sync {
@@ -39,6 +40,11 @@ std::string enter(const Declaration& d, const NodeOptions& o) {
   return set_realtime(parse_realtime(o.realtime), d.fifo_priority);
 }
 
+NodeOptions with_profile(NodeOptions o) {
+  if (!o.degrade.empty()) o.profile = read_profile_file(o.degrade);
+  return o;
+}
+
 constexpr Nanoseconds kReportPeriod{100'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
 
@@ -64,6 +70,8 @@ void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
   app.add_option("--out", out, "folder for what this node writes")->check(CLI::ExistingDirectory)->capture_default_str();
   app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
+  if (!d.modality.empty() || d.node == "sync_node")
+    app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
   app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
 }
 
@@ -86,7 +94,7 @@ int fail(const std::string& node, const std::exception& e) {
 
 Node::Node(Declaration declaration, NodeOptions options)
     : declaration_(std::move(declaration)),
-      options_(std::move(options)),
+      options_(with_profile(std::move(options))),
       scheduling_(enter(declaration_, options_)),
       bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
       loop_(declaration_.rate_Hz) {

@@ -45,6 +45,8 @@ struct NodeOptions {
   std::string out = ".";  // folder for what the node writes
   std::uint64_t seed = 1;
   std::vector<std::string> set;  // name=value
+  std::string degrade;           // file of a degradation profile; empty: none
+  std::string profile;           // its XML, once read
   bool check = false;            // leave, with success, where the bus would be joined
 
   void add_to(CLI::App& app, const Declaration& declaration);
@@ -82,6 +84,7 @@ class Node {
   void set_state(std::int8_t state, std::string note = "");
   void set_tool(int tool) { health_.tool = tool; }
   void count_rendered(std::int64_t events) { health_.contacts_rendered += events; }
+  void set_profile(std::int64_t hash) { health_.profile = hash; }
   void set_realtime_factor(double factor) { health_.realtime_factor = factor; }
   // For nodes that tick elsewhere (the audio callback): totals instead of the loop's own.
   void override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz);

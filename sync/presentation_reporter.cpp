@@ -4,7 +4,7 @@
 
 namespace tactus::sync {
 namespace {
-constexpr std::size_t kReportsPerMessage = 30;  // of 34 bytes each
+constexpr std::size_t kReportsPerMessage = 30;  // of 42 bytes each
 }
 
 void PresentationReporter::report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented,

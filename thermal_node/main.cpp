@@ -8,13 +8,12 @@
 // Losing the contacts returns the command to the temperature of resting skin; the loop never waits for another
 // node.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <iostream>
 #include <optional>
 
 #include "sync/node.h"
-#include "sync/presentation_reporter.h"
 #include "sync/scene_exchange.h"
+#include "sync/sense.h"
 #include "thermal_node/choice.h"
 #include "thermal_node/renderer.h"
 
@@ -38,10 +37,10 @@ int main(int argc, char** argv) try {
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
-  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
-  auto& frames = node.bus().queue<contact_frame_t>(channels::kContacts, 4096);
+  sync::Sense sense(node);
+  auto& events = sense.events();
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   sync::ContactStream stream(options.run_id);
-  sync::PresentationReporter reporter(declaration.modality);
   thermal::Choice choice;
   thermal::Ticks ticks;
   std::optional<thermal::Renderer> renderer;
@@ -49,6 +48,7 @@ int main(int argc, char** argv) try {
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
+    sense.step(now);
     while (const auto m = events.pop()) stream.push(m->message, m->arrival);
     while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
     if (scenes.poll(now)) {
@@ -56,18 +56,20 @@ int main(int argc, char** argv) try {
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       node.set_rate(choice.settings.rate_Hz);
       node.set_tool(choice.tool);
+      sense.set_scene(*scenes.scene(), choice.tool);
+      sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz) + thermal::Ticks::kSettle);
       node.set_state(node_health_t::WAITING, choice.problem);
       renderer.reset();
       if (choice.tool >= 0)
         renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body);
     }
     if (!renderer) continue;
-    const sync::HostTime arrival = std::max(events.count().newest_arrival, frames.count().newest_arrival);
-    const thermal::Tick tick = ticks.next(stream, now, arrival, choice.tool, choice.tool_body);
+    const thermal::Tick tick =
+        ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
     thermal_state_t state = renderer->step(tick);
     node.bus().publish(channels::kThermalState, state);
-    for (const presentation_t& report : renderer->reports()) reporter.report(report);
-    reporter.publish(node.bus(), now);
+    for (const presentation_t& report : renderer->reports()) sense.report(report);
+    sense.publish(now);
     node.count_rendered(static_cast<std::int64_t>(renderer->reports().size()));
     if (renderer->input_lost())
       node.set_state(node_health_t::INPUT_LOST, "no contacts: the command returns to resting skin");

@@ -86,7 +86,7 @@ void Renderer::report(const contact_event_t& event, const Tick& tick) {
   presentation_t r{};
   r.event_id = event.event_id;
   r.part = presentation_t::WHOLE;
-  const sync::HostTime due = tick.map.to_host(sync::sim_time(event.time_ns));
+  const sync::HostTime due = tick.map.to_host(sync::sim_time(event.time_ns)) + tick.delay;
   r.scheduled_ns = std::max<std::int64_t>(0, sync::to_ns(due));
   r.presented_ns = sync::to_ns(tick.end);
   r.uncertainty_ns = (sync::from_seconds(1 / settings_.rate_Hz) / 2).count();

@@ -19,6 +19,7 @@ struct Tick {
   sync::Nanoseconds contact_interval{};  // that `contact` is the mean of
   std::vector<contact_event_t> events;   // that have become due, of all tools
   sync::TimeMap map;                     // from simulated to host time
+  sync::Nanoseconds delay{0};            // what is felt happened so long ago, beyond what is still on its way
 
   double contact_interval_s() const { return sync::to_seconds(contact_interval); }
 };
@@ -31,9 +32,10 @@ class Ticks {
   // No tick integrates more than this of the world, however long the process was stopped.
   static constexpr sync::Nanoseconds kLongest{2'000'000'000};
 
-  // now: the clock; newest_arrival: when the newest contact message came.
+  // now: the clock; newest_arrival: when the newest contact message really came; delay: of presentation. A gap in the
+  // stream while messages arrive is commanded: the last contact is held.
   Tick next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime newest_arrival, int tool,
-            int tool_body);
+            int tool_body, sync::Nanoseconds delay = sync::Nanoseconds(0));
 
  private:
   std::optional<sync::HostTime> end_;

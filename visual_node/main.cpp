@@ -12,8 +12,8 @@
 #include <iostream>
 
 #include "sync/node.h"
-#include "sync/presentation_reporter.h"
 #include "sync/scene_exchange.h"
+#include "sync/sense.h"
 #include "visual_node/egl/display.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/gl/renderer.h"
@@ -58,16 +58,17 @@ int main(int argc, char** argv) try {
   sync::Node node(declaration, options);
   node.set_rate(settings.rate_Hz);
   sync::SceneReceiver scenes(node.bus());
-  auto& world = node.bus().queue<world_state_t>(channels::kWorldState, 4096);
-  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
-  auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
+  sync::Sense sense(node);
+  auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
+  auto& events = sense.events();
+  auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
   visual::FrameComposer composer(options.run_id, settings);
   visual::Recording recording(keep);
-  sync::PresentationReporter reporter(declaration.modality);
   std::string said;
 
   while (node.running() && !display->closed()) {
     const sync::HostTime now = node.wait();
+    sense.step(now);
     while (const auto m = world.pop()) composer.push(m->message, m->arrival);
     while (const auto m = events.pop()) composer.push(m->message, m->arrival);
     while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
@@ -81,9 +82,10 @@ int main(int argc, char** argv) try {
       renderer->load(view.geometries(), view.lighting());
       recording.begin(view.width(), view.height(), settings);
       node.set_rate(settings.rate_Hz);
+      sense.set_scene(*scenes.scene());
     }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
-    const visual::Frame frame = composer.frame(now, tick);
+    const visual::Frame frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
     const visual::PictureTarget& picture = renderer->picture();
     renderer->draw(frame.list);
     display->show(picture.framebuffer(), picture.width(), picture.height());
@@ -91,11 +93,12 @@ int main(int argc, char** argv) try {
     const sync::HostTime fence = sync::host_now();
     std::int64_t rendered = 0;
     for (const presentation_t& report : composer.presented(fence)) {
-      reporter.report(report);
+      sense.report(report);
       rendered += report.outcome != presentation_t::DROPPED_LATE;
     }
     node.count_rendered(rendered);
-    reporter.publish(node.bus(), fence);
+    sense.set_output_latency(fence - now + sync::from_seconds(1 / settings.rate_Hz));
+    sense.publish(fence);
     if (auto pair = recording.add(tick, fence, [&](std::span<std::uint8_t> rgba) { picture.read(rgba); }))
       node.bus().publish(channels::kMediaClock, *pair);
     if (const std::string trouble = recording.trouble(); trouble != said) {

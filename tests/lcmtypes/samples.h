@@ -103,7 +103,7 @@ class Samples {
   }
   void fill(presentation_t& p) {
     p.event_id = whole(0, 1 << 30), p.part = static_cast<std::int8_t>(whole(0, 2));
-    p.scheduled_ns = whole(-1, 1 << 30), p.presented_ns = whole(-1, 1 << 30), p.uncertainty_ns = whole(0, 1 << 30);
+    p.ready_ns = whole(-1, 1 << 30), p.scheduled_ns = whole(-1, 1 << 30), p.presented_ns = whole(-1, 1 << 30), p.uncertainty_ns = whole(0, 1 << 30);
     p.outcome = static_cast<std::int8_t>(whole(0, 4));
   }
   void fill(int& bin) { bin = whole(0, 1 << 30); }
@@ -159,7 +159,7 @@ class Samples {
     m.owes = whole(0, 7), m.tool = whole(-1, 3), m.state = static_cast<std::int8_t>(whole(0, 4));
     m.nominal_rate_Hz = real(0, 1000), m.rate_Hz = real(0, 1000), m.ticks = whole(0, 99),
     m.missed_ticks = whole(0, 99);
-    m.stale_ticks = whole(0, 99);
+    m.stale_ticks = whole(0, 99), m.profile = whole(0, 99);
     fill(m.tick), fill(m.wake);
     m.contacts_rendered = whole(0, 99), m.realtime_factor = real(0, 1), m.kernel_drops = whole(-1, 9);
     fill_list(m.input_count, m.inputs, 0, 6);
@@ -173,6 +173,28 @@ class Samples {
     fill(m.header);
     m.medium = name(), m.index = whole(0, 99), m.host_time_ns = whole(0, 99),
     m.reason = static_cast<std::int8_t>(whole(0, 2));
+  }
+  void fill(degradation_t& m) {
+    fill(m.header), fill_page(m);
+    m.generation = whole(0, 99), m.start_sim_ns = whole(0, 99), m.hash = whole(0, 99), m.size = whole(0, 999);
+    m.text = name(1000);
+  }
+  void fill(decision_t& d) {
+    d.key = whole(0, 99), d.is_event = static_cast<std::int8_t>(whole(0, 1)), d.time_ns = whole(0, 99);
+    d.why = static_cast<std::int8_t>(whole(0, 5)), d.held_ns = whole(0, 99), d.twice = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(degraded_t& m) {
+    fill(m.header), m.modality = name(), m.profile = whole(0, 99), fill_list(m.count, m.decisions, 0, 30);
+  }
+  void fill(playout_entry_t& e) { e.modality = name(), e.delay_ns = whole(0, 99); }
+  void fill(playout_t& m) {
+    fill(m.header), m.policy = static_cast<std::int8_t>(whole(0, 4)), m.lockstep_Hz = real(0, 60);
+    fill_list(m.count, m.entries, 0, 6);
+  }
+  void fill(playout_request_t& m) {
+    fill(m.header), m.generation = whole(0, 99), m.policy = static_cast<std::int8_t>(whole(0, 4));
+    m.aligner = static_cast<std::int8_t>(whole(0, 3)), m.base_ns = whole(0, 99), m.budget_ns = whole(0, 99);
+    fill_list(m.count, m.entries, 0, 6);
   }
   void fill(log_info_t& m) {
     fill(m.header), m.header.sim_time_ns = -1;

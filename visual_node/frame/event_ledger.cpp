@@ -14,11 +14,11 @@ EventLedger::EventLedger(const Settings& s)
       uncertainty_(sync::from_seconds(s.fence_uncertainty_s)) {}
 
 std::vector<contact_event_t> EventLedger::take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
-                                               sync::HostTime t) {
+                                               sync::HostTime t, sync::Nanoseconds delay) {
   std::vector<contact_event_t> to_flash;
   for (const contact_event_t& event : due) {
     if (!owed(event)) continue;
-    const sync::HostTime scheduled = map.to_host(sync::sim_time(event.time_ns));
+    const sync::HostTime scheduled = map.to_host(sync::sim_time(event.time_ns)) + delay;
     presentation_t r{};
     r.event_id = event.event_id;
     r.part = presentation_t::WHOLE;

@@ -21,7 +21,7 @@ class EventLedger {
   // Of the events due for the frame that is expected to be presented at t: those to flash. An event that would be
   // shown too late is dropped and reported so.
   std::vector<contact_event_t> take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
-                                    sync::HostTime t);
+                                    sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0));
   // The frame was presented at t: reports of the events that it showed first, and of those dropped since.
   std::vector<presentation_t> presented(sync::HostTime t);
 

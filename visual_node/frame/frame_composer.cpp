@@ -43,15 +43,16 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
   return *view_;
 }
 
-Frame FrameComposer::frame(sync::HostTime now, std::int64_t number) {
+Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay,
+                           sync::HostTime newest_arrival) {
   tick_ = now;
   const sync::HostTime t = now + render_time_.expected();
   const auto map = bodies_.map(now);
-  const auto instant = map ? std::optional(map->to_sim(t)) : std::nullopt;
+  const auto instant = map ? std::optional(map->to_sim(t - delay)) : std::nullopt;
   Frame frame;
   if (instant) frame.how = bodies_.how(*instant);
-  judge(frame, now);
-  flash_due(t);
+  judge(frame, now, newest_arrival);
+  flash_due(t, delay);
   if (view_) {
     frame.list = view_->draw(body_poses(instant), tool_poses(instant, now));
     frame.list.glows = flashes_.frame(t, frame.list.camera);
@@ -66,8 +67,9 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number) {
   return frame;
 }
 
-void FrameComposer::judge(Frame& frame, sync::HostTime now) {
-  const bool stale = frame.how == sync::How::kStale;
+void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {
+  const bool commanded = now - newest_arrival <= sync::BodyHistory::kStaleAfter;
+  const bool stale = frame.how == sync::How::kStale && !commanded;
   if (!stale) stale_since_.reset();
   if (stale && !stale_since_) stale_since_ = now;
   if (!scene_) {
@@ -77,7 +79,7 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now) {
   } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
     frame.state = node_health_t::INPUT_LOST;
     frame.note = "no state of the world: shows the last";
-  } else if (stale || frame.how == sync::How::kHeld) {
+  } else if (stale || (frame.how == sync::How::kHeld && !commanded)) {
     frame.state = node_health_t::STALE;
     frame.note = "shows the last state of the world";
   } else {
@@ -85,13 +87,15 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now) {
   }
 }
 
-void FrameComposer::flash_due(sync::HostTime t) {
+// An event is shown in the frame that is nearest to its instant; one that is to be shown at once, in the next.
+void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay) {
   const auto map = contacts_.map(tick_);
   if (!map) return;
   // Without a scene there is nothing to show an event in: it waits until it is too late.
-  const sync::HostTime until = view_ ? t : t - sync::from_seconds(settings_.drop_after_s);
+  const sync::Nanoseconds early = std::min(delay, sync::from_seconds(0.5 / settings_.rate_Hz));
+  const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
-  for (const contact_event_t& event : ledger_.take(due, *map, t)) flashes_.add(event, t);
+  for (const contact_event_t& event : ledger_.take(due, *map, t, delay)) flashes_.add(event, t);
 }
 
 std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {

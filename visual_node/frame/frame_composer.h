@@ -37,8 +37,10 @@ class FrameComposer {
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
   const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings);
 
-  // The frame that begins now, number `number` of all.
-  Frame frame(sync::HostTime now, std::int64_t number);
+  // The frame that begins now, number `number` of all. delay: what it shows happened so long before it is seen;
+  // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.
+  Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
+              sync::HostTime newest_arrival = sync::HostTime{});
   // That frame was presented at `fence`: reports of the events that it showed first or dropped.
   std::vector<presentation_t> presented(sync::HostTime fence);
 
@@ -47,8 +49,8 @@ class FrameComposer {
     tool_state_t state;
     sync::HostTime arrival;
   };
-  void flash_due(sync::HostTime t);
-  void judge(Frame& frame, sync::HostTime now);
+  void flash_due(sync::HostTime t, sync::Nanoseconds delay);
+  void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
   std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
 

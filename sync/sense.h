@@ -1,0 +1,167 @@
+// What a sense is on the bus: its streams, with the operators of its profile in between; when it presents; and its reports of
+// what it presented. A node that renders has one.
+//
+//   sync::Sense sense(node);
+//   auto& events = sense.events();
+//   while (node.running()) {
+//     const sync::HostTime now = node.wait();
+//     sense.step(now);                        // takes in what arrived, lets through what is due
+//     while (const auto m = events.pop()) ...
+//     ... render what is due at now, which happened sense.delay() ago ...
+//     sense.publish(now);
+//   }
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tactus/playout_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/node.h"
+#include "sync/playout/follower.h"
+#include "sync/presentation_reporter.h"
+#include "sync/sim_follower.h"
+
+namespace tactus::sync {
+
+template <class Message>
+struct Let {
+  Message message;
+  HostTime arrival;  // when it really arrived
+};
+
+class Sense {
+ public:
+  // A message stream of this sense: what the renderer reads instead of the inbox.
+  template <class Message>
+  class Stream {
+   public:
+    // The next message that is let through by now.
+    std::optional<Let<Message>> pop() {
+      auto next = degraded_.pop(now_);
+      if (!next) return std::nullopt;
+      return Let<Message>{std::move(next->first), next->second};
+    }
+    const InputCount& count() const { return inbox_.count(); }
+
+   private:
+    friend class Sense;
+    explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
+    Queue<Message>& inbox_;
+    std::conditional_t<std::is_same_v<Message, contact_events_t>, DegradedEvents, DegradedSnapshots<Message>> degraded_;
+    bool waits_ = false;
+    HostTime now_{};
+  };
+
+  // Reads the node's --degrade. Throws std::runtime_error with one sentence when that is no profile.
+  explicit Sense(Node& node);
+  ~Sense();
+
+  // Make them before the first step.
+  Stream<contact_events_t>& events(std::size_t capacity = 4096) { return add<contact_events_t>(channels::kContactEvents, capacity); }
+  template <class Message>
+  Stream<Message>& snapshots(const char* channel, std::size_t capacity) {
+    return add<Message>(channel, capacity);
+  }
+  // Of a sense that has no instant of presentation to move, a servo loop: its news waits instead.
+  template <class Message>
+  Stream<Message>& held_snapshots(const char* channel, std::size_t capacity) {
+    auto& stream = add<Message>(channel, capacity);
+    stream.waits_ = true;
+    return stream;
+  }
+
+  // A scene has come: its names, its tool and the profile that it brings.
+  void set_scene(const scene_t& scene, int tool = -1);
+  // How late this sense presents while nobody says otherwise, and how long it needs from the arrival of an event to its
+  // output at the most.
+  void set_own_delay(Nanoseconds delay) { playout_.set_own(delay); }
+  void set_output_latency(Nanoseconds latency) { output_latency_ = latency; }
+
+  // Once a tick.
+  void step(HostTime now);
+
+  // An event is presented so long after it happened: by policy and by profile.
+  Nanoseconds delay() const { return delay_; }
+  // Of that, what the profile adds.
+  Nanoseconds profile_delay() const { return profile_delay_; }
+  // When the event that happened at that time is to be presented: so much later, or as soon as this sense can when the
+  // policy is that.
+  HostTime schedule(std::int64_t event_id, HostTime happened) const;
+  // What is wrong with the output itself.
+  const OutputDef& output() const { return output_; }
+  // When the newest message of any stream really arrived.
+  HostTime newest_arrival() const;
+
+  void report(const presentation_t& report);
+  // Sends reports, and the decisions of the profile.
+  void publish(HostTime now);
+
+ private:
+  struct AnyStream {
+    virtual ~AnyStream() = default;
+    virtual void step(Sense& sense, HostTime now) = 0;
+    virtual HostTime newest_arrival() const = 0;
+  };
+  template <class Message>
+  struct Held : AnyStream {
+    explicit Held(Queue<Message>& inbox) : stream(inbox) {}
+    void step(Sense& sense, HostTime now) override;
+    HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
+    Stream<Message> stream;
+  };
+  template <class Message>
+  Stream<Message>& add(const char* channel, std::size_t capacity) {
+    auto held = std::make_unique<Held<Message>>(node_.bus().queue<Message>(channel, capacity));
+    auto& stream = held->stream;
+    streams_.push_back(std::move(held));
+    return stream;
+  }
+
+  void take_control(HostTime now);
+  void put_in_force(const ProfileInForce& profile);
+  void note_arrivals(const contact_events_t& m, HostTime arrival);
+  void report_dropped(const std::vector<contact_event_t>& dropped);
+  bool owes(const contact_event_t& event) const;
+  void publish_decisions();
+
+  Node& node_;
+  Queue<degradation_t>& degradations_;
+  Queue<playout_t>& playouts_;
+  ProfileReceiver receiver_;
+  std::int64_t profile_hash_ = 0;
+  Stack stack_;
+  SceneNames names_;
+  int tool_ = -1;
+  Decisions decisions_;
+  std::vector<std::unique_ptr<AnyStream>> streams_;
+  SimFollower simulation_;
+  PlayoutFollower playout_;
+  Nanoseconds delay_{0}, profile_delay_{0}, output_latency_{0};
+  OutputDef output_;
+  PresentationReporter reporter_;
+  std::map<std::int64_t, HostTime> arrivals_;  // of events, raw
+  std::deque<std::int64_t> arrivals_order_;
+};
+
+template <class Message>
+void Sense::Held<Message>::step(Sense& sense, HostTime now) {
+  while (auto m = stream.inbox_.pop()) {
+    if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    if constexpr (std::is_same_v<Message, contact_events_t>) {
+      sense.note_arrivals(m->message, m->arrival);
+      stream.degraded_.push(m->message, m->arrival, sense.stack_, &sense.decisions_);
+    } else {
+      stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
+    }
+  }
+  if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
+  stream.now_ = now - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+}
+
+}  // namespace tactus::sync
