@@ -17,7 +17,7 @@ bool NodeLife::observe(std::int64_t incarnation, std::int8_t state, HostTime sen
     spans_.push_back(next);
   }
   Span& now = spans_.back();
-  if (state == node_health_t::RUNNING && now.owes_from == HostTime::max()) {
+  if ((state == node_health_t::RUNNING || state == node_health_t::STALE) && now.owes_from == HostTime::max()) {
     now.owes_from = sent + kGrace;
     first_owes_from_ = std::min(first_owes_from_, now.owes_from);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <utility>
 
@@ -31,6 +32,14 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
+// As people write it: no trailing zeros, and no unit of what has none.
+std::string number_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
+}
+std::string unit_text(std::string_view unit) { return unit == "1" || unit == "count" ? "" : " " + std::string(unit); }
+
 bool is_choice(std::string_view unit) { return unit.find('|') != std::string_view::npos; }
 
 }  // namespace
@@ -40,12 +49,12 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || !std::isfinite(number))
-    throw std::invalid_argument("\"" + std::string(text) + "\" is no number in " + std::string(unit));
+    throw std::invalid_argument("\"" + std::string(text) + "\" is no number" + (unit == "1" ? "" : " in " + std::string(unit)));
   const std::string_view written = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
   if (written.empty() || written == unit) return number;
   for (const Unit& u : kUnits)
     if (u.written == written && u.base == unit) return number * u.factor;
-  throw std::invalid_argument("\"" + std::string(written) + "\" is no unit of " + std::string(unit));
+  throw std::invalid_argument("\"" + std::string(written) + "\" is no unit of " + (unit == "1" ? "a plain number" : std::string(unit)));
 }
 
 void check_setting(const SettingRow& row, std::string_view value) {
@@ -73,8 +82,8 @@ void check_setting(const SettingRow& row, std::string_view value) {
     throw std::invalid_argument(what + e.what());
   }
   if (number < row.min || number > row.max || (unit == "count" && number != std::floor(number)))
-    throw std::invalid_argument(what + "must be between " + std::to_string(row.min) + " and " +
-                                std::to_string(row.max) + (unit == "count" ? ", whole" : " " + std::string(unit)));
+    throw std::invalid_argument(what + "must be between " + number_text(row.min) + " and " + number_text(row.max) +
+                                unit_text(unit) + (unit == "count" ? ", whole" : ""));
 }
 
 }  // namespace tactus::sync

@@ -78,6 +78,7 @@ std::string to_json(const RunSummary& s) {
     bus[name] = {{"messages", c.messages}, {"bytes", c.bytes}, {"gaps", c.gaps}};
   const Json out = {{"scene", s.scene()},
                     {"seconds", rounded(s.seconds(), 1000)},
+                    {"recorded_seconds", rounded(s.recorded_seconds(), 1000)},
                     {"seed", s.seed()},
                     {"git", s.git()},
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},

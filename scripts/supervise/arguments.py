@@ -21,6 +21,7 @@ class Plan:
     scene: pathlib.Path
     seconds: float
     out: pathlib.Path
+    out_is_ours: bool  # nobody named it: another name does as well
     without: list
     device: str  # "": the scene's
     window: bool
@@ -62,7 +63,7 @@ def parse(words, here):
         if node not in REMOVABLE:
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join(REMOVABLE)}")
     plan = Plan(scene=scene_file(here, a.scene), seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
-                out=out_folder(here, a.out), without=a.without, device=device(a.device, a.without),
+                out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without, device=device(a.device, a.without),
                 window=a.window, listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set))

@@ -1,4 +1,5 @@
 """What scripts/run does once all is built: checks, starts, shows, stops, sums up."""
+import fcntl
 import os
 import signal
 import subprocess
@@ -73,6 +74,28 @@ def sum_up(plan, git, lost, restarts):
     return wrong
 
 
+def claim_out(plan):
+    """Makes the folder of the results and keeps others out of it until the descriptor returned is closed, or this process
+    is no more: of two runs that start in the same second the later takes the next name. Raises Refusal."""
+    while True:
+        try:
+            plan.out.mkdir(parents=True, exist_ok=not plan.out_is_ours)
+            claim = os.open(plan.out, os.O_RDONLY | os.O_DIRECTORY)
+        except FileExistsError:
+            plan.out = plan.out.with_name(plan.out.name + "+")
+            continue
+        except OSError as error:
+            raise Refusal(f"recorder: the folder {plan.out} cannot be made ({error.strerror}); name another with --out") from None
+        try:
+            fcntl.flock(claim, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(claim)
+            raise Refusal(f"recorder: another run is writing to --out {plan.out}; name another folder") from None
+        except OSError:
+            pass  # a file system without locks
+        return claim
+
+
 def run(plan):
     """One run. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
     stop = Stop()
@@ -81,16 +104,12 @@ def run(plan):
     for name in [*plan.nodes(), "watch", "summarise", "export_csv"]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
-    words = cluster.commands(plan, run_id, git)
-    cluster.check(words)
+    cluster.check(cluster.commands(plan, run_id, git))
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
-    try:
-        plan.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Refusal(f"recorder: the folder {plan.out} cannot be made ({error.strerror}); name another with --out") from None
-    running = cluster.Cluster(plan, net, words, run_id)
+    claim = claim_out(plan)
+    running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
     say(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
     say(expectation)
     wrong = []
@@ -116,6 +135,7 @@ def run(plan):
             say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
     wrong += sum_up(plan, git, lost, restarts)
     say(f"results in {plan.out}")
+    os.close(claim)
     return wrong
 
 

@@ -42,7 +42,7 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   CHECK(media_seconds(run, run.out() / "video.mp4") > 4);
 
   const json summary = json::parse(contents(run.out() / "summary.json"));
-  check_keys(summary, {"scene", "seconds", "seed", "git", "realtime_factor", "nodes", "contacts", "asynchrony_ms", "bus"});
+  check_keys(summary, {"scene", "seconds", "recorded_seconds", "seed", "git", "realtime_factor", "nodes", "contacts", "asynchrony_ms", "bus"});
   for (const std::string& node : kNodes) {
     REQUIRE(summary["nodes"].contains(node));
     check_keys(summary["nodes"][node], {"rate_hz", "ticks", "missed_ticks", "tick_us", "wake_us", "restarts"});

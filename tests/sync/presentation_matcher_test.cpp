@@ -177,6 +177,17 @@ TEST_CASE("A node whose input is stale still owes what happens") {
   CHECK(f.tally("haptic").lost == 2);
 }
 
+TEST_CASE("A node whose input is stale from the first owes what happens while it is frozen") {
+  MatcherFixture f;
+  f.health("visual_node", "visual", kBoth, 0, 1, node_health_t::WAITING);
+  f.healths("visual_node", "visual", kBoth, 100, 1000, 1, node_health_t::STALE);
+  f.event(1, 1500);
+  f.healths("visual_node", "visual", kBoth, 3000, 4000, 1, node_health_t::STALE);
+  f.matcher.advance(f.at(4000));
+  CHECK(f.tally("visual").owed == 1);
+  CHECK(f.tally("visual").stalled == 1);
+}
+
 TEST_CASE("What the simulation could not repeat before it died is dead, unless it was presented") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 6000);

@@ -87,7 +87,7 @@ TEST_CASE("A value that does not fit is refused with a sentence that names setti
     return std::string();
   };
   for (const auto& [name, value, part] :
-       std::vector<std::array<const char*, 3>>{{"delay", "2", "1.000000 s"},
+       std::vector<std::array<const char*, 3>>{{"delay", "2", "and 1 s"},
                                                {"delay", "-1ms", "between"},
                                                {"delay", "soon", "no number"},
                                                {"voices", "2.5", "whole"},
