@@ -9,7 +9,8 @@
 namespace tactus::test {
 
 // samples: rows from the top, as pictures are stored; of 16 bits the high byte first.
-inline std::vector<std::uint8_t> png_bytes(int columns, int rows, int bits, const std::vector<std::uint8_t>& samples,
+inline std::vector<std::uint8_t> png_bytes(int columns, int rows, int bits,
+                                           const std::vector<std::uint8_t>& samples,
                                            int type = PNG_COLOR_TYPE_GRAY) {
   std::vector<std::uint8_t> out;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -19,8 +20,8 @@ inline std::vector<std::uint8_t> png_bytes(int columns, int rows, int bits, cons
     to.insert(to.end(), bytes, bytes + count);
   };
   png_set_write_fn(png, &out, append, nullptr);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), bits, type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), bits, type,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   const std::size_t stride = samples.size() / static_cast<std::size_t>(rows);
   for (int r = 0; r < rows; ++r) png_write_row(png, samples.data() + static_cast<std::size_t>(r) * stride);

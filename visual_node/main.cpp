@@ -78,7 +78,7 @@ int main(int argc, char** argv) try {
         std::cerr << refused << "\n";
       std::vector<std::string> trouble;
       const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
-                                                       visual::height_maps_of(scenes, trouble));
+                                                    visual::height_maps_of(scenes, trouble));
       renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
       for (const std::string& sentence : trouble) std::cerr << declaration.node << ": " << sentence << std::endl;
       renderer->load(view.geometries(), view.lighting(), view.reliefs());

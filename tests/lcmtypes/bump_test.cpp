@@ -31,9 +31,9 @@ TEST_CASE("A point lies in the map where its two coordinates, in repetitions, sa
   material_def_t material{};
   material.bump_size_u_m = 0.5, material.bump_size_v_m = 0.25;
   const Vector3d point(1, 2, 3);
-  CHECK(bump_at(material, bump_axes({0, 0, 1}), point) == Vector2d(2, 8));    // x, y
-  CHECK(bump_at(material, bump_axes({1, 0, 0}), point) == Vector2d(4, 12));   // y, z
-  CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));   // z, x
+  CHECK(bump_at(material, bump_axes({0, 0, 1}), point) == Vector2d(2, 8));   // x, y
+  CHECK(bump_at(material, bump_axes({1, 0, 0}), point) == Vector2d(4, 12));  // y, z
+  CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
 }
 
 TEST_CASE("A relief out of range is not let in, one that is not there may say anything finite") {
@@ -45,7 +45,8 @@ TEST_CASE("A relief out of range is not let in, one that is not there may say an
   material_def_t& m = scene.materials[0];
   m.bump_asset = 7, m.bump_size_u_m = m.bump_size_v_m = 0.5, m.bump_height_m = 0.001;
   REQUIRE(valid(scene));
-  for (double material_def_t::*field : {&material_def_t::bump_size_u_m, &material_def_t::bump_size_v_m, &material_def_t::bump_height_m})
+  for (double material_def_t::*field :
+       {&material_def_t::bump_size_u_m, &material_def_t::bump_size_v_m, &material_def_t::bump_height_m})
     for (const double wrong : {0.0, -0.5, 1e-9, 1e3}) {
       const double right = m.*field;
       m.*field = wrong;

@@ -21,9 +21,11 @@ TEST_CASE("A grey picture is heights from 0 to 1, its lowest row first") {
 
 TEST_CASE("What is no height map is refused, wherever it is damaged") {
   CHECK_THROWS_WITH(read_height_map({}), Catch::Contains("no PNG"));
-  CHECK_THROWS_WITH(read_height_map(png_bytes(2, 2, 8, std::vector<std::uint8_t>(12), PNG_COLOR_TYPE_RGB)), Catch::Contains("grey"));
+  CHECK_THROWS_WITH(read_height_map(png_bytes(2, 2, 8, std::vector<std::uint8_t>(12), PNG_COLOR_TYPE_RGB)),
+                    Catch::Contains("grey"));
   CHECK_THROWS_WITH(read_height_map(png_bytes(1, 2, 8, {0, 0})), Catch::Contains("samples"));
-  CHECK_THROWS_WITH(read_height_map(png_bytes(5000, 2, 8, std::vector<std::uint8_t>(10'000))), Catch::Contains("4097"));
+  CHECK_THROWS_WITH(read_height_map(png_bytes(5000, 2, 8, std::vector<std::uint8_t>(10'000))),
+                    Catch::Contains("4097"));
   const auto whole = png_bytes(20, 20, 8, std::vector<std::uint8_t>(400, 7));
   // The last 12 bytes say that the picture is over; its samples are there without them.
   for (std::size_t length = 0; length < whole.size() - 12; ++length)

@@ -18,8 +18,8 @@ TEST_CASE("The slopes of a sine are its derivative") {
   REQUIRE(relief.columns == 64);
   REQUIRE(relief.rows == 16);
   CHECK(relief.size_m == Eigen::Vector2f(0.4f, 0.1f));
-  // h = H/2 sin(2 pi u / L): at most pi H / L. Central differences over w = 2 pi / 64 lose w^2/6; 16 bits err by half a
-  // level at each of the two neighbours, H / 65535 over two pixels of L / 64.
+  // h = H/2 sin(2 pi u / L): at most pi H / L. Central differences over w = 2 pi / 64 lose w^2/6; 16 bits err by
+  // half a level at each of the two neighbours, H / 65535 over two pixels of L / 64.
   const double steepest = std::numbers::pi * 0.002 / 0.4, w = 2 * std::numbers::pi / 64;
   const double tolerance = steepest * w * w / 6 + 0.002 / 65535 / (2 * 0.4 / 64);
   for (int row = 0; row < 16; ++row)

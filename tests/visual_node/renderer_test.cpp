@@ -194,7 +194,9 @@ constexpr double kWave_m = 1, kHeight_m = 0.08;
 const HeightMaps kSine{{1, test::sine_map(256, 4)}};
 
 // What Lambert says of a grey surface of normal n, in 8 bits.
-double lambert(const Eigen::Vector3d& n) { return srgb(0.5 * std::max(0.0, -n.normalized().dot(kSun.normalized()))); }
+double lambert(const Eigen::Vector3d& n) {
+  return srgb(0.5 * std::max(0.0, -n.normalized().dot(kSun.normalized())));
+}
 double slope(double u_m) {  // of kHeight_m / 2 sin(2 pi u / kWave_m)
   return std::numbers::pi * kHeight_m / kWave_m * std::cos(2 * std::numbers::pi * u_m / kWave_m);
 }
@@ -213,7 +215,8 @@ scene_t rough_floor(const Eigen::Isometry3d& body) {
 
 TEST_CASE("A relief of waves is shaded as Lambert says of its slopes") {
   const double turned_rad = GENERATE(0.0, 0.7);
-  const Eigen::Isometry3d body(Eigen::Translation3d(0.3, -0.2, 0) * Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d body(Eigen::Translation3d(0.3, -0.2, 0) *
+                               Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()));
   const Image image = render(rough_floor(body), {}, {}, kSine);
   double darkest = 255, brightest = 0;
   for (int y = 20; y < kHeight - 20; ++y) {
@@ -273,7 +276,8 @@ TEST_CASE("What has no relief looks as it would without any in the scene") {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       if (std::hypot(x - kWidth / 2, y - kHeight / 2) < ball_px) REQUIRE(with.at(x, y) == without.at(x, y));
-  const int box_x = kWidth / 2 - static_cast<int>(0.8 * scale_px(3.6)), box_y = kHeight / 2 - static_cast<int>(0.6 * scale_px(3.6));
+  const int box_x = kWidth / 2 - static_cast<int>(0.8 * scale_px(3.6)),
+            box_y = kHeight / 2 - static_cast<int>(0.6 * scale_px(3.6));
   for (int y = box_y - 20; y < box_y + 20; ++y)
     for (int x = box_x - 20; x < box_x + 20; ++x) REQUIRE(with.at(x, y) == without.at(x, y));
   SECTION("and a relief without heights is smooth") {

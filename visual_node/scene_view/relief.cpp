@@ -7,7 +7,7 @@
 namespace tactus::visual {
 namespace {
 
-// 89.4 degrees: a step looks like a wall, and the figure keeps within what a half float holds.
+// 89.4 degrees: a step looks like a wall, and light needs no finer difference.
 constexpr double kSteepest = 100;
 
 float slope(double rise) { return static_cast<float>(std::clamp(rise, -kSteepest, kSteepest)); }
@@ -44,7 +44,8 @@ HeightMaps height_maps_of(const sync::SceneReceiver& scenes, std::vector<std::st
       if (!asset) throw std::runtime_error("it was not sent");
       maps.emplace(material.bump_asset, read_height_map(asset->bytes));
     } catch (const std::exception& e) {
-      trouble.push_back("the bump of material " + material.name + " cannot be read: " + e.what() + "; it is drawn smooth");
+      trouble.push_back("the bump of material " + material.name + " cannot be read: " + e.what() +
+                        "; it is drawn smooth");
     }
   }
   return maps;

@@ -26,8 +26,10 @@ struct ToolPose {
 
 class SceneView {
  public:
-  // Shapes whose mesh is not among `meshes` are left out and counted; those whose height map is not there are smooth.
-  SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings, const HeightMaps& height_maps = {});
+  // Shapes whose mesh is not among `meshes` are left out and counted; those whose height map is not there are
+  // smooth.
+  SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
+            const HeightMaps& height_maps = {});
 
   // The triangles that batches refer to, by index.
   const std::vector<Triangles>& geometries() const { return geometries_; }

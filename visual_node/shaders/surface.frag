@@ -11,7 +11,7 @@ flat in vec3 glow;
 #if RELIEF
 in vec3 at_body;
 in vec3 facing_body;
-flat in vec4 turn;
+flat in mat3 body_axes;       // in the world
 uniform sampler2D slope_map;  // dh/du, dh/dv, m/m
 uniform vec2 relief_size;     // of one repetition, m
 #endif
@@ -71,8 +71,6 @@ void lamp(int i, bool shiny, bool coned, bool falls, bool shadowed) {
 }
 
 #if RELIEF
-vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
-
 // The normal of the relief: the height's gradient along the surface, taken off the outward normal (Blinn 1978, "Simulation
 // of Wrinkled Surfaces"). Projected along the dominant axis of the normal in the body frame, as in lcmtypes/bump.h.
 vec3 roughened(vec3 smooth_n) {
@@ -80,7 +78,7 @@ vec3 roughened(vec3 smooth_n) {
   bool z = a.z >= a.x && a.z >= a.y, x = !z && a.x >= a.y;
   vec2 place = z ? at_body.xy : x ? at_body.yz : at_body.zx;
   vec2 slope = texture(slope_map, place / relief_size).rg;
-  vec3 g = rotate(turn, z ? vec3(slope, 0.0) : x ? vec3(0.0, slope) : vec3(slope.y, 0.0, slope.x));
+  vec3 g = body_axes * (z ? vec3(slope, 0.0) : x ? vec3(0.0, slope) : vec3(slope.y, 0.0, slope.x));
   g -= dot(g, smooth_n) * smooth_n;
   return normalize(smooth_n - (gl_FrontFacing ? g : -g));
 }

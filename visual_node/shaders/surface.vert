@@ -27,7 +27,7 @@ flat out vec3 glow;
 #if RELIEF
 out vec3 at_body;  // m, body frame
 out vec3 facing_body;
-flat out vec4 turn;  // from the body frame to the world
+flat out mat3 body_axes;  // in the world
 #endif
 
 vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
@@ -40,10 +40,9 @@ void main() {
   bounce = ambient.rgb;
   glow = emissive.rgb;
 #if RELIEF
-  turn = body_orientation;
-  vec4 back = vec4(-turn.xyz, turn.w);
-  at_body = rotate(back, at - body_place.xyz);
-  facing_body = rotate(back, facing);
+  for (int i = 0; i < 3; ++i) body_axes[i] = rotate(body_orientation, mat3(1.0)[i]);
+  at_body = (at - body_place.xyz) * body_axes;  // transposed: back into the body frame
+  facing_body = facing * body_axes;
 #endif
   // A little along the normal, so that a surface does not shadow itself.
   shadow_at = shadow_from_world * vec4(at + 0.008 * facing, 1.0);
