@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lcmtypes/bump.h"
+
 namespace tactus {
 namespace {
 
@@ -81,8 +83,8 @@ bool sane(const decision_t& d) {
          between(d.twice, 0, 1);
 }
 bool sane(const presentation_t& p) {
-  return between(p.part, presentation_t::WHOLE, presentation_t::TRANSIENT) && p.ready_ns >= -1 && p.scheduled_ns >= -1 &&
-         p.presented_ns >= -1 && p.uncertainty_ns >= 0 &&
+  return between(p.part, presentation_t::WHOLE, presentation_t::TRANSIENT) && p.ready_ns >= -1 &&
+         p.scheduled_ns >= -1 && p.presented_ns >= -1 && p.uncertainty_ns >= 0 &&
          between(p.outcome, presentation_t::PRESENTED, presentation_t::INAUDIBLE);
 }
 bool sane(const histogram_t& h) {
@@ -92,13 +94,20 @@ bool sane(const histogram_t& h) {
 }
 bool sane(const input_health_t& i) { return i.age_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0; }
 bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF); }
+bool sane_bump(const material_def_t& m) {
+  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
+  if (m.bump_asset == 0) return sane(m.bump_size_u_m) && sane(m.bump_size_v_m) && sane(m.bump_height_m);
+  return within(m.bump_size_u_m, kMinBumpSize_m, kMaxBumpSize_m) &&
+         within(m.bump_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) &&
+         within(m.bump_height_m, kMinBumpHeight_m, kMaxBumpHeight_m);
+}
 bool sane(const material_def_t& m) {
   // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
          sane_not_negative(m.rayleigh_alpha_1_s) && sane_not_negative(m.rayleigh_beta_s) &&
          sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
          sane_not_negative(m.restitution) && sane_not_negative(m.conductivity_W_mK) &&
-         sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC);
+         sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC) && sane_bump(m);
 }
 bool sane(const shape_def_t& s, int bodies, int materials) {
   return between(s.body, 0, bodies - 1) && between(s.material, -1, materials - 1) && sane(s.pose) &&

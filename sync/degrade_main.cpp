@@ -17,12 +17,13 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kListen{500'000'000};    // the clock of the simulation comes every millisecond
+constexpr sync::Nanoseconds kListen{500'000'000};      // the clock of the simulation comes every millisecond
 constexpr sync::Nanoseconds kPatience{2'000'000'000};  // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 std::string joined(const std::set<std::string>& names) {
@@ -38,10 +39,15 @@ int main(int argc, char** argv) try {
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string file;
-  app.add_option("PROFILE", file, "XML file of the profile, or off")->required();
-  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->capture_default_str();
+  app.add_option("PROFILE", file, "XML file of the profile, or off");
+  app.add_option("--port", bus_options.port, "UDP port of the bus")
+      ->envname("TACTUS_PORT")
+      ->check(CLI::Range(1, 65534))
+      ->capture_default_str();
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "degrade", argc, argv);
+
+  if (file.empty()) throw std::runtime_error("name the profile to put in force, or off; see degrade --help");
 
   sync::ProfileInForce profile;
   profile.text = file == "off" ? "<profile name=\"off\"/>" : sync::read_profile_file(file);
@@ -80,9 +86,10 @@ int main(int argc, char** argv) try {
   }
   std::set<std::string> taken, missing;
   for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
-  if (taken.empty()) throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
-  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in " << joined(taken)
-            << std::endl;
+  if (taken.empty())
+    throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
+            << joined(taken) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");
   return 0;
 } catch (const std::exception& e) {

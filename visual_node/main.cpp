@@ -77,9 +77,12 @@ int main(int argc, char** argv) try {
       for (const std::string& refused : sync::apply_settings(settings, visual::setting_fields(), declaration.node,
                                                              scenes.scene()->settings, options.set))
         std::cerr << refused << "\n";
-      const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings);
+      std::vector<std::string> trouble;
+      const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
+                                                    visual::height_maps_of(scenes, trouble));
       renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
-      renderer->load(view.geometries(), view.lighting());
+      for (const std::string& sentence : trouble) std::cerr << declaration.node << ": " << sentence << std::endl;
+      renderer->load(view.geometries(), view.lighting(), view.reliefs());
       recording.begin(view.width(), view.height(), settings);
       node.set_rate(settings.rate_Hz);
       sense.set_scene(*scenes.scene());

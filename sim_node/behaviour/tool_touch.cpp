@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lcmtypes/bump.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/triangles.h"
 
@@ -54,7 +55,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     ClosestSurface surface(s, mesh, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static),
-                         std::sqrt(traits[i].friction_dynamic * own_dynamic), traits[i].compliance_1_Pa + own_compliance});
+                         std::sqrt(traits[i].friction_dynamic * own_dynamic), traits[i].compliance_1_Pa + own_compliance,
+                         s.material >= 0 ? world.materials[static_cast<std::size_t>(s.material)].bump_asset : 0});
   }
   model_.tool = tool;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
@@ -215,7 +217,8 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.point_m = to_vec3(n.plane.point);
     p.normal = to_vec3f(n.plane.normal);
     p.point_body_m = to_vec3f(body.to_body(n.plane.point));
-    p.normal_body = to_vec3f(body.orientation.conjugate() * n.plane.normal);
+    const Vector3d normal_body = body.orientation.conjugate() * n.plane.normal;
+    p.normal_body = to_vec3f(normal_body);
     p.velocity_m_s = to_vec3f(body.velocity_at(n.plane.point));
     p.angular_velocity_rad_s = to_vec3f(body.spin_rad_s);
     const double mobility_1_kg = mobility(body, n.plane.point, n.plane.normal);
@@ -224,6 +227,8 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.damping_N_s_m = static_cast<float>(settings_.touch_damping_Ns_m);
     p.friction_static = static_cast<float>(s.friction_static);
     p.friction_dynamic = static_cast<float>(s.friction_dynamic);
+    p.bump_asset = s.bump_asset;
+    if (p.bump_asset != 0) p.bump_u_body = to_vec3f(Vector3d::Unit(bump_axes(normal_body).u));
     model_.planes.push_back(p);
   }
   model_.plane_count = static_cast<std::int32_t>(model_.planes.size());

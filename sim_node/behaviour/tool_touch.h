@@ -44,6 +44,7 @@ class ToolTouch {
     Eigen::Vector3d centre_in_body;  // of the sphere around the shape
     double friction_static = 0.5, friction_dynamic = 0.5;  // of the pair
     double compliance_1_Pa = 0;                            // of the pair
+    std::int64_t bump_asset = 0;                           // of its material
   };
   // A surface near the tool, followed from step to step.
   struct Near {

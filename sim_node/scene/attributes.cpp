@@ -20,27 +20,43 @@ std::string Attributes::required_text(const std::string& name) {
   return *value;
 }
 
-std::optional<double> Attributes::quantity(const std::string& name, const std::string& unit, double min, double max) {
-  const auto value = text(name);
-  if (!value) return std::nullopt;
+double Attributes::number(const std::string& name, const std::string& word, const std::string& unit, double min,
+                          double max) const {
   double number = 0;
   try {
-    number = sync::parse_quantity(*value, unit);
+    number = sync::parse_quantity(word, unit);
   } catch (const std::invalid_argument& e) {
-    context_.refuse(element_, "has " + name + "=\"" + *value + "\": " + e.what());
+    context_.refuse(element_, "has " + name + "=\"" + word + "\": " + e.what());
   }
   if (!(number >= min && number <= max)) {
     std::ostringstream sentence;
-    sentence << "has " << name << "=\"" << *value << "\": it must be between " << min << " and " << max << " " << unit;
+    sentence << "has " << name << "=\"" << word << "\": it must be between " << min << " and " << max << " " << unit;
     context_.refuse(element_, sentence.str());
   }
   return number;
+}
+
+std::optional<double> Attributes::quantity(const std::string& name, const std::string& unit, double min, double max) {
+  const auto value = text(name);
+  if (!value) return std::nullopt;
+  return number(name, *value, unit, min, max);
 }
 
 double Attributes::required_quantity(const std::string& name, const std::string& unit, double min, double max) {
   const auto value = quantity(name, unit, min, max);
   if (!value) context_.refuse(element_, "lacks its attribute \"" + name + "\"");
   return *value;
+}
+
+std::vector<double> Attributes::required_quantities(const std::string& name, std::size_t count, const std::string& unit,
+                                                    double min, double max) {
+  const std::string value = required_text(name);
+  std::istringstream in(value);
+  std::vector<double> found;
+  for (std::string word; in >> word;) found.push_back(number(name, word, unit, min, max));
+  if (found.size() != count)
+    context_.refuse(element_, "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " quantities");
+  return found;
 }
 
 std::optional<bool> Attributes::flag(const std::string& name) {

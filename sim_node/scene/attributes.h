@@ -17,6 +17,9 @@ class Attributes {
   // In the base unit given ("m", "kg", "s", "1", ...), between the limits.
   std::optional<double> quantity(const std::string& name, const std::string& unit, double min, double max);
   double required_quantity(const std::string& name, const std::string& unit, double min, double max);
+  // "0.5m 0.2m": as many quantities, one after the other.
+  std::vector<double> required_quantities(const std::string& name, std::size_t count, const std::string& unit, double min,
+                                          double max);
   std::optional<bool> flag(const std::string& name);
   // "x y z" in metres.
   std::optional<Eigen::Vector3d> position(const std::string& name);
@@ -26,6 +29,7 @@ class Attributes {
   void done() const;
 
  private:
+  double number(const std::string& name, const std::string& word, const std::string& unit, double min, double max) const;
   std::vector<double> numbers(const std::string& name, std::size_t count);
 
   const LoadContext& context_;

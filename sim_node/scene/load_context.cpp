@@ -14,6 +14,13 @@ void LoadContext::warn(const sdf::Element& element, const std::string& sentence)
   warnings.push_back(files.where(element) + ": " + xml_path(element) + " " + sentence);
 }
 
+std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf::Element& element) const {
+  const std::filesystem::path file = files.find(uri, element.FilePath());
+  if (file.empty() || !std::filesystem::is_regular_file(file))
+    refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
+  return file;
+}
+
 Eigen::Isometry3d LoadContext::resolve(const sdf::SemanticPose& pose, const sdf::Element& element,
                                        const std::string& resolve_to) const {
   ignition::math::Pose3d resolved;

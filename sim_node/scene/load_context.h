@@ -27,6 +27,9 @@ struct LoadContext {
   [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;
   void warn(const sdf::Element& element, const std::string& sentence) const;
 
+  // The file of a mesh or a picture that an element names; refused when it is not there.
+  std::filesystem::path asset_file(const std::string& uri, const sdf::Element& element) const;
+
   // The pose as libsdformat's frame graph resolves it; refused when it is not finite.
   Eigen::Isometry3d resolve(const sdf::SemanticPose& pose, const sdf::Element& element,
                             const std::string& resolve_to = "") const;

@@ -113,6 +113,7 @@ std::vector<sync::Asset> make_assets(const WorldDef& world, std::int64_t step_ns
   for (const Heightfield& field : world.heightfields)
     hashes.heightfields.push_back(
         add_mesh(triangulate(field, kMaxSamples), "heightfield " + std::to_string(hashes.heightfields.size())));
+  assets.insert(assets.end(), world.images.begin(), world.images.end());
   assets.front() = {asset_ref_t::SCENE, world.name, sync::encode(to_message(world, step_ns, hashes))};
   if (!world.source_text.empty())
     assets.push_back({asset_ref_t::SDF, world.source_file, {world.source_text.begin(), world.source_text.end()}});

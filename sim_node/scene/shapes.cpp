@@ -20,19 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file of a mesh or a picture, refused with the line of the element that names it.
-fs::path asset_file(const LoadContext& context, const std::string& uri, const sdf::Element& element) {
-  const fs::path file = context.files.find(uri, element.FilePath());
-  if (file.empty() || !fs::is_regular_file(file))
-    context.refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
-  return file;
-}
-
 int mesh_index(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
   const Eigen::Vector3d scale = to_eigen(mesh.Scale());
   if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
     context.refuse(element, "has a <scale> that is zero or not finite");
-  const fs::path file = asset_file(context, mesh.Uri(), element);
+  const fs::path file = context.asset_file(mesh.Uri(), element);
   std::ostringstream key;
   key << file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.meshes.size()));
@@ -48,7 +40,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
   const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
   if (!size.allFinite() || (size.array() <= 0).any() || !centre.allFinite())
     context.refuse(element, "has a <size> that is not positive or a <pos> that is not finite");
-  const fs::path file = asset_file(context, map.Uri(), element);
+  const fs::path file = context.asset_file(map.Uri(), element);
   std::ostringstream key;
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));

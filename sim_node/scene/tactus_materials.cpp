@@ -1,10 +1,46 @@
 #include "sim_node/scene/tactus_materials.h"
 
+#include <algorithm>
+
+#include "lcmtypes/bump.h"
+#include "lcmtypes/height_map.h"
 #include "sim_node/scene/attributes.h"
+#include "sim_node/scene/height_image.h"
 #include "sim_node/scene/materials.h"
+#include "sync/identity.h"
 
 namespace tactus::sim {
 namespace {
+
+// Hash of the height map in a file, which becomes one of the world's images unless its bytes are among them already.
+std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const std::string& uri) {
+  const std::filesystem::path file = context.asset_file(uri, element);
+  try {
+    sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
+    read_height_map(image.bytes);
+    const std::int64_t hash = sync::fnv1a_64(image.bytes.data(), image.bytes.size());
+    const auto same = [&](const sync::Asset& other) { return other.bytes == image.bytes; };
+    auto& images = context.world.images;
+    if (std::none_of(images.begin(), images.end(), same)) images.push_back(std::move(image));
+    return hash;
+  } catch (const std::exception& e) {
+    context.refuse(element, "names bump \"" + uri + "\", which cannot be read: " + e.what());
+  }
+}
+
+// A picture, the extent of one repetition of it and its height: all three or none.
+void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("bump")) {
+    for (const char* lonely : {"bump_size", "bump_height"})
+      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without bump: name the picture too");
+    return;
+  }
+  const std::string uri = attributes.required_text("bump");
+  const std::vector<double> size_m = attributes.required_quantities("bump_size", 2, "m", kMinBumpSize_m, kMaxBumpSize_m);
+  material.bump_size_u_m = size_m[0], material.bump_size_v_m = size_m[1];
+  material.bump_height_m = attributes.required_quantity("bump_height", "m", kMinBumpHeight_m, kMaxBumpHeight_m);
+  material.bump_asset = image_hash(context, element, uri);
+}
 
 void read_material(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
@@ -23,6 +59,7 @@ void read_material(LoadContext& context, const sdf::Element& element) {
     else if (known == context.material_of.end())
       context.refuse(element, std::string("is new and lacks \"") + figure.attribute + "\": give it, or a base to take it from");
   }
+  read_bump(context, element, attributes, material);
   attributes.done();
   const auto [at, is_new] = context.material_of.try_emplace(name, static_cast<int>(context.world.materials.size()));
   if (is_new)

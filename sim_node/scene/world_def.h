@@ -94,6 +94,7 @@ struct WorldDef {
   std::vector<TriangleMesh> meshes;
   std::vector<Heightfield> heightfields;
   std::vector<material_def_t> materials;
+  std::vector<sync::Asset> images;  // the height maps that materials name by their hash, each once
   std::vector<light_def_t> lights;
   std::vector<tool_def_t> tools;
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();

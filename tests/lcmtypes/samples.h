@@ -226,6 +226,8 @@ class Samples {
     m.friction_static = real(0, 1), m.friction_dynamic = real(0, 1), m.restitution = real(0, 1);
     m.conductivity_W_mK = real(0, 400), m.specific_heat_J_kgK = real(100, 4000),
     m.temperature_degC = real(-20, 90);
+    m.bump_asset = whole(0, 1);
+    m.bump_size_u_m = real(0.001, 1), m.bump_size_v_m = real(0.001, 1), m.bump_height_m = real(1e-6, 0.01);
   }
   void fill(shape_def_t& s) {
     s.name = name(), s.body = 0, fill(s.pose), s.kind = static_cast<std::int8_t>(whole(0, 5));

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "test_scene.h"
 #include "visual_node/egl/display.h"
@@ -38,11 +39,12 @@ struct Image {
   }
 };
 
-Image render(const scene_t& scene, const Settings& settings = {}, std::vector<Rect> overlay = {}) {
+Image render(const scene_t& scene, const Settings& settings = {}, std::vector<Rect> overlay = {},
+             const HeightMaps& height_maps = {}) {
   display();
-  const SceneView view(scene, {}, settings);
+  const SceneView view(scene, {}, settings, height_maps);
   Renderer renderer(kWidth, kHeight, settings.shadow_size);
-  renderer.load(view.geometries(), view.lighting());
+  renderer.load(view.geometries(), view.lighting(), view.reliefs());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   DrawList list = view.draw(poses, {});
@@ -176,6 +178,116 @@ TEST_CASE("The marker in a drawn picture is read back from it") {
   CHECK(first->frame == 4711);
   CHECK(first->event == 0x9abcdef0);
   CHECK(second->event == 17);
+}
+
+namespace {
+// Sunlight along `direction`, white.
+light_def_t sun(const Eigen::Vector3d& direction) {
+  light_def_t lamp = test::spot({0, 0, 2}, 1, 1);
+  lamp.kind = light_def_t::DIRECTIONAL;
+  lamp.direction = to_vec3(direction.normalized());
+  lamp.casts_shadow = 0;
+  return lamp;
+}
+const Eigen::Vector3d kSun(0.6, 0.3, -1);
+constexpr double kWave_m = 1, kHeight_m = 0.08;
+const HeightMaps kSine{{1, test::sine_map(256, 4)}};
+
+// What Lambert says of a grey surface of normal n, in 8 bits.
+double lambert(const Eigen::Vector3d& n) {
+  return srgb(0.5 * std::max(0.0, -n.normalized().dot(kSun.normalized())));
+}
+double slope(double u_m) {  // of kHeight_m / 2 sin(2 pi u / kWave_m)
+  return std::numbers::pi * kHeight_m / kWave_m * std::cos(2 * std::numbers::pi * u_m / kWave_m);
+}
+
+// A turned and moved floor, as seen by a camera that turned and moved with it.
+scene_t rough_floor(const Eigen::Isometry3d& body) {
+  scene_t scene = floor_from_above(4);
+  scene.lights = {sun(kSun)};
+  scene.materials = {test::rough(1, kWave_m, kWave_m, kHeight_m)};
+  scene.visuals[0].shape.material = 0;
+  scene.bodies[0].pose = to_pose(body);
+  scene.camera = to_pose(body * to_eigen(scene.camera));
+  return scene;
+}
+}  // namespace
+
+TEST_CASE("A relief of waves is shaded as Lambert says of its slopes") {
+  const double turned_rad = GENERATE(0.0, 0.7);
+  const Eigen::Isometry3d body(Eigen::Translation3d(0.3, -0.2, 0) *
+                               Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()));
+  const Image image = render(rough_floor(body), {}, {}, kSine);
+  double darkest = 255, brightest = 0;
+  for (int y = 20; y < kHeight - 20; ++y) {
+    // Picture up is +x of the body; the middle of the picture is its origin.
+    const double x = (kHeight / 2 - (y + 0.5)) / scale_px(4), level = image.at(kWidth / 2, y).x();
+    const Eigen::Vector3d n = body.linear() * Eigen::Vector3d(-slope(x), 0, 1);
+    REQUIRE(level == Approx(lambert(n)).margin(kTolerance));
+    darkest = std::min(darkest, level), brightest = std::max(brightest, level);
+  }
+  // Both flanks of a wave are in the picture, which is 3.3 m high.
+  const auto extreme = [&](double s) { return lambert(body.linear() * Eigen::Vector3d(s, 0, 1)); };
+  const auto [low, high] = std::minmax({extreme(-slope(0)), extreme(slope(0))});
+  CHECK(high - low > 20);
+  CHECK(darkest == Approx(low).margin(kTolerance));
+  CHECK(brightest == Approx(high).margin(kTolerance));
+}
+
+TEST_CASE("Each side of a box is shaded along its own two axes") {
+  // A cube of 2 m whose sides are seen from 3 m away.
+  const int across = GENERATE(0, 1, 2), sign = GENERATE(-1, 1);
+  const Eigen::Vector3d outward = sign * Eigen::Vector3d::Unit(across);
+  scene_t scene = test::empty_scene();
+  test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::BOX, {2, 2, 2});
+  scene.materials = {test::rough(1, kWave_m, kWave_m, kHeight_m)};
+  scene.visuals[0].shape.material = 0;
+  const Eigen::Vector3d u = Eigen::Vector3d::Unit((across + 1) % 3);
+  Eigen::Matrix3d camera;
+  camera << -outward, -sign * u, -outward.cross(-sign * u);  // looks along x; y is to the left, z up
+  scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(4 * outward) * Eigen::Quaterniond(camera)));
+  const Eigen::Vector3d light = outward + 0.6 * u;  // to the lamp
+  scene.lights = {sun(-light)};
+  const Image image = render(scene, {}, {}, kSine);
+  for (int x = kWidth / 2 - 120; x < kWidth / 2 + 120; ++x) {
+    const double at_u = sign * (x + 0.5 - kWidth / 2) / scale_px(3);
+    const Eigen::Vector3d n = (outward - slope(at_u) * u).normalized();
+    REQUIRE(image.at(x, kHeight / 2).x() == Approx(srgb(0.5 * n.dot(light.normalized()))).margin(kTolerance));
+  }
+}
+
+TEST_CASE("What has no relief looks as it would without any in the scene") {
+  scene_t scene = rough_floor(Eigen::Isometry3d::Identity());
+  scene.materials.push_back(test::rough(0, 0, 0, 0));
+  test::add_visual(scene, test::add_body(scene, {0, 0, 0.5}), shape_def_t::SPHERE, {0.4, 0, 0});
+  test::add_visual(scene, test::add_body(scene, {0.6, 0.8, 0.2}), shape_def_t::BOX, {0.4, 0.4, 0.4});
+  scene.visuals[1].shape.material = 1;
+  scene.visuals[1].specular = scene.visuals[2].specular = test::grey(0.5f);
+  const Image with = render(scene, {}, {}, kSine);
+  const Image without = render(scene);  // the height map did not come
+  scene.materials[0].bump_asset = 0;
+  CHECK(render(scene).rgba == without.rgba);
+  int different = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) different += with.at(x, y) != without.at(x, y);
+  CHECK(different > kWidth * kHeight / 2);
+  // The ball and the top of the box, to the bit.
+  const double ball_px = 0.4 * scale_px(3.5) - 2;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (std::hypot(x - kWidth / 2, y - kHeight / 2) < ball_px) REQUIRE(with.at(x, y) == without.at(x, y));
+  const int box_x = kWidth / 2 - static_cast<int>(0.8 * scale_px(3.6)),
+            box_y = kHeight / 2 - static_cast<int>(0.6 * scale_px(3.6));
+  for (int y = box_y - 20; y < box_y + 20; ++y)
+    for (int x = box_x - 20; x < box_x + 20; ++x) REQUIRE(with.at(x, y) == without.at(x, y));
+  SECTION("and a relief without heights is smooth") {
+    HeightMap flat = test::sine_map(16, 16);
+    std::fill(flat.levels.begin(), flat.levels.end(), std::uint16_t{1234});
+    scene.materials[0].bump_asset = 1;
+    const Image level = render(scene, {}, {}, {{1, flat}});
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) REQUIRE((level.at(x, y) - without.at(x, y)).cwiseAbs().maxCoeff() <= 1);
+  }
 }
 
 TEST_CASE("A shader that does not compile is named with file and line") {

@@ -1,8 +1,12 @@
 // Small scenes for the tests of this folder.
 #pragma once
 
+#include <cmath>
+#include <numbers>
+#include <string>
 #include <tactus/scene_t.hpp>
 
+#include "lcmtypes/height_map.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::test {
@@ -54,6 +58,25 @@ inline void add_tool(scene_t& scene, double radius_m) {
   tool.material = -1;
   scene.bodies.back().tool = static_cast<int>(scene.tools.size());
   scene.tools.push_back(tool);
+}
+
+// Waves along u: heights (1 + sin(2 pi u)) / 2 at the middle of each pixel.
+inline HeightMap sine_map(int columns, int rows) {
+  HeightMap map;
+  map.columns = columns, map.rows = rows, map.white = 65535;
+  for (int i = 0; i < columns * rows; ++i) {
+    const double u = (i % columns + 0.5) / columns;
+    map.levels.push_back(static_cast<std::uint16_t>(std::lround(65535 * (1 + std::sin(2 * std::numbers::pi * u)) / 2)));
+  }
+  return map;
+}
+
+inline material_def_t rough(std::int64_t asset, double size_u_m, double size_v_m, double height_m) {
+  material_def_t m{};
+  m.name = "rough" + std::to_string(asset);
+  m.youngs_modulus_Pa = 1e10;
+  m.bump_asset = asset, m.bump_size_u_m = size_u_m, m.bump_size_v_m = size_v_m, m.bump_height_m = height_m;
+  return m;
 }
 
 // Shines straight down, white, without attenuation; full angles of the cone.

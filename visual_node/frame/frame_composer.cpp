@@ -35,10 +35,11 @@ const char* word(const Frame& frame) {
 FrameComposer::FrameComposer(std::int64_t own_run, const Settings& settings)
     : settings_(settings), contacts_(own_run), bodies_(own_run), flashes_(settings), ledger_(settings) {}
 
-const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings) {
+const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
+                                     const HeightMaps& height_maps) {
   settings_ = settings;
   scene_ = scene;
-  view_.emplace(scene, meshes, settings);
+  view_.emplace(scene, meshes, settings, height_maps);
   flashes_ = Flashes(settings);
   return *view_;
 }

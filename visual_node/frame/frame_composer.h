@@ -35,7 +35,8 @@ class FrameComposer {
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) { tools_[m.tool] = {m, arrival}; }
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
-  const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings);
+  const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
+                        const HeightMaps& height_maps = {});
 
   // The frame that begins now, number `number` of all. delay: what it shows happened so long before it is seen;
   // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.

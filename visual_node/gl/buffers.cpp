@@ -91,6 +91,19 @@ void QuadArray::draw(const void* data, std::size_t count) {
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
 }
 
+ReliefTexture::ReliefTexture(const Relief& relief) : size_m_(relief.size_m) {
+  glGenTextures(1, &id_);
+  glBindTexture(GL_TEXTURE_2D, id_);
+  // Whole floats and one level at a time: on a software renderer both were faster than half floats and two levels.
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, relief.columns, relief.rows, 0, GL_RG, GL_FLOAT, relief.slopes.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const auto wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, wrap, GL_REPEAT);
+}
+
+ReliefTexture::~ReliefTexture() { glDeleteTextures(1, &id_); }
+
 PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
   glGenFramebuffers(1, &framebuffer_);
   glGenRenderbuffers(1, &colour_);

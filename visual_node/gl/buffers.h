@@ -4,6 +4,7 @@
 #include <span>
 
 #include "visual_node/scene_view/draw_list.h"
+#include "visual_node/scene_view/relief.h"
 #include "visual_node/scene_view/triangles.h"
 
 namespace tactus::visual {
@@ -52,6 +53,21 @@ class QuadArray {
   unsigned array_ = 0;
   int floats4_;
   StreamBuffer instances_;
+};
+
+// Slopes of a relief, repeated without end; filtered, so that far away they are flat.
+class ReliefTexture {
+ public:
+  explicit ReliefTexture(const Relief& relief);
+  ~ReliefTexture();
+  ReliefTexture(const ReliefTexture&) = delete;
+  ReliefTexture& operator=(const ReliefTexture&) = delete;
+  unsigned id() const { return id_; }
+  const Eigen::Vector2f& size_m() const { return size_m_; }
+
+ private:
+  unsigned id_ = 0;
+  Eigen::Vector2f size_m_;
 };
 
 // The picture: sRGB colour and depth. Colour is encoded on writing, so that light is added in linear space.

@@ -16,7 +16,7 @@ Eigen::Matrix4f texture_from_clip() {
 
 // The kinds of the lamps are known to the shader's compiler: a software renderer pays for every branch of every
 // pixel.
-std::string surface_defines(const Lighting& lighting) {
+std::string surface_defines(const Lighting& lighting, bool relief) {
   std::string lamps;
   for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
     const Light& l = lighting.lights[i];
@@ -30,7 +30,14 @@ std::string surface_defines(const Lighting& lighting) {
                flag(static_cast<int>(i) == lighting.shadow_light) + ");";
   }
   return "#define LIGHTS " + std::to_string(std::max<std::size_t>(1, lighting.lights.size())) +
-         "\n#define LAMPS " + lamps + "\n#define SHADOWS " + (lighting.shadow_light >= 0 ? "1" : "0") + "\n";
+         "\n#define LAMPS " + lamps + "\n#define SHADOWS " + (lighting.shadow_light >= 0 ? "1" : "0") +
+         "\n#define RELIEF " + (relief ? "1" : "0") + "\n";
+}
+
+std::unique_ptr<Program> surface_program(const Lighting& lighting, bool relief) {
+  auto program = std::make_unique<Program>("surface", surface_defines(lighting, relief));
+  glUniformBlockBinding(program->id(), glGetUniformBlockIndex(program->id(), "Lights"), 0);
+  return program;
 }
 
 void enable(unsigned what, bool on) { on ? glEnable(what) : glDisable(what); }
@@ -41,11 +48,14 @@ Renderer::Renderer(int width, int height, int shadow_size) : picture_(width, hei
   load({}, {});
 }
 
-void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& lighting) {
+void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& lighting,
+                    const std::vector<Relief>& reliefs) {
   const bool shadows = lighting.shadow_light >= 0;
   shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_) : nullptr;
-  surface_ = std::make_unique<Program>("surface", surface_defines(lighting));
-  glUniformBlockBinding(surface_->id(), glGetUniformBlockIndex(surface_->id(), "Lights"), 0);
+  surface_ = surface_program(lighting, false);
+  rough_surface_ = reliefs.empty() ? nullptr : surface_program(lighting, true);
+  reliefs_.clear();
+  for (const Relief& r : reliefs) reliefs_.push_back(std::make_unique<ReliefTexture>(r));
   geometries_.clear();
   for (const Triangles& t : geometries) geometries_.push_back(std::make_unique<GeometryBuffer>(t));
   warm_up(lighting);
@@ -56,7 +66,8 @@ void Renderer::warm_up(const Lighting& lighting) {
   DrawList list;
   list.lighting = lighting;
   list.instances.resize(1);
-  list.opaque = list.translucent = {{.geometry = 0, .first = 0, .count = 1}};
+  list.opaque = list.translucent = {{.geometry = 0, .first = 0, .count = 1},
+                                    {.geometry = 0, .first = 0, .count = 1, .relief = 0}};
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
@@ -116,24 +127,43 @@ void Renderer::draw_surfaces(const DrawList& list) {
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(lights.size() * sizeof(Light)), lights.data(),
                GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights_.id());
-  surface_->use();
-  surface_->set("clip_from_world", list.camera.clip_from_world());
-  surface_->set("shadow_from_world", Eigen::Matrix4f(texture_from_clip() * list.lighting.shadow_clip));
-  surface_->set("eye", list.camera.eye);
-  surface_->set("ambient_light", list.lighting.ambient);
-  surface_->set("exposure", list.lighting.exposure);
+  describe(*surface_, list);
+  if (rough_surface_) describe(*rough_surface_, list);
   if (shadow_) {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, shadow_->texture());
-    surface_->set("shadow_map", 0);
   }
   glDisable(GL_BLEND);
-  for (const Batch& b : list.opaque) draw_batch(b);
+  for (const Batch& b : list.opaque) draw_surface(b);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  for (const Batch& b : list.translucent) draw_batch(b);
+  for (const Batch& b : list.translucent) draw_surface(b);
   glDisable(GL_CULL_FACE);
+}
+
+void Renderer::describe(const Program& surface, const DrawList& list) const {
+  surface.use();
+  surface.set("clip_from_world", list.camera.clip_from_world());
+  surface.set("shadow_from_world", Eigen::Matrix4f(texture_from_clip() * list.lighting.shadow_clip));
+  surface.set("eye", list.camera.eye);
+  surface.set("ambient_light", list.lighting.ambient);
+  surface.set("exposure", list.lighting.exposure);
+  surface.set("shadow_map", 0);
+  surface.set("slope_map", 1);
+}
+
+void Renderer::draw_surface(const Batch& batch) {
+  if (batch.relief >= 0 && batch.relief < static_cast<int>(reliefs_.size())) {
+    const ReliefTexture& relief = *reliefs_[static_cast<std::size_t>(batch.relief)];
+    rough_surface_->use();
+    rough_surface_->set("relief_size", relief.size_m());
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, relief.id());
+  } else {
+    surface_->use();
+  }
+  draw_batch(batch);
 }
 
 void Renderer::draw_batch(const Batch& batch) {

@@ -16,9 +16,10 @@ class Renderer {
   // Throws std::runtime_error when a shader does not compile.
   Renderer(int width, int height, int shadow_size);
 
-  // Geometries that the batches of later draw lists refer to, and how many lamps there are. Takes a tenth of a
+  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are. Takes a tenth of a
   // second on a software renderer; the first picture after it takes no longer than others.
-  void load(const std::vector<Triangles>& geometries, const Lighting& lighting);
+  void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
+            const std::vector<Relief>& reliefs = {});
   // Gives the work to the device and returns.
   void draw(const DrawList& list);
   // Waits until the device has finished the picture.
@@ -29,14 +30,18 @@ class Renderer {
   void warm_up(const Lighting& lighting);
   void draw_shadow(const DrawList& list);
   void draw_surfaces(const DrawList& list);
+  void describe(const Program& surface, const DrawList& list) const;
+  void draw_surface(const Batch& batch);
   void draw_batch(const Batch& batch);
 
   PictureTarget picture_;
   int shadow_size_;
   std::unique_ptr<ShadowTarget> shadow_;  // null: no lamp casts one
   std::unique_ptr<Program> surface_;
+  std::unique_ptr<Program> rough_surface_;  // null: no material has a relief
   Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
+  std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
   QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)};
 };

@@ -19,8 +19,11 @@ struct Instance {
   Eigen::Vector4f specular{0, 0, 0, 0};     // linear; w unused
   Eigen::Vector4f ambient{0, 0, 0, 0};      // share of the ambient light that it returns; w unused
   Eigen::Vector4f emissive{0, 0, 0, 0};     // linear; w unused
+  // T_world_body, as above: a relief is laid out in the frame of the body.
+  Eigen::Vector4f body_orientation{0, 0, 0, 1};
+  Eigen::Vector4f body_position{0, 0, 0, 1};
 };
-static_assert(sizeof(Instance) == 7 * 16);
+static_assert(sizeof(Instance) == 9 * 16);
 
 // Consecutive instances of one geometry.
 struct Batch {
@@ -28,6 +31,7 @@ struct Batch {
   int first = 0;
   int count = 0;
   bool casts_shadow = true;
+  int relief = -1;  // -1: smooth
 };
 
 // The layout is that of one element of the light block in shaders/surface.frag (std140).

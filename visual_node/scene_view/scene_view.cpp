@@ -29,7 +29,8 @@ int multiple_of_4(int pixels) { return pixels / 4 * 4; }
 
 }  // namespace
 
-SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings)
+SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
+                     const HeightMaps& height_maps)
     : width_(multiple_of_4(settings.width)), height_(multiple_of_4(settings.height)) {
   const double fov = settings.fov_rad > 0       ? settings.fov_rad
                      : scene.camera_fov_rad > 0 ? scene.camera_fov_rad
@@ -40,6 +41,7 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   geometries_ = {unit_plane(), unit_box()};
   for (const int n : kSegments) geometries_.push_back(unit_sphere(n));
   for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
+  add_reliefs(scene, height_maps);
   for (const visual_def_t& v : scene.visuals) add(v, meshes);
   for (const tool_def_t& t : scene.tools) add_tool(scene, t);
   // A lamp modelled around its light would swallow all of it.
@@ -47,11 +49,27 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   for (Tool& t : tools_) t.ghost.look.diffuse.w() = static_cast<float>(settings.ghost_alpha);
 }
 
+// Materials that inherited their bump share one relief.
+void SceneView::add_reliefs(const scene_t& scene, const HeightMaps& height_maps) {
+  std::map<std::tuple<std::int64_t, double, double, double>, int> known;
+  for (const material_def_t& m : scene.materials) {
+    int& relief = relief_of_material_.emplace_back(-1);
+    const auto map = height_maps.find(m.bump_asset);
+    if (m.bump_asset == 0 || map == height_maps.end()) continue;
+    const auto [at, fresh] = known.try_emplace({m.bump_asset, m.bump_size_u_m, m.bump_size_v_m, m.bump_height_m},
+                                               static_cast<int>(reliefs_.size()));
+    if (fresh) reliefs_.push_back(make_relief(map->second, m));
+    relief = at->second;
+  }
+}
+
 void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   Part part;
   if (v.alpha <= 0 || !shape(v.shape, meshes, part)) return;
   part.body = v.shape.body;
   part.in_body = to_eigen(v.shape.pose);
+  if (v.shape.material >= 0 && v.shape.material < static_cast<int>(relief_of_material_.size()))
+    part.relief = relief_of_material_[static_cast<std::size_t>(v.shape.material)];
   part.look.scale.w() = std::max(v.shininess, 1.0f);
   part.look.diffuse = with(v.diffuse, std::min(v.alpha, 1.0f));
   part.look.specular = with(v.specular, 0);
@@ -141,9 +159,11 @@ bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
 SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const {
   const Eigen::Isometry3d pose = body * part.in_body;
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
-  Placed p{part.geometry, 0, part.casts_shadow, part.look};
+  Placed p{part.geometry, 0, part.casts_shadow, part.relief, part.look};
   p.instance.orientation = q.coeffs();
   p.instance.position.head<3>() = pose.translation().cast<float>();
+  p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
+  p.instance.body_position.head<3>() = body.translation().cast<float>();
   p.distance_m = (p.instance.position.head<3>() - camera.eye).norm();
   if (part.levels) {
     const float radius_px = part.look.scale.x() * camera.focal_px / std::max(p.distance_m, 1e-3f);
@@ -177,15 +197,17 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
 
   // Planes and boxes have the lowest numbers and are mostly floors and walls: last, so that little is drawn twice.
   std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {
-    return std::tuple(-a.geometry, a.casts_shadow, a.distance_m) <
-           std::tuple(-b.geometry, b.casts_shadow, b.distance_m);
+    return std::tuple(-a.geometry, a.casts_shadow, a.relief, a.distance_m) <
+           std::tuple(-b.geometry, b.casts_shadow, b.relief, b.distance_m);
   });
   std::sort(translucent.begin(), translucent.end(),
             [](const Placed& a, const Placed& b) { return a.distance_m > b.distance_m; });
   const auto append = [&](const std::vector<Placed>& from, std::vector<Batch>& to) {
     for (const Placed& p : from) {
-      if (to.empty() || to.back().geometry != p.geometry || to.back().casts_shadow != p.casts_shadow)
-        to.push_back({p.geometry, static_cast<int>(list.instances.size()), 0, p.casts_shadow});
+      const auto first = static_cast<int>(list.instances.size());
+      if (to.empty() || to.back().geometry != p.geometry || to.back().casts_shadow != p.casts_shadow ||
+          to.back().relief != p.relief)
+        to.push_back({p.geometry, first, 0, p.casts_shadow, p.relief});
       ++to.back().count;
       list.instances.push_back(p.instance);
     }

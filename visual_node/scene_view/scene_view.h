@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "visual_node/scene_view/draw_list.h"
+#include "visual_node/scene_view/relief.h"
 #include "visual_node/scene_view/triangles.h"
 #include "visual_node/settings.gen.h"
 
@@ -25,11 +26,15 @@ struct ToolPose {
 
 class SceneView {
  public:
-  // Shapes whose mesh is not among `meshes` are left out and counted.
-  SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings);
+  // Shapes whose mesh is not among `meshes` are left out and counted; those whose height map is not there are
+  // smooth.
+  SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
+            const HeightMaps& height_maps = {});
 
   // The triangles that batches refer to, by index.
   const std::vector<Triangles>& geometries() const { return geometries_; }
+  // The reliefs that batches refer to, by index.
+  const std::vector<Relief>& reliefs() const { return reliefs_; }
   const Lighting& lighting() const { return lighting_; }
   int missing_meshes() const { return missing_meshes_; }
   int width() const { return width_; }
@@ -49,15 +54,18 @@ class SceneView {
     bool levels = false;                                        // whether there are finer ones behind it
     float radius_m = 0;  // of a sphere about the origin of the shape that holds it
     bool casts_shadow = true;
+    int relief = -1;
     Instance look;  // all but its pose
   };
   struct Placed {
     int geometry;
     float distance_m;
     bool casts_shadow;
+    int relief;
     Instance instance;
   };
 
+  void add_reliefs(const scene_t& scene, const HeightMaps& height_maps);
   void add(const visual_def_t& visual, const Meshes& meshes);
   void add_tool(const scene_t& scene, const tool_def_t& tool);
   bool shape(const shape_def_t& shape, const Meshes& meshes, Part& part);
@@ -69,6 +77,8 @@ class SceneView {
   Lighting lighting_;
   std::vector<Triangles> geometries_;
   std::map<std::int64_t, int> mesh_geometry_;
+  std::vector<Relief> reliefs_;
+  std::vector<int> relief_of_material_;
   std::vector<Part> parts_;
   struct Tool {
     int body;

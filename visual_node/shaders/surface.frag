@@ -1,6 +1,6 @@
 #version 330 core
-// Phong's reflection per pixel in linear light; the framebuffer encodes it as sRGB. gl/renderer.cpp defines SHADOWS and,
-// lamp by lamp, LAMPS for the scene: a software renderer pays for every branch of every pixel.
+// Phong's reflection per pixel in linear light; the framebuffer encodes it as sRGB. gl/renderer.cpp defines SHADOWS, RELIEF
+// and, lamp by lamp, LAMPS for the scene: a software renderer pays for every branch of every pixel.
 in vec3 at;
 in vec3 facing;
 in vec4 shadow_at;
@@ -8,6 +8,13 @@ flat in vec4 base;
 flat in vec4 shine;
 flat in vec3 bounce;
 flat in vec3 glow;
+#if RELIEF
+in vec3 at_body;
+in vec3 facing_body;
+flat in mat3 body_axes;       // in the world
+uniform sampler2D slope_map;  // dh/du, dh/dv, m/m
+uniform vec2 relief_size;     // of one repetition, m
+#endif
 
 struct Light {       // struct Light in scene_view/draw_list.h
   vec4 position;
@@ -63,8 +70,25 @@ void lamp(int i, bool shiny, bool coned, bool falls, bool shadowed) {
   add(i, l, strength, shiny);
 }
 
+#if RELIEF
+// The normal of the relief: the height's gradient along the surface, taken off the outward normal (Blinn 1978, "Simulation
+// of Wrinkled Surfaces"). Projected along the dominant axis of the normal in the body frame, as in lcmtypes/bump.h.
+vec3 roughened(vec3 smooth_n) {
+  vec3 a = abs(facing_body);
+  bool z = a.z >= a.x && a.z >= a.y, x = !z && a.x >= a.y;
+  vec2 place = z ? at_body.xy : x ? at_body.yz : at_body.zx;
+  vec2 slope = texture(slope_map, place / relief_size).rg;
+  vec3 g = body_axes * (z ? vec3(slope, 0.0) : x ? vec3(0.0, slope) : vec3(slope.y, 0.0, slope.x));
+  g -= dot(g, smooth_n) * smooth_n;
+  return normalize(smooth_n - (gl_FrontFacing ? g : -g));
+}
+#endif
+
 void main() {
   n = normalize(gl_FrontFacing ? facing : -facing);
+#if RELIEF
+  n = roughened(n);
+#endif
   v = normalize(eye - at);
   nv = dot(n, v);
   // Hemisphere: what looks down gets the dimmer light that the floor returns (half of it, a floor of middling grey).

@@ -165,6 +165,38 @@ TEST_CASE("A corner has both its planes, each with a name that stays") {
   CHECK(names.size() == 2);
 }
 
+TEST_CASE("A plane names the relief of its surface and the axis of the body along which it is laid out") {
+  WorldDef w = empty_world(0);
+  material_def_t planks{};
+  planks.youngs_modulus_Pa = 1e10, planks.poissons_ratio = 0.3, planks.friction_static = planks.friction_dynamic = 0.5;
+  w.materials = {planks, planks};
+  w.materials[1].bump_asset = 77;
+  // Turned, so that body and world do not agree.
+  const Eigen::Isometry3d pose(Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.9, Vector3d(1, 2, 3).normalized()));
+  const int box = add_body(w, "box", 0, Eigen::Matrix3d::Identity(), pose);
+  const auto shape = static_cast<std::size_t>(add_shape(w, box, ShapeKind::kBox, {0.2, 0.2, 0.2}));
+  w.shapes[shape].material = 1;
+  const int across = GENERATE(0, 1, 2), sign = GENERATE(-1, 1);
+  add_tool(w, pose * Vector3d(sign * 0.105 * Vector3d::Unit(across)), 0.004);
+  const auto plane = [&] {
+    Simulation s(w, {});
+    s.start(11);
+    s.step({});
+    REQUIRE(s.touch_models()[0].plane_count == 1);
+    return s.touch_models()[0].planes[0];
+  };
+  CHECK((to_eigen(plane().normal_body) - sign * Vector3d::Unit(across)).norm() < 1e-6);
+  CHECK(plane().bump_asset == 77);
+  CHECK(to_eigen(plane().bump_u_body) == Vector3d::Unit((across + 1) % 3));
+  SECTION("and a smooth one names none") {
+    w.shapes[shape].material = 0;
+    CHECK(plane().bump_asset == 0);
+    CHECK(to_eigen(plane().bump_u_body) == Vector3d(0, 0, 0));
+    w.shapes[shape].material = -1;
+    CHECK(plane().bump_asset == 0);
+  }
+}
+
 TEST_CASE("A tool in a crowd has at most eight planes, the nearest first, and the message fits a datagram") {
   WorldDef w = empty_world(0);
   for (int i = 0; i < 30; ++i) {

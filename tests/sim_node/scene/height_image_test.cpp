@@ -1,29 +1,17 @@
 #include "sim_node/scene/height_image.h"
 
-#include <png.h>
-
 #include "scene_file.h"
 #include "sim_node/scene/shapes.h"
 #include "sim_node/scene/triangles.h"
+#include "tests/grey_png.h"
 
 using namespace tactus::sim;
 using Eigen::Vector3d;
 
 namespace {
-// Rows from the top, as pictures are stored.
-void write_png(const std::filesystem::path& file, int columns, int rows, int bits, int type, std::vector<unsigned char> bytes) {
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(png);
-  png_init_io(png, out);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), bits, type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
-  const std::size_t stride = bytes.size() / static_cast<std::size_t>(rows);
-  for (int r = 0; r < rows; ++r) png_write_row(png, bytes.data() + static_cast<std::size_t>(r) * stride);
-  png_write_end(png, nullptr);
-  png_destroy_write_struct(&png, &info);
-  std::fclose(out);
+void write_png(const SceneFile& file, int columns, int rows, int bits, int type, const std::vector<std::uint8_t>& samples) {
+  const auto bytes = tactus::test::png_bytes(columns, rows, bits, samples, type);
+  file.write("h.png", {bytes.begin(), bytes.end()});
 }
 std::string heightmap(const std::string& more = "") {
   return model("<static>true</static><link name='l'><collision name='c'><geometry>\n<heightmap><uri>h.png</uri><size>2 1 0.5</size>"
@@ -33,7 +21,7 @@ std::string heightmap(const std::string& more = "") {
 
 TEST_CASE("A grey picture is heights: white is the full height, the top row lies at +y") {
   SceneFile file(heightmap());
-  write_png(file.folder() / "h.png", 3, 2, 8, PNG_COLOR_TYPE_GRAY, {255, 0, 0, 0, 0, 51});
+  write_png(file, 3, 2, 8, PNG_COLOR_TYPE_GRAY, {255, 0, 0, 0, 0, 51});
   const WorldDef w = file.load();
   REQUIRE(w.heightfields.size() == 1);
   const Heightfield& h = w.heightfields[0];
@@ -54,7 +42,7 @@ TEST_CASE("A grey picture is heights: white is the full height, the top row lies
 
 TEST_CASE("Sixteen bits keep their fineness") {
   SceneFile file(heightmap());
-  write_png(file.folder() / "h.png", 2, 2, 16, PNG_COLOR_TYPE_GRAY, {0, 0, 0, 1, 0x80, 0, 0xff, 0xff});
+  write_png(file, 2, 2, 16, PNG_COLOR_TYPE_GRAY, {0, 0, 0, 1, 0x80, 0, 0xff, 0xff});
   const WorldDef w = file.load();
   CHECK(w.heightfields[0].heights_m[1] == Approx(0.5));
   CHECK(w.heightfields[0].heights_m[3] == Approx(0.5 / 65535));
@@ -76,12 +64,12 @@ TEST_CASE("A picture that is no height map is refused with its line") {
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not found"));
   file.write("h.png", "no picture at all");
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no PNG"));
-  write_png(file.folder() / "h.png", 2, 2, 8, PNG_COLOR_TYPE_RGB, std::vector<unsigned char>(12));
+  write_png(file, 2, 2, 8, PNG_COLOR_TYPE_RGB, std::vector<unsigned char>(12));
   CHECK_THAT(file.refusal(), Catch::Contains("grey"));
-  write_png(file.folder() / "h.png", 1, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 0});
+  write_png(file, 1, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 0});
   CHECK_THAT(file.refusal(), Catch::Contains("samples"));
   // Cut in the middle of its data.
-  write_png(file.folder() / "h.png", 100, 100, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(10'000, 7));
+  write_png(file, 100, 100, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(10'000, 7));
   std::filesystem::resize_file(file.folder() / "h.png", 60);
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("cannot be read"));
 }

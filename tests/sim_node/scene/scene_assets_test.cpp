@@ -27,7 +27,7 @@ TEST_CASE("The assets of a world decode to what they were made from") {
   w.shapes.push_back(ground);
 
   const auto assets = make_assets(w);
-  REQUIRE(assets.size() == 1 + w.meshes.size() + 1 + 1);
+  REQUIRE(assets.size() == 1 + w.meshes.size() + 1 + w.images.size() + 1);
   REQUIRE(assets[0].kind == asset_ref_t::SCENE);
   const auto scene = sync::decode_asset<scene_t>(assets[0].bytes);
   REQUIRE(scene);

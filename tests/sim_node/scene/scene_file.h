@@ -15,11 +15,15 @@ namespace tactus::sim {
 
 class SceneFile {
  public:
-  explicit SceneFile(const std::string& text = "") {
+  using Files = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>;
+
+  // beside: files beside the scene, by name.
+  explicit SceneFile(const std::string& text = "", const Files& beside = {}) {
     std::string name = (std::filesystem::temp_directory_path() / "tactus_scene_XXXXXX").string();
     if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
     folder_ = name;
     if (!text.empty()) write("scene.sdf", text);
+    for (const auto& [file, bytes] : beside) write(file, {bytes.begin(), bytes.end()});
   }
   ~SceneFile() { std::filesystem::remove_all(folder_); }
   SceneFile(const SceneFile&) = delete;

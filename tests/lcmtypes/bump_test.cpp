@@ -1,0 +1,58 @@
+#include "lcmtypes/bump.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/lcmtypes/samples.h"
+
+using namespace tactus;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+TEST_CASE("The dominant axis of the normal chooses the projection, cyclically") {
+  const auto axes = [](const Vector3d& normal) {
+    const BumpAxes a = bump_axes(normal);
+    return std::array{a.across, a.u, a.v};
+  };
+  CHECK(axes({0.1, -0.2, 0.9}) == std::array{2, 0, 1});
+  CHECK(axes({0.9, 0.1, -0.2}) == std::array{0, 1, 2});
+  CHECK(axes({0.1, 0.9, -0.2}) == std::array{1, 2, 0});
+  SECTION("whichever way it points") {
+    CHECK(axes({0, 0, -1}) == axes({0, 0, 1}));
+    CHECK(axes({-1, 0, 0}) == axes({1, 0, 0}));
+    CHECK(axes({0, -1, 0}) == axes({0, 1, 0}));
+  }
+  SECTION("and of equals z goes before x before y") {
+    CHECK(axes({1, 1, 1}) == axes({0, 0, 1}));
+    CHECK(axes({1, 1, 0}) == axes({1, 0, 0}));
+  }
+}
+
+TEST_CASE("A point lies in the map where its two coordinates, in repetitions, say") {
+  material_def_t material{};
+  material.bump_size_u_m = 0.5, material.bump_size_v_m = 0.25;
+  const Vector3d point(1, 2, 3);
+  CHECK(bump_at(material, bump_axes({0, 0, 1}), point) == Vector2d(2, 8));   // x, y
+  CHECK(bump_at(material, bump_axes({1, 0, 0}), point) == Vector2d(4, 12));  // y, z
+  CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
+}
+
+TEST_CASE("A relief out of range is not let in, one that is not there may say anything finite") {
+  test::Samples samples(1);
+  scene_t scene{};
+  samples.fill(scene);
+  scene.materials.resize(1), scene.material_count = 1;
+  samples.fill(scene.materials[0]);
+  material_def_t& m = scene.materials[0];
+  m.bump_asset = 7, m.bump_size_u_m = m.bump_size_v_m = 0.5, m.bump_height_m = 0.001;
+  REQUIRE(valid(scene));
+  for (double material_def_t::*field :
+       {&material_def_t::bump_size_u_m, &material_def_t::bump_size_v_m, &material_def_t::bump_height_m})
+    for (const double wrong : {0.0, -0.5, 1e-9, 1e3}) {
+      const double right = m.*field;
+      m.*field = wrong;
+      CHECK_FALSE(valid(scene));
+      m.*field = right;
+    }
+  m.bump_asset = 0, m.bump_height_m = 0;
+  CHECK(valid(scene));
+}
