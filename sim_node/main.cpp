@@ -68,6 +68,7 @@ int main(int argc, char** argv) try {
   const sync::HostTime begin = sync::host_now() + sync::from_seconds(settings.scene_grace_s);
   for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) scene_sender.poll(now);
   node.set_state(node_health_t::RUNNING);
+  if (node.running()) std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run counts its seconds from here
 
   while (node.running()) {
     const sync::HostTime now = node.wait();

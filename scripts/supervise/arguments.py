@@ -24,6 +24,7 @@ class Plan:
     out_is_ours: bool  # nobody named it: another name does as well
     without: list
     device: str  # "": the scene's
+    degrade: pathlib.Path  # profile of what is wrong on purpose, or None
     window: bool
     listen: bool
     realtime: str
@@ -50,6 +51,7 @@ def parse(words, here):
     parser.add_argument("--out")
     parser.add_argument("--without", action="append", default=[])
     parser.add_argument("--device", default="")
+    parser.add_argument("--degrade")
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--listen", action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
@@ -57,13 +59,19 @@ def parse(words, here):
     parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
     parser.add_argument("--port", default="7667")
     parser.add_argument("--set", action="append", default=[])
+    for word in words:
+        if any(ord(c) < 32 or ord(c) == 127 for c in word):
+            raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
     a = parser.parse_args(words)
     here = pathlib.Path(here)
     for node in a.without:
+        if node == "recorder":
+            raise Refusal("--without recorder: it cannot be left out, all results are made from what it records")
         if node not in REMOVABLE:
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join(REMOVABLE)}")
     plan = Plan(scene=scene_file(here, a.scene), seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without, device=device(a.device, a.without),
+                degrade=profile(here, a.degrade),
                 window=a.window, listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set))
@@ -96,6 +104,16 @@ def scene_file(here, text):
     return path.absolute()
 
 
+def profile(here, text):
+    """The nodes themselves check what is in it."""
+    if text is None:
+        return None
+    path = here / text
+    if not path.is_file() or not os.access(path, os.R_OK):
+        raise Refusal(f"--degrade {text}: is not a file that can be read; give the path of a profile (XML)")
+    return path.absolute()
+
+
 def out_folder(here, text):
     """Where the results go; it is not made yet."""
     path = here / text if text else here / "out" / time.strftime("%Y-%m-%d_%H-%M-%S")
@@ -125,13 +143,12 @@ def settings(words):
     found = {}
     for word in words:
         left, equals, value = word.partition("=")
-        node, dot, name = left.partition(".")
-        if not (equals and dot and name):
+        node, _, name = left.rpartition(".")
+        if not (equals and node and name):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
-        table = REPOSITORY / node / "settings.csv"
-        if node not in REMOVABLE or not table.is_file():
+        if node not in ("sim_node", *SENSES):
             raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join(SENSES)}")
-        with open(table, newline="", encoding="utf-8") as file:
+        with open(REPOSITORY / node / "settings.csv", newline="", encoding="utf-8") as file:
             names = [row["name"] for row in csv.DictReader(file)]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")

@@ -1,16 +1,17 @@
 """The running cluster: its processes, in the order in which they start and end."""
+import contextlib
 import ctypes
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 import services
 from arguments import REPOSITORY, SENSES
-from refusal import Refusal
+from refusal import Interrupted, Refusal, sentence_of
+from terminal import complain, say
 
 # TACTUS_BIN: programs of another build; scripts/run then installs and builds nothing.
 BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or REPOSITORY / "build" / "dev" / "bin").absolute()
@@ -20,6 +21,9 @@ SUPERVISE = pathlib.Path(__file__).resolve().parent
 STOP_ORDER = ((("sim_node",), 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
 PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
+CHECK_S, READ_SCENE_S = 60, 600
+PROGRESS_S = 10
+WORLD_BEGINS = "sim_node: the world begins"  # sim_node/main.cpp
 
 
 def commands(plan, run_id, git):
@@ -34,6 +38,9 @@ def commands(plan, run_id, git):
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
     }
+    if plan.degrade:
+        for name in (*SENSES, "sync_node"):
+            own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
     return {name: [str(BIN / name), *own.get(name, []), *common,
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
 
@@ -42,27 +49,47 @@ def names_sound_card(plan):
     return any(s.startswith("device=") for s in plan.settings.get("audio_node", []))
 
 
-def check(words):
+def check(words, stop):
     """Lets every node check its options and files. Raises Refusal with the sentence of the first that objects."""
-    started = []
-    for name, command in words.items():
-        at = command.index("--out")
-        started.append((name, subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
-                                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)))
-    refusals, warnings = [], []
-    for name, process in started:
-        try:
-            said = process.communicate(timeout=60)[1].strip()
-        except subprocess.TimeoutExpired:
-            process.kill()
-            said = process.communicate()[1].strip() + f"\n{name}: does not finish its checks in 60 s"
+    started = {}
+    try:
+        for name, command in words.items():
+            at = command.index("--out")
+            # A session of its own: Ctrl-C is ours to answer.
+            started[name] = subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
+                                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+                                             start_new_session=True, preexec_fn=die_with_parent)
+        said = {name: last_of_check(name, process, stop) for name, process in started.items()}
+    finally:
+        for process in started.values():
+            if process.poll() is None:
+                process.kill()
+    for name, process in started.items():
         if process.returncode != 0:
-            refusals.append(said.split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
-        elif name == "sim_node" and said:
-            warnings.append(said)  # of the scene
-    if refusals:
-        raise Refusal(refusals[0])
-    print(*warnings, sep="\n", end="\n" if warnings else "", file=sys.stderr)
+            raise Refusal(said[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
+    if said.get("sim_node"):
+        complain(said["sim_node"])  # warnings of the scene
+
+
+def last_of_check(name, process, stop):
+    """What the check says, once it has ended. Raises Interrupted when asked to stop."""
+    now = begin = time.monotonic()
+    at_most_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
+    while now < begin + at_most_s:
+        try:
+            said = process.communicate(timeout=0.1)[1].strip()
+            if stop.asked:
+                raise Interrupted
+            return said
+        except subprocess.TimeoutExpired:
+            now = time.monotonic()
+        if stop.asked:
+            raise Interrupted
+        if name == "sim_node" and now > next_said:
+            say(f"sim_node is still reading the scene ({now - begin:.0f} s)")
+            next_said += PROGRESS_S
+    process.kill()
+    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {at_most_s} s"
 
 
 def die_with_parent():
@@ -75,13 +102,19 @@ class Cluster:
     def __init__(self, plan, network, words, run_id):
         self.plan, self.network, self.run_id = plan, network, run_id
         self.folder = services.make_folder(plan.out)
-        self.in_use = services.hold(self.folder)
-        logs = plan.out / "logs"
-        logs.mkdir(exist_ok=True)
-        here = pathlib.Path.cwd()
-        self.services = {name: services.Service(self.folder, name, command, logs / f"{name}.log", here)
-                         for name, command in words.items()}
+        self.in_use = None
         self.holder = self.table = None
+        try:
+            self.in_use = services.hold(self.folder)
+            logs = plan.out / "logs"
+            logs.mkdir(exist_ok=True)
+            here = pathlib.Path.cwd()
+            self.services = {name: services.Service(self.folder, name, command, logs / f"{name}.log", here)
+                             for name, command in words.items()}
+        except OSError as error:
+            self.clean()
+            raise Refusal(f"supervision: cannot prepare the run ({sentence_of(error)}); make room there, or set TMPDIR to "
+                          "another folder") from None
 
     def start(self):
         """Supervisor, recorder and sync_node, the senses, the simulation. Raises Refusal."""
@@ -99,14 +132,16 @@ class Cluster:
             for service in members:
                 if not service.start():
                     raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
-            services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
+            if group != ("sim_node",):  # nobody waits for the scene here
+                services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
 
     def write_address(self):
         """Where scripts/attach finds the cluster."""
         names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in self.network.unshare]
         (self.folder / "address").write_text(
             f"holder={self.holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={self.run_id}\n"
-            f"url=udpm://239.255.76.67:{self.plan.port}?ttl=0\nport={self.plan.port}\nout={self.plan.out}\n", encoding="utf-8")
+            f"url=udpm://239.255.76.67:{self.plan.port}?ttl=0\nport={self.plan.port}\nout={self.plan.out}\n",
+            encoding="utf-8", errors="surrogateescape")
         link = self.plan.out / "cluster"
         link.unlink(missing_ok=True)
         link.symlink_to(self.folder)
@@ -121,6 +156,13 @@ class Cluster:
             kill_group(self.table)
             self.table = None
 
+    def expects_world(self):
+        """False: there is no simulation, or it was left down."""
+        return "sim_node" in self.services and not self.services["sim_node"].lost()
+
+    def world_has_begun(self):
+        return "sim_node" in self.services and self.services["sim_node"].has_said(WORLD_BEGINS)
+
     def alive(self):
         return self.holder is not None and self.holder.poll() is None
 
@@ -131,7 +173,8 @@ class Cluster:
     def stop(self):
         """Ends everything in order and reaps it. Returns the nodes that had to be killed."""
         self.end_table()
-        (self.folder / "stopping").touch()
+        with contextlib.suppress(OSError):  # a full disk: deaths are counted on, no more
+            (self.folder / "stopping").touch()
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
@@ -144,7 +187,8 @@ class Cluster:
 
     def end_supervisor(self):
         for pid in children(self.holder.pid) if self.network.unshare else [self.holder.pid]:
-            os.kill(pid, signal.SIGHUP)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGHUP)
         try:
             self.holder.wait(5)
         except subprocess.TimeoutExpired:
@@ -153,9 +197,11 @@ class Cluster:
 
     def clean(self):
         """Removes what only a running cluster needs."""
-        (self.plan.out / "cluster").unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            (self.plan.out / "cluster").unlink(missing_ok=True)
         shutil.rmtree(self.folder, ignore_errors=True)
-        self.in_use.close()
+        if self.in_use:
+            self.in_use.close()
 
 
 def children(pid):
@@ -168,6 +214,9 @@ def children(pid):
 def kill_group(process):
     try:
         os.killpg(process.pid, signal.SIGTERM)
+        process.wait(2)
     except ProcessLookupError:
-        pass
-    process.wait()
+        process.wait()
+    except subprocess.TimeoutExpired:  # it hangs in a terminal that is held
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

@@ -8,10 +8,17 @@ import time
 
 import arguments
 import cluster
+import equipment
 import network
 import priority
 import services
-from refusal import Refusal
+import terminal
+from refusal import Interrupted, Refusal, sentence_of
+from terminal import say
+
+LONGEST_LOADING_S = 600
+PROGRESS_S = 5
+INTERRUPTED = 130  # as a shell names an end by Ctrl-C
 
 
 class Stop:
@@ -30,22 +37,33 @@ def git_commit():
     """The commit of this repository, with + when files differ from it; "unknown" without git."""
     git = ["git", "-c", "safe.directory=*", "-C", str(arguments.REPOSITORY)]
     try:
-        commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-        changed = subprocess.run([*git, "status", "--porcelain", "-uno"], capture_output=True, text=True, check=True).stdout
+        said = lambda *words: subprocess.run([*git, *words], capture_output=True, check=True, text=True, errors="replace",
+                                             start_new_session=True).stdout
+        commit, changed = said("rev-parse", "HEAD").strip(), said("status", "--porcelain", "-uno")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return commit + ("+" if changed.strip() else "")
 
 
-def say(text):
-    print(f"run: {text}", flush=True)
-
-
 def watch_over(running, seconds, stop):
-    """Returns after `seconds`, or earlier when asked to. Names each node that is lost as it happens."""
-    end = time.monotonic() + seconds
+    """Returns when the world is so old, or earlier when asked to. A large scene takes minutes to load before the world
+    begins; a world that there will not be is not waited for. Names each node that is lost as it happens. False: the world
+    never began."""
+    now = loading_since = time.monotonic()
+    next_said = now + PROGRESS_S
+    end = None
     named = set()
-    while not stop.asked and time.monotonic() < end:
+    while not stop.asked and (end is None or now < end):
+        now = time.monotonic()
+        if end is None and (running.world_has_begun() or not running.expects_world()):
+            end = now + seconds
+            running.show_table()
+        elif end is None and now > loading_since + LONGEST_LOADING_S:
+            raise Refusal(f"sim_node: its world has not begun after {LONGEST_LOADING_S // 60} minutes; see "
+                          f"{running.plan.out}/logs/sim_node.log")
+        elif end is None and now > next_said:
+            say(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
+            next_said += PROGRESS_S
         if not running.alive():
             raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
         for name, why in running.lost().items():
@@ -53,9 +71,10 @@ def watch_over(running, seconds, stop):
                 named.add(name)
                 say(f"{name}: {why}; the others go on ({running.services[name].last_words()})")
         time.sleep(0.1)
+    return end is not None
 
 
-def sum_up(plan, git, lost, restarts):
+def sum_up(plan, git, lost, restarts, warnings):
     """Writes summary.json and the CSVs from the log. Returns what went wrong, a sentence each."""
     logs = [str(path) for path in sorted(plan.out.glob("run*.lcmlog"), key=lambda p: p.stat().st_mtime)]
     if not logs:
@@ -63,14 +82,20 @@ def sum_up(plan, git, lost, restarts):
     kept = [name for name in plan.nodes() if name not in lost]
     summarise = [str(cluster.BIN / "summarise"), *logs, "--out", str(plan.out / "summary.json"), "--nodes", ",".join(kept),
                  "--seconds", f"{plan.seconds:g}", "--scene", str(plan.scene), "--seed", str(plan.seed), "--git", git,
-                 *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}"))]
+                 *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
+                 *(word for sentence in warnings for word in ("--warning", sentence))]
+    exports = [[str(cluster.BIN / name), *logs, "--out", str(plan.out)] for name in ("export_csv", "export_events")]
+    # All results are written before any of them is shown. A second Ctrl-C does not reach these programs.
+    all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
+                for words in (summarise, *exports)]
+    terminal.tell(all_done[0].stdout.rstrip("\n"))
     wrong = []
-    for words in (summarise, [str(cluster.BIN / "export_csv"), *logs, "--out", str(plan.out)]):
-        done = subprocess.run(words, stderr=subprocess.PIPE, text=True, check=False)
+    for done in all_done:
+        name = os.path.basename(done.args[0])
         if done.returncode != 0:
-            wrong.append(done.stderr.strip().split("\n")[-1] or f"{words[0]}: ended with status {done.returncode}")
-        else:
-            sys.stderr.write(done.stderr)
+            wrong.append(done.stderr.strip().split("\n")[-1] or f"{name}: ended with status {done.returncode}")
+        elif done.stderr:
+            terminal.complain(done.stderr.rstrip("\n"))
     return wrong
 
 
@@ -101,27 +126,30 @@ def run(plan):
     stop = Stop()
     git = git_commit()
     run_id = time.time_ns()
-    for name in [*plan.nodes(), "watch", "summarise", "export_csv"]:
+    for name in [*plan.nodes(), "watch", "summarise", "export_csv", "export_events"]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
-    cluster.check(cluster.commands(plan, run_id, git))
+    cluster.check(cluster.commands(plan, run_id, git), stop)
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
     claim = claim_out(plan)
+    warnings = equipment.lacking(plan)
     running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
     say(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
     say(expectation)
+    for warning in warnings:
+        say(warning)
     wrong = []
     try:
         running.start()
-        running.show_table()
-        watch_over(running, plan.seconds, stop)
+        if not watch_over(running, plan.seconds, stop):
+            wrong.append("interrupted before the world began")
     except Refusal as refusal:
         wrong.append(str(refusal))
+    except OSError as error:
+        wrong.append(sentence_of(error))
     finally:
-        running.end_table()
-        say("stopping")
         stubborn = running.stop()
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
@@ -133,7 +161,7 @@ def run(plan):
     for name, count in restarts.items():
         if name not in lost:
             say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
-    wrong += sum_up(plan, git, lost, restarts)
+    wrong += sum_up(plan, git, lost, restarts, warnings)
     say(f"results in {plan.out}")
     os.close(claim)
     return wrong
@@ -141,20 +169,27 @@ def run(plan):
 
 def names_its_speaker(sentence):
     speaker = sentence.split(":")[0]
-    return speaker.endswith("_node") or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv")
+    return speaker.endswith("_node") or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
 
 
 def main(words):
     only_arguments = words[:1] == ["--arguments-only"]
+    terminal.prepare()
     try:
         plan = arguments.parse(words[1:] if only_arguments else words, os.getcwd())
         wrong = [] if only_arguments else run(plan)
     except Refusal as refusal:
         wrong = [str(refusal)]
+    except OSError as error:
+        wrong = [sentence_of(error)]
+    except Interrupted:
+        terminal.complain("run: interrupted; nothing was started")
+        return INTERRUPTED
     for sentence in wrong:
-        print(sentence if names_its_speaker(sentence) else f"run: {sentence}", file=sys.stderr)
+        terminal.complain(sentence if names_its_speaker(sentence) else f"run: {sentence}")
     return 1 if wrong else 0
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # until there is something to stop
     sys.exit(main(sys.argv[1:]))

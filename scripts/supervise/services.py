@@ -41,17 +41,20 @@ exec setpriv --pdeathsig KILL -- {command}
 def make_folder(out):
     """A new folder on a file system that has named pipes and executable files, which --out may lack."""
     for parent in (tempfile.gettempdir(), str(out)):
-        folder = pathlib.Path(tempfile.mkdtemp(prefix=f"tactus-{os.getuid()}-", dir=parent))
+        folder = None
         try:
+            folder = pathlib.Path(tempfile.mkdtemp(prefix=f"tactus-{os.getuid()}-", dir=parent))
             os.mkfifo(folder / "pipe")
             write_script(folder / "script", "#!/bin/sh\n")
             subprocess.run([folder / "script"], check=True)
+            (folder / "services").mkdir()
         except (OSError, subprocess.SubprocessError):
+            if folder:
+                shutil.rmtree(folder, ignore_errors=True)
             continue
-        (folder / "services").mkdir()
         return folder
-    raise Refusal(f"supervision: neither {tempfile.gettempdir()} nor {out} can hold executable files and named pipes; set "
-                  "TMPDIR to a folder that can")
+    raise Refusal(f"supervision: neither {tempfile.gettempdir()} nor {out} can hold executable files and named pipes, or "
+                  "both are full; set TMPDIR to a folder that can")
 
 
 def hold(folder):
@@ -75,7 +78,7 @@ def remove_leftovers():
 
 
 def write_script(path, text):
-    path.write_text(text, encoding="utf-8")
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")  # names of files are bytes
     path.chmod(0o755)
 
 
@@ -113,6 +116,12 @@ class Service:
 
     def has_spoken(self):
         return self.log.exists() and self.log.stat().st_size > 0
+
+    def has_said(self, line):
+        try:
+            return line in self.log.read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return False
 
     def last_words(self):
         try:
