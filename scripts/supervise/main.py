@@ -1,7 +1,12 @@
 """What scripts/run does once all is built: checks, starts, shows, stops, sums up."""
-import fcntl
 import os
 import signal
+
+INTERRUPTED = 130  # as a shell names an end by Ctrl-C
+# Until there is something to stop, Ctrl-C ends this at once, also while the rest is imported.
+signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
+
+import fcntl
 import subprocess
 import sys
 import time
@@ -18,7 +23,6 @@ from terminal import say
 
 LONGEST_LOADING_S = 600
 PROGRESS_S = 5
-INTERRUPTED = 130  # as a shell names an end by Ctrl-C
 
 
 class Stop:
@@ -191,5 +195,4 @@ def main(words):
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # until there is something to stop
     sys.exit(main(sys.argv[1:]))
