@@ -64,6 +64,8 @@ def check(words, stop):
         for process in started.values():
             if process.poll() is None:
                 process.kill()
+                process.wait()
+            process.stderr.close()
     for name, process in started.items():
         if process.returncode != 0:
             raise Refusal(said[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")

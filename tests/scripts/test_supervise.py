@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+"""scripts/run meets terminals that go away, texts that are none, full disks and wrong words with its results, or one sentence."""
+import errno
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+from unittest import mock
+
+SUPERVISE = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "supervise"
+sys.path.insert(0, str(SUPERVISE))
+import arguments
+import cluster
+import main
+import services
+import terminal
+from refusal import Interrupted, Refusal
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # main took it
+HOSTILE = b"\xff\xfe caf\xe9 \x1b[2J"
+
+
+def refusal_of(*words):
+    try:
+        arguments.parse(list(words), os.getcwd())
+    except Refusal as refusal:
+        return str(refusal)
+    return ""
+
+
+class Folders(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+        self.said, self.complained = [], []
+        for what in (mock.patch.object(terminal, "tell", lambda text, stream=None: self.said.append(text)),
+                     mock.patch.object(cluster, "complain", self.complained.append), mock.patch.object(cluster, "say", self.said.append),
+                     mock.patch.object(main, "say", self.said.append),
+                     mock.patch.object(terminal, "complain", self.complained.append)):
+            what.start()
+            self.addCleanup(what.stop)
+
+    def program(self, name, text):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(b"#!/bin/sh\n" + text + b"\n")
+        path.chmod(0o755)
+        return [str(path), "--out", str(self.folder)]
+
+    def plan(self):
+        return arguments.parse(["--out", str(self.folder / "out")], os.getcwd())
+
+
+class Terminal(unittest.TestCase):
+    def test_a_pipe_that_is_gone_ends_the_telling_only(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = pathlib.Path(folder) / "done"
+            code = ("import sys, pathlib, subprocess; sys.path.insert(0, sys.argv[1]); import terminal; terminal.prepare()\n"
+                    "for i in range(3): terminal.say('x' * 100000)\n"
+                    "subprocess.run(['echo', 'a child tells too'], check=True)\n"
+                    "pathlib.Path(sys.argv[2]).touch()")
+            with subprocess.Popen([sys.executable, "-c", code, str(SUPERVISE), str(done)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE) as process:
+                process.stdout.close()
+                said = process.stderr.read()
+            self.assertEqual((0, b"", True), (process.returncode, said, done.exists()))
+
+    def test_a_text_is_no_order_to_the_terminal(self):
+        self.assertEqual("a\\x1b[2Jb\nc\\x9b\\x7f é", terminal.printable("a\x1b[2Jb\nc\x9b\x7f é"))
+
+    def test_a_text_that_the_terminal_cannot_encode_is_told_all_the_same(self):
+        code = ("import sys; sys.path.insert(0, sys.argv[1]); import terminal; terminal.prepare(); terminal.tell('\\udcff')")
+        told = subprocess.run([sys.executable, "-c", code, str(SUPERVISE)], capture_output=True, check=True).stdout
+        self.assertEqual(b"\\udcff\n", told)
+
+
+class Arguments(unittest.TestCase):
+    def test_what_is_wrong_is_named(self):
+        for words, named in ((["--set", "../x.y=1"], "../x has no settings"), (["--set", ".x=1"], "NODE.NAME=VALUE"),
+                             (["--set", "sync_node.x=1"], "sync_node has no settings"),
+                             (["--set", "audio_node.device=a\nb"], "control character"), (["--out", "a\x1bb"], "control character"),
+                             (["--without", "recorder"], "all results are made from what it records"),
+                             (["--degrade", "/no/such.xml"], "/no/such.xml")):
+            self.assertIn(named, refusal_of(*words))
+            self.assertNotIn("\n", refusal_of(*words))
+
+    def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
+        plan = arguments.parse(["--degrade", __file__], os.getcwd())
+        with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
+        self.assertEqual({*arguments.SENSES, "sync_node"}, set(with_it))
+
+
+class Checks(Folders):
+    def check(self, stop=False, **programs):
+        cluster.check({name: self.program(name, text) for name, text in programs.items()}, types.SimpleNamespace(asked=stop))
+
+    def test_a_refusal_that_is_no_text_is_still_a_sentence(self):
+        (self.folder / "hostile").write_bytes(HOSTILE)
+        with self.assertRaises(Refusal) as caught:
+            self.check(sim_node=b"cat %s/hostile >&2; exit 1" % bytes(self.folder))
+        self.assertIn("caf", str(caught.exception))
+
+    def test_warnings_of_a_good_scene_are_passed_on(self):
+        self.check(sim_node=b"echo odd >&2", audio_node=b"")
+        self.assertEqual(["odd"], self.complained)
+
+    def test_ctrl_c_is_no_fault_of_a_node(self):
+        with self.assertRaises(Interrupted):
+            self.check(stop=True, visual_node=b"kill -INT $$", sim_node=b"exec sleep 60")
+
+    def test_a_large_scene_is_given_time(self):
+        with mock.patch.object(cluster, "PROGRESS_S", 0.15):
+            self.check(sim_node=b"sleep 0.5")
+        self.assertIn("still reading the scene", self.said[0])
+
+
+class Running:
+    """A cluster whose world begins when its clock, which main reads, says so."""
+
+    def __init__(self, begins_at, expected=True):
+        self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False
+        self.plan = types.SimpleNamespace(out="out")
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+    def world_has_begun(self):
+        return self.now >= self.begins_at
+
+    def expects_world(self):
+        return self.expected
+
+    def show_table(self):
+        self.table = True
+
+    def alive(self):
+        return True
+
+    def lost(self):
+        return {}
+
+
+class Seconds(Folders):
+    def watch(self, running, stop=False):
+        with mock.patch.object(main, "time", running):
+            return main.watch_over(running, 20, types.SimpleNamespace(asked=stop))
+
+    def test_count_from_the_beginning_of_the_world(self):
+        running = Running(begins_at=32)
+        self.assertTrue(self.watch(running))
+        self.assertAlmostEqual(52, running.now, delta=0.3)
+        self.assertTrue(running.table)
+        self.assertEqual(6, len(self.said))
+
+    def test_count_at_once_when_there_will_be_no_world(self):
+        running = Running(begins_at=1e9, expected=False)
+        self.assertTrue(self.watch(running))
+        self.assertAlmostEqual(20, running.now, delta=0.3)
+
+    def test_never_begin_when_stopped_before_and_are_waited_for_ten_minutes(self):
+        self.assertFalse(self.watch(Running(begins_at=1e9), stop=True))
+        running = Running(begins_at=1e9)
+        self.assertRaises(Refusal, self.watch, running)
+        self.assertAlmostEqual(600, running.now, delta=1)
+
+
+class Results(Folders):
+    def test_one_run_writes_to_a_folder_at_a_time(self):
+        plan = self.plan()
+        claim = main.claim_out(plan)
+        with self.assertRaises(Refusal) as caught:
+            main.claim_out(self.plan())
+        self.assertIn("another run is writing", str(caught.exception))
+        os.close(claim)
+        os.close(main.claim_out(self.plan()))
+
+    def test_a_full_disk_is_one_sentence_and_leaves_nothing(self):
+        plan = self.plan()
+        plan.out.mkdir()
+        full = OSError(errno.ENOSPC, "No space left on device", "/tmp/x")
+        with mock.patch.object(services, "Service", side_effect=full), mock.patch.object(tempfile, "tempdir", str(self.folder)):
+            with self.assertRaises(Refusal) as caught:
+                cluster.Cluster(plan, None, {"recorder": []}, 1)
+        self.assertIn("/tmp/x: No space left on device", str(caught.exception))
+        self.assertEqual([], list(self.folder.glob("tactus-*")))
+
+    def test_an_error_of_the_system_is_one_sentence(self):
+        with mock.patch.object(main, "run", side_effect=OSError(errno.ENOSPC, "No space left on device", "/x")):
+            self.assertEqual(1, main.main([]))
+        self.assertEqual(["run: /x: No space left on device"], self.complained)
+
+    def test_all_results_are_made_before_a_word_is_said_even_when_it_is_no_text(self):
+        plan = self.plan()
+        plan.out.mkdir()
+        (plan.out / "run.lcmlog").touch()
+        (self.folder / "hostile").write_bytes(HOSTILE)
+        for name in ("summarise", "export_csv", "export_events"):
+            self.program(name, b"cat %s/hostile; touch %s/out/$(basename $0)" % (bytes(self.folder), bytes(self.folder)))
+        made_when_told = []
+        with mock.patch.object(cluster, "BIN", self.folder / "bin"), \
+                mock.patch.object(terminal, "tell", lambda text: made_when_told.extend(p.name for p in plan.out.iterdir())):
+            self.assertEqual([], main.sum_up(plan, "git", {}, {}, ["a warning"]))
+        self.assertLessEqual({"summarise", "export_csv", "export_events"}, set(made_when_told))
+
+
+if __name__ == "__main__":
+    unittest.main()
