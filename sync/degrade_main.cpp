@@ -11,6 +11,7 @@
 #include "sync/identity.h"
 #include "sync/node.h"
 #include "sync/pacing.h"
+#include "sync/printable.h"
 #include "sync/sim_follower.h"
 
 using namespace tactus;
@@ -28,7 +29,7 @@ std::int64_t realtime_ns() {
 
 std::string joined(const std::set<std::string>& names) {
   std::string text;
-  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + sync::printable(n);
   return text;
 }
 

@@ -11,6 +11,7 @@
 
 #include "sync/degradation/profile_exchange.h"
 #include "sync/kernel_drops.h"
+#include "sync/printable.h"
 
 namespace tactus::sync {
 namespace {
@@ -88,7 +89,7 @@ void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv
 
 int fail(const std::string& node, const std::exception& e) {
   const std::string what = e.what();
-  std::cerr << (what.starts_with(node) ? "" : node + ": ") << what << "\n";
+  std::cerr << (what.starts_with(node) ? "" : node + ": ") << printable(what) << "\n";
   return 1;
 }
 

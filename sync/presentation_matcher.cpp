@@ -146,12 +146,15 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
   if (life.fate == NodeLife::Fate::kAbsent) return;
   DebtTally& tally = tallies_[r.modality];
   std::int64_t* outcome = nullptr;
+  bool late = false;  // every part of it that was presented
   for (const Report& report : e.reports) {
     if (report.source != source) continue;
     if (was_presented(report.outcome)) {
+      late = report.outcome == presentation_t::LATE;
       outcome = &tally.presented;
-      break;
+      if (!late) break;
     }
+    if (outcome == &tally.presented) continue;
     const bool by_profile = report.outcome == presentation_t::DROPPED_BY_PROFILE;
     if (by_profile || outcome == nullptr) outcome = by_profile ? &tally.dropped_by_profile : &tally.dropped_late;
   }
@@ -173,6 +176,7 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
   }
   ++tally.owed;
   ++*outcome;
+  if (late) ++tally.late;
 }
 
 void PresentationMatcher::count_asynchrony(const Event& e) {

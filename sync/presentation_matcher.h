@@ -33,6 +33,7 @@ namespace tactus::sync {
 struct DebtTally {
   std::int64_t owed = 0;
   std::int64_t presented = 0;
+  std::int64_t late = 0;  // of those presented
   std::int64_t lost = 0;
   std::int64_t stalled = 0;
   std::int64_t dead = 0;

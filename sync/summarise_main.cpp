@@ -48,6 +48,7 @@ int main(int argc, char** argv) try {
   app.add_option("--seed", options.seed, "seed of the run");
   app.add_option("--git", options.git, "commit of the run");
   app.add_option("--restarts", restarts, "NODE=COUNT as the supervisor counted; may be repeated");
+  app.add_option("--warning", options.warnings, "sentence about what was missing; may be repeated");
   sync::parse_or_exit(app, "summarise", argc, argv);
   options.restarts = parse_restarts(restarts);
 
@@ -58,8 +59,8 @@ int main(int argc, char** argv) try {
     for (sync::LogEvent event; scanner.next(event);) summary.add(event);
     summary.end_of_log(scanner.damaged_regions());
   }
-  std::cout << sync::to_text(summary) << std::flush;
   if (!out.empty()) write_file(out, sync::to_json(summary));
+  std::cout << sync::to_text(summary) << std::flush;
   const std::string failure = summary.failure();
   if (failure.empty()) return 0;
   throw std::runtime_error(failure);

@@ -27,6 +27,9 @@ void RunSummary::observe(const node_health_t& m, HostTime now) {
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
   life.last = m;
   life.last_heard = now;
+  if (!courses_.contains(m.header.incarnation)) return;
+  for (auto& [name, lives] : lives_)
+    for (auto& [incarnation, other] : lives) other.note = other.last.note;
 }
 
 void RunSummary::observe_course(const header_t& h) {
@@ -115,11 +118,12 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
     for (const auto& [incarnation, life] : lives) {
       node.ticks += life.last.ticks;
       node.missed_ticks += life.last.missed_ticks;
+      node.stale_ticks += life.last.stale_ticks;
       node.tick.merge(Histogram::from_message(life.last.tick));
       node.wake.merge(Histogram::from_message(life.last.wake));
       ticks += life.last.ticks - life.first.ticks;
       ns += life.last.header.publish_time_ns - life.first.header.publish_time_ns;
-      if (life.last_heard >= newest) node.scheduling = life.last.note;
+      if (life.last_heard >= newest) node.scheduling = life.note.empty() ? life.last.note : life.note;
       newest = std::max(newest, life.last_heard);
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;
@@ -128,6 +132,13 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
   }
   for (const auto& [name, restarts] : options_.restarts)
     if (out.contains(name)) out[name].restarts = std::max(out[name].restarts, restarts);
+  return out;
+}
+
+std::vector<std::string> RunSummary::absent() const {
+  std::vector<std::string> out;
+  for (const char* sense : kSenses)
+    if (!matcher_.modalities().contains(sense)) out.push_back(sense);
   return out;
 }
 

@@ -2,6 +2,7 @@
 // log after the other.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -25,15 +26,18 @@ struct SummaryOptions {
   std::optional<std::int64_t> seed;
   std::vector<std::string> nodes;               // that must have been there to the end
   std::map<std::string, std::int64_t> restarts;  // as the supervisor counted them
+  std::vector<std::string> warnings;             // what was missing where it ran, a sentence each
 };
 
 struct NodeSummary {
   double rate_Hz = 0;
   std::int64_t ticks = 0;
   std::int64_t missed_ticks = 0;
+  std::int64_t stale_ticks = 0;
   Histogram tick, wake;
   std::int64_t restarts = 0;
-  std::string scheduling;  // what the node said last of its priority and its troubles
+  // What the node said last of its priority and its troubles, while there was a simulation: a run ends without one.
+  std::string scheduling;
   bool alive_at_end = false;
 };
 
@@ -48,6 +52,8 @@ class RunSummary {
  public:
   // A node is alive at the end when it reported health within so long of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
+  // The senses of today.
+  static constexpr std::array kSenses{"haptic", "audio", "visual", "thermal"};
 
   explicit RunSummary(SummaryOptions options) : options_(std::move(options)) {}
 
@@ -64,6 +70,9 @@ class RunSummary {
   // Simulated seconds per second of the host while there was a simulation; 0: there was none.
   double realtime_factor() const;
   std::map<std::string, NodeSummary> nodes() const;
+  // Senses that no node ever reported for.
+  std::vector<std::string> absent() const;
+  const std::vector<std::string>& warnings() const { return options_.warnings; }
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;
   std::int64_t damaged_regions() const { return damaged_regions_; }
@@ -72,9 +81,11 @@ class RunSummary {
   std::string failure() const;
 
  private:
-  // One incarnation of a node: its first health at its present rate, and its last.
+  // One incarnation of a node: its first health at its present rate, and its last; its last note that the simulation
+  // outlived.
   struct Life {
     node_health_t first, last;
+    std::string note;
     HostTime last_heard{};
   };
   struct Channel {

@@ -25,6 +25,7 @@ Json nodes(const RunSummary& s) {
     out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
                  {"ticks", n.ticks},
                  {"missed_ticks", n.missed_ticks},
+                 {"stale_ticks", n.stale_ticks},
                  {"tick_us", quantiles(n.tick)},
                  {"wake_us", quantiles(n.wake)},
                  {"restarts", n.restarts},
@@ -34,7 +35,7 @@ Json nodes(const RunSummary& s) {
 
 // The four senses of today are always there, so that a reader of the file need not ask.
 std::vector<std::string> senses(const PresentationMatcher& m) {
-  std::set<std::string> names = {"haptic", "audio", "visual", "thermal"};
+  std::set<std::string> names(RunSummary::kSenses.begin(), RunSummary::kSenses.end());
   for (const auto& [name, tally] : m.modalities()) names.insert(name);
   std::vector<std::string> out(names.begin(), names.end());
   std::sort(out.begin(), out.end(), named_before);
@@ -48,15 +49,16 @@ Json contacts(const PresentationMatcher& m) {
     const auto it = m.modalities().find(name);
     const DebtTally t = it == m.modalities().end() ? DebtTally{} : it->second;
     presented[name] = t.presented;
-    by_modality[name] = {{"owed", t.owed}, {"presented", t.presented}, {"lost", t.lost}, {"stalled", t.stalled},
-                         {"dead", t.dead}, {"dropped_by_profile", t.dropped_by_profile}, {"dropped_late", t.dropped_late}};
+    by_modality[name] = {{"owed", t.owed}, {"presented", t.presented}, {"late", t.late}, {"lost", t.lost},
+                         {"stalled", t.stalled}, {"dead", t.dead}, {"dropped_by_profile", t.dropped_by_profile}, {"dropped_late", t.dropped_late}};
+    sum.late += t.late;
     sum.lost += t.lost;
     sum.stalled += t.stalled;
     sum.dead += t.dead;
     sum.dropped_by_profile += t.dropped_by_profile;
     sum.dropped_late += t.dropped_late;
   }
-  return {{"begin", m.begins()}, {"hit", m.hits()}, {"end", m.ends()}, {"presented", presented}, {"lost", sum.lost},
+  return {{"begin", m.begins()}, {"hit", m.hits()}, {"end", m.ends()}, {"presented", presented}, {"late", sum.late}, {"lost", sum.lost},
           {"stalled", sum.stalled}, {"dropped_by_profile", sum.dropped_by_profile}, {"dead", sum.dead},
           {"dropped_late", sum.dropped_late}, {"by_modality", by_modality}};
 }
@@ -82,6 +84,8 @@ std::string to_json(const RunSummary& s) {
                     {"seed", s.seed()},
                     {"git", s.git()},
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},
+                    {"warnings", s.warnings()},
+                    {"absent", s.absent()},
                     {"nodes", nodes(s)},
                     {"contacts", contacts(s.matcher())},
                     {"asynchrony_ms", asynchrony(s.matcher())},

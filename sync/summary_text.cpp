@@ -1,6 +1,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "sync/printable.h"
 #include "sync/summary.h"
 
 namespace tactus::sync {
@@ -12,7 +13,7 @@ __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) 
   va_start(arguments, format);
   std::vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  return std::string(text) + "\n";
+  return printable(text) + "\n";
 }
 
 double us(Nanoseconds t) { return static_cast<double>(t.count()) * 1e-3; }
@@ -35,14 +36,20 @@ std::string contacts(const PresentationMatcher& m) {
   std::string out = line("contacts: %lld begin, %lld hit, %lld end", static_cast<long long>(m.begins()),
                          static_cast<long long>(m.hits()), static_cast<long long>(m.ends()));
   if (m.modalities().empty()) return out;
-  out += line("%-14s %9s %9s %7s %7s %7s %10s %7s", "sense", "owed", "presented", "lost", "stalled", "dead",
-              "by profile", "late");
+  out += line("%-14s %9s %9s %10s %7s %7s %7s %10s %12s", "sense", "owed", "presented", "of it late", "lost", "stalled", "dead",
+              "by profile", "dropped late");
   for (const auto& [name, t] : m.modalities())
-    out += line("%-14s %9lld %9lld %7lld %7lld %7lld %10lld %7lld", name.c_str(), static_cast<long long>(t.owed),
-                static_cast<long long>(t.presented), static_cast<long long>(t.lost), static_cast<long long>(t.stalled),
-                static_cast<long long>(t.dead), static_cast<long long>(t.dropped_by_profile),
-                static_cast<long long>(t.dropped_late));
+    out += line("%-14s %9lld %9lld %10lld %7lld %7lld %7lld %10lld %12lld", name.c_str(), static_cast<long long>(t.owed),
+                static_cast<long long>(t.presented), static_cast<long long>(t.late), static_cast<long long>(t.lost),
+                static_cast<long long>(t.stalled), static_cast<long long>(t.dead),
+                static_cast<long long>(t.dropped_by_profile), static_cast<long long>(t.dropped_late));
   return out;
+}
+
+std::string absent(const RunSummary& s) {
+  std::string names;
+  for (const std::string& name : s.absent()) names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "" : line("absent: %s", names.c_str());
 }
 
 std::string asynchrony(const PresentationMatcher& m) {
@@ -73,7 +80,8 @@ std::string to_text(const RunSummary& s) {
   if (s.damaged_regions() > 0)
     out += line("the log is damaged in %lld places; what lies there is not counted",
                 static_cast<long long>(s.damaged_regions()));
-  return out + "\n" + nodes(s) + "\n" + contacts(s.matcher()) + "\n" + asynchrony(s.matcher()) + "\n" + bus(s);
+  for (const std::string& warning : s.warnings()) out += line("%.380s", warning.c_str());
+  return out + "\n" + nodes(s) + "\n" + contacts(s.matcher()) + absent(s) + "\n" + asynchrony(s.matcher()) + "\n" + bus(s);
 }
 
 }  // namespace tactus::sync

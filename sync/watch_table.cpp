@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/channels.h"
+#include "sync/printable.h"
 
 namespace tactus::sync {
 namespace {
@@ -37,7 +38,9 @@ std::string duration(Nanoseconds t) {
   return text;
 }
 
-std::string cut(std::string text, std::size_t width) {
+// One line for the terminal, without what others would have it do.
+std::string cut(const std::string& raw, std::size_t width) {
+  std::string text = printable(raw);
   if (text.size() > width) text.resize(width);
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text + "\n";

@@ -19,6 +19,7 @@ struct RunLog {
   std::shared_ptr<MemorySink::State> state = std::make_shared<MemorySink::State>();
   LogWriter writer{std::make_unique<MemorySink>(state)};
   std::map<std::string, std::int64_t> seq;
+  std::string note = "SCHED_FIFO 60, memory locked";  // of every health
 
   explicit RunLog(bool with_info = true) {
     if (!with_info) return;
@@ -49,7 +50,8 @@ struct RunLog {
     m.nominal_rate_Hz = rate_Hz;
     m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
     m.missed_ticks = missed;
-    m.note = "SCHED_FIFO 60, memory locked";
+    m.stale_ticks = 4;
+    m.note = note;
     Histogram h;
     h.add(Nanoseconds(static_cast<std::int64_t>(incarnation) * 100'000));
     m.tick = m.wake = h.to_message();
@@ -88,7 +90,7 @@ void ordinary_run(RunLog& log) {
 TEST_CASE("The summary of a run holds what the contract promises") {
   RunLog log;
   ordinary_run(log);
-  const RunSummary s = log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}});
+  const RunSummary s = log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}, .warnings = {}});
   CHECK(s.failure().empty());
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "room.sdf");
@@ -98,6 +100,7 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   CHECK(j["realtime_factor"] == Approx(0.99));
   CHECK(j["nodes"]["audio_node"]["rate_hz"].get<double>() == Approx(750));
   CHECK(j["nodes"]["audio_node"]["ticks"] == 7500);
+  CHECK(j["nodes"]["audio_node"]["stale_ticks"] == 4);
   CHECK(j["nodes"]["audio_node"]["restarts"] == 0);
   CHECK(j["nodes"]["audio_node"]["scheduling"] == "SCHED_FIFO 60, memory locked");
   for (const char* q : {"p50", "p99", "p999", "max"}) {
@@ -123,13 +126,68 @@ TEST_CASE("What the caller knows better replaces what the log says") {
   RunLog log;
   ordinary_run(log);
   const RunSummary s = log.summary(
-      {.scene = "other.sdf", .git = "def", .seconds = 20, .seed = 1, .nodes = {}, .restarts = {{"audio_node", 4}}});
+      {.scene = "other.sdf", .git = "def", .seconds = 20, .seed = 1, .nodes = {}, .restarts = {{"audio_node", 4}}, .warnings = {}});
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "other.sdf");
   CHECK(j["git"] == "def");
   CHECK(j["seconds"] == 20);
   CHECK(j["seed"] == 1);
   CHECK(j["nodes"]["audio_node"]["restarts"] == 4);
+}
+
+TEST_CASE("Senses that no node reported for are absent") {
+  RunLog log;
+  ordinary_run(log);
+  const RunSummary s = log.summary();
+  CHECK(Json::parse(to_json(s))["absent"] == Json({"haptic", "thermal"}));
+  CHECK_THAT(to_text(s), Catch::Contains("absent: haptic, thermal\n"));
+}
+
+TEST_CASE("What was missing where it ran is part of the summary") {
+  RunLog log;
+  ordinary_run(log);
+  SummaryOptions options;
+  options.warnings = {"visual_node: no ffmpeg"};
+  const RunSummary s = log.summary(options);
+  CHECK(Json::parse(to_json(s))["warnings"] == Json({"visual_node: no ffmpeg"}));
+  CHECK_THAT(to_text(s), Catch::Contains("\nvisual_node: no ffmpeg\n"));
+}
+
+TEST_CASE("What is presented late is counted as presented, and named") {
+  RunLog log;
+  ordinary_run(log);
+  log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8101, contact_event_t::HIT, 100), 10001);
+  log.send(channels::kPresented, MatcherFixture::presented_message("audio_node", "audio", 1, 8400, presentation_t::LATE),
+           10002);
+  for (int ms = 10100; ms < 12000; ms += 100) log.health("audio_node", "audio", ms, 750);
+  const Json contacts = Json::parse(to_json(log.summary()))["contacts"];
+  CHECK(contacts["late"] == 1);
+  CHECK(contacts["by_modality"]["audio"]["late"] == 1);
+  CHECK(contacts["by_modality"]["audio"]["presented"] == 81);
+}
+
+TEST_CASE("The note of a node is its last while the simulation spoke: every run ends without one") {
+  RunLog log;
+  for (int ms = 0; ms <= 4000; ms += 100) {
+    if (ms == 3000) log.note = "input lost";
+    log.health("haptic_node", "haptic", ms, 1000);
+    world_state_t world{};
+    world.header = header_of("sim_node", 100, 0, to_ns(MatcherFixture::at(ms)));
+    world.header.sim_time_ns = std::int64_t{ms} * 1'000'000;
+    world.pages = 1;
+    if (ms < 3000) log.send(channels::kWorldState, world, ms);
+    if (ms < 3000) log.health("sim_node", "", ms, 1000, 100);
+  }
+  CHECK(log.summary().nodes().at("haptic_node").scheduling == "SCHED_FIFO 60, memory locked");
+}
+
+TEST_CASE("The text of a summary is no order to a terminal") {
+  RunLog log;
+  log.note = "a\x1b[2Jb\nc";
+  ordinary_run(log);
+  const std::string text = to_text(log.summary());
+  CHECK(text.find('\x1b') == std::string::npos);
+  CHECK_THAT(text, Catch::Contains("a\\x1b[2Jb\\x0ac"));
 }
 
 TEST_CASE("Incarnations of a node are added up") {
@@ -153,7 +211,7 @@ TEST_CASE("A run with a loss, or without a node that must be there, is a failure
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8100, contact_event_t::HIT, 100), 10001);
   for (int ms = 10100; ms < 14000; ms += 100) log.health("visual_node", "visual", ms, 60);
   const SummaryOptions options{.scene = {}, .git = {}, .seconds = {}, .seed = {},
-                               .nodes = {"audio_node", "visual_node", "haptic_node"}, .restarts = {}};
+                               .nodes = {"audio_node", "visual_node", "haptic_node"}, .restarts = {}, .warnings = {}};
   const std::string why = log.summary(options).failure();
   CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
   CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));

@@ -78,6 +78,17 @@ TEST_CASE("Before the first report the table says so") {
   CHECK_THAT(WatchTable().to_text(kNow), Catch::Contains("no node has reported yet"));
 }
 
+TEST_CASE("What a node says is shown, not obeyed by the terminal") {
+  WatchTable table;
+  node_health_t m = health("a\x1b[2J");
+  m.note = "one\ntwo\x1b]0;title\a";
+  table.observe(m, kNow);
+  const std::string text = table.to_text(kNow);
+  CHECK(std::count(text.begin(), text.end(), '\n') == 2);
+  CHECK(text.find_first_of("\x1b\a") == std::string::npos);
+  CHECK_THAT(text, Catch::Contains("\\x1b[2J") && Catch::Contains("one\\x0atwo"));
+}
+
 TEST_CASE("As JSON it is one line, whatever a note holds") {
   WatchTable table;
   node_health_t m = health("audio_node");
