@@ -12,6 +12,7 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 SCENES = REPOSITORY / "sim_node" / "scenes"
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
+LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
 
 
@@ -128,6 +129,9 @@ def out_folder(here, text):
         existing = existing.parent
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
         raise Refusal(f"recorder: the folder {path} for the results cannot be written; name another with --out")
+    disk = os.statvfs(existing)
+    if disk.f_bavail * disk.f_frsize < LEAST_FREE_BYTES:
+        raise Refusal(f"recorder: the disk of {path} is full; make room there or name another with --out")
     return path.absolute()
 
 

@@ -10,7 +10,7 @@ import time
 
 import services
 from arguments import REPOSITORY, SENSES
-from refusal import Interrupted, Refusal, sentence_of
+from refusal import Interrupted, Refusal
 from terminal import complain, say
 
 # TACTUS_BIN: programs of another build; scripts/run then installs and builds nothing.
@@ -115,8 +115,8 @@ class Cluster:
                              for name, command in words.items()}
         except OSError as error:
             self.clean()
-            raise Refusal(f"supervision: cannot prepare the run ({sentence_of(error)}); make room there, or set TMPDIR to "
-                          "another folder") from None
+            raise Refusal(f"supervision: cannot prepare the run in {self.folder} ({error.strerror}); make room there, or set "
+                          "TMPDIR to another folder") from None
 
     def start(self):
         """Supervisor, recorder and sync_node, the senses, the simulation. Raises Refusal."""

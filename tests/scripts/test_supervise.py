@@ -89,6 +89,10 @@ class Arguments(unittest.TestCase):
             self.assertIn(named, refusal_of(*words))
             self.assertNotIn("\n", refusal_of(*words))
 
+    def test_a_full_disk_is_said_before_anything_starts(self):
+        with mock.patch.object(os, "statvfs", return_value=types.SimpleNamespace(f_bavail=3, f_frsize=4096)):
+            self.assertIn("full", refusal_of())
+
     def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
         plan = arguments.parse(["--degrade", __file__], os.getcwd())
         with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
@@ -189,7 +193,7 @@ class Results(Folders):
         with mock.patch.object(services, "Service", side_effect=full), mock.patch.object(tempfile, "tempdir", str(self.folder)):
             with self.assertRaises(Refusal) as caught:
                 cluster.Cluster(plan, None, {"recorder": []}, 1)
-        self.assertIn("/tmp/x: No space left on device", str(caught.exception))
+        self.assertIn("No space left on device", str(caught.exception))
         self.assertEqual([], list(self.folder.glob("tactus-*")))
 
     def test_an_error_of_the_system_is_one_sentence(self):
