@@ -31,7 +31,8 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   INFO(run.processes.said("run"));
   REQUIRE(status == 0);
   CHECK(nothing_lives(5));
-  for (const char* file : {"run.lcmlog", "audio.wav", "video.mp4", "haptic.csv", "thermal.csv", "summary.json"}) {
+  for (const char* file : {"run.lcmlog", "audio.wav", "video.mp4", "haptic.csv", "thermal.csv", "events.csv", "presented.csv",
+                           "summary.json"}) {
     INFO(file);
     REQUIRE(std::filesystem::is_regular_file(run.out() / file));
     CHECK(std::filesystem::file_size(run.out() / file) > 1000);
@@ -42,10 +43,11 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   CHECK(media_seconds(run, run.out() / "video.mp4") > 4);
 
   const json summary = json::parse(contents(run.out() / "summary.json"));
-  check_keys(summary, {"scene", "seconds", "recorded_seconds", "seed", "git", "realtime_factor", "nodes", "contacts", "asynchrony_ms", "bus"});
+  check_keys(summary, {"scene", "seconds", "recorded_seconds", "seed", "git", "realtime_factor", "warnings", "absent", "nodes", "contacts", "asynchrony_ms",
+                       "bus"});
   for (const std::string& node : kNodes) {
     REQUIRE(summary["nodes"].contains(node));
-    check_keys(summary["nodes"][node], {"rate_hz", "ticks", "missed_ticks", "tick_us", "wake_us", "restarts"});
+    check_keys(summary["nodes"][node], {"rate_hz", "ticks", "missed_ticks", "stale_ticks", "tick_us", "wake_us", "restarts"});
     check_keys(summary["nodes"][node]["tick_us"], {"p50", "p99", "p999", "max"});
     CHECK(summary["nodes"][node]["restarts"] == 0);
   }
@@ -65,6 +67,23 @@ TEST_CASE("Without audio_node the others run as before, in the default scene") {
   CHECK(status == 0);
   CHECK_FALSE(std::filesystem::exists(run.out() / "audio.wav"));
   CHECK(std::filesystem::exists(run.out() / "video.mp4"));
+  CHECK(json::parse(contents(run.out() / "summary.json"))["absent"] == json::array({"audio"}));
+}
+
+TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps running") {
+  RunScript run;
+  const std::string script = (repository() / "scripts/run").string();
+  run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
+                               script + " " + tapping_scene() + " --seconds 3 --out " + run.out().string() + " | head -1"});
+  CHECK(run.finish(kLongest_s, "pipe") == 0);
+  INFO(run.processes.said("pipe"));
+  for (int i = 0; i < 600 && !std::filesystem::exists(run.out() / "events.csv"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  CHECK(nothing_lives(15));
+  for (const char* file : {"run.lcmlog", "haptic.csv", "thermal.csv", "events.csv", "presented.csv", "summary.json"}) {
+    INFO(file);
+    CHECK(std::filesystem::is_regular_file(run.out() / file));
+  }
 }
 
 TEST_CASE("What is wrong is said in one sentence before anything starts") {
