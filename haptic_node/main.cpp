@@ -64,7 +64,8 @@ int main(int argc, char** argv) try {
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
-      node.set_state(node_health_t::WAITING, session ? "waits for a touch model" : choice.problem);
+      node.set_state(session ? node_health_t::READY : node_health_t::WAITING,
+                     session ? "waits for a touch model" : choice.problem);
     }
     while (const auto m = touch.pop())
       if (session) session->push(m->message, m->arrival);

@@ -158,7 +158,7 @@ bool valid(const tool_state_t& m) {
 bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
   return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
-         between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) &&
+         between(m.state, node_health_t::WAITING, node_health_t::READY) &&
          sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
          m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&
          sane_not_negative(m.realtime_factor) && all_sane(m.inputs);

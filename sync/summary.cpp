@@ -8,8 +8,8 @@
 namespace tactus::sync {
 
 void RunSummary::observe(const log_info_t& m) {
-  // The first of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run the
-  // first says what was meant.
+  // The first of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run
+  // the first says what was meant.
   if (time_known_) return;
   time_known_ = true;
   realtime_offset_ns_ = m.realtime_offset_ns;
@@ -22,8 +22,10 @@ void RunSummary::observe(const log_info_t& m) {
 void RunSummary::observe(const node_health_t& m, HostTime now) {
   auto [it, first] = lives_[m.node].try_emplace(m.header.incarnation);
   Life& life = it->second;
-  // A node waits at another rate than it runs at: its rate is counted from when it began to run as it does at the end.
-  const bool began_to_run = m.state == node_health_t::RUNNING && life.first.state == node_health_t::WAITING;
+  // A node waits at another rate than it runs at: its rate is counted from when it began to run as it does at the
+  // end.
+  const bool began_to_run = m.state == node_health_t::RUNNING && (life.first.state == node_health_t::WAITING ||
+                                                                  life.first.state == node_health_t::READY);
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
   life.last = m;
   life.last_heard = now;
@@ -153,8 +155,9 @@ std::string RunSummary::failure() const {
       also(name + " was not alive at the end");
   }
   for (const auto& [modality, tally] : matcher_.modalities())
-    if (tally.lost > 0) also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
-                             " owed contact events");
+    if (tally.lost > 0)
+      also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
+           " owed contact events");
   return why;
 }
 

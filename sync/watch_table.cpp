@@ -25,6 +25,7 @@ std::string state_name(std::int8_t state) {
     case node_health_t::STALE: return "stale";
     case node_health_t::INPUT_LOST: return "input lost";
     case node_health_t::OUTPUT_LOST: return "output lost";
+    case node_health_t::READY: return "ready";
     default: return "?";
   }
 }

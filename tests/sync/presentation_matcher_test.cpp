@@ -88,6 +88,16 @@ TEST_CASE("A sense that was never there owes nothing") {
   }
 }
 
+TEST_CASE("A sense that was ready before the world began owes its first contact") {
+  MatcherFixture f;
+  f.healths("audio_node", "audio", kHit, 500, 900, 1, node_health_t::READY);
+  f.healths("audio_node", "audio", kHit, 1000, 4000);
+  f.event(1, 950);
+  f.matcher.advance(f.at(3000));
+  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").lost == 1);
+}
+
 TEST_CASE("A node that was stopped for two seconds and came back was stalled") {
   MatcherFixture f;
   f.healths("visual_node", "visual", kBoth, 0, 2000);

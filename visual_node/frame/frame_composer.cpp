@@ -23,7 +23,8 @@ Eigen::Isometry3d to_isometry(const sync::BodyPose& p) { return Eigen::Translati
 
 const char* word(const Frame& frame) {
   switch (frame.state) {
-    case node_health_t::WAITING: return "WAITING";
+    case node_health_t::WAITING:
+    case node_health_t::READY: return "WAITING";
     case node_health_t::INPUT_LOST: return "LOST";
     case node_health_t::STALE: return frame.how == sync::How::kHeld ? "HELD" : "STALE";
     default: return "";
@@ -76,6 +77,7 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
   if (!scene_) {
     frame.note = "waits for the scene";
   } else if (frame.how == sync::How::kNone) {
+    frame.state = node_health_t::READY;
     frame.note = "waits for the state of the world";
   } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
     frame.state = node_health_t::INPUT_LOST;
