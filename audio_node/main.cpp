@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   sync::SceneReceiver scene(node.bus());
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
   auto& frames = node.bus().queue<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream contacts(options.run_id);
+  sync::ContactStream contacts(node.bus().clocks());
   sync::PresentationReporter reporter(kAudio.modality);
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;

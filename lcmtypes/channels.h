@@ -15,6 +15,8 @@ inline constexpr const char* kThermalState = "THERMAL_STATE";    // thermal_stat
 inline constexpr const char* kPresented = "PRESENTED";           // presented_t
 inline constexpr const char* kNodeHealth = "NODE_HEALTH";        // node_health_t
 inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_t
+inline constexpr const char* kClockProbe = "CLOCK_PROBE";        // clock_probe_t
+inline constexpr const char* kClockMap = "CLOCK_MAP";            // clock_map_t
 inline constexpr const char* kMediaClock = "MEDIA_CLOCK";        // media_clock_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 

@@ -87,7 +87,8 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
       line += " | " + m.modality + " " + std::to_string(m.presented) + "/" + std::to_string(m.owed) +
               (m.lost > 0 ? " LOST " + std::to_string(m.lost) : "");
     for (const pair_report_t& p : report_->pairs)
-      line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "");
+      line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "") +
+              " +-" + duration(Nanoseconds(p.uncertainty_ns));
     out += cut(line, 2 * width);
   }
   return out;
@@ -109,7 +110,8 @@ std::string WatchTable::to_json(HostTime now) const {
     for (const pair_report_t& p : report_->pairs)
       pairs[p.a + "_" + p.b] = {{"n", p.n}, {"p05_ms", static_cast<double>(p.p05_ns) * 1e-6},
                                 {"p50_ms", static_cast<double>(p.p50_ns) * 1e-6},
-                                {"p95_ms", static_cast<double>(p.p95_ns) * 1e-6}};
+                                {"p95_ms", static_cast<double>(p.p95_ns) * 1e-6},
+                                {"uncertainty_ms", static_cast<double>(p.uncertainty_ns) * 1e-6}};
     out["begin"] = report_->begins;
     out["hit"] = report_->hits;
     out["end"] = report_->ends;

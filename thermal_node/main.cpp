@@ -40,7 +40,7 @@ int main(int argc, char** argv) try {
   sync::SceneReceiver scenes(node.bus());
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
   auto& frames = node.bus().queue<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream stream(options.run_id);
+  sync::ContactStream stream(node.bus().clocks());
   sync::PresentationReporter reporter(declaration.modality);
   thermal::Choice choice;
   thermal::Ticks ticks;

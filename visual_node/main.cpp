@@ -61,7 +61,7 @@ int main(int argc, char** argv) try {
   auto& world = node.bus().queue<world_state_t>(channels::kWorldState, 4096);
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, 4096);
   auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
-  visual::FrameComposer composer(options.run_id, settings);
+  visual::FrameComposer composer(node.bus().clocks(), settings);
   visual::Recording recording(keep);
   sync::PresentationReporter reporter(declaration.modality);
   std::string said;

@@ -226,7 +226,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.friction_dynamic = static_cast<float>(s.friction_dynamic);
     model_.planes.push_back(p);
   }
-  model_.plane_count = static_cast<std::int32_t>(model_.planes.size());
+  model_.plane_count = static_cast<std::int8_t>(model_.planes.size());
 }
 
 void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact_t>& out) const {
