@@ -82,9 +82,13 @@ std::vector<ProbeWave> ClockProber::finish(HostTime now) {
     else
       ++contradictory_;
   }
+  Nanoseconds period = kPeriod;
+  if (waves_.size() > kMostClocks) waves_.clear();  // hosts that come and go for months
+  for (const ProbeWave& wave : out)
+    if (waves_[wave.clock] < kFirstWaves && ++waves_[wave.clock] < kFirstWaves) period = kFirstPeriod;
   heard_.clear();
   sent_.clear();
-  wave_begin_ = std::max(wave_begin_ + kPeriod, now);
+  wave_begin_ = std::max(wave_begin_ + period, now);
   return out;
 }
 

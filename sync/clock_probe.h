@@ -33,6 +33,9 @@ class ClockProber {
   static constexpr int kProbes = 8;
   static constexpr Nanoseconds kSpacing{64'000'000};
   static constexpr Nanoseconds kPeriod{2'000'000'000};
+  // A clock that is new is asked again sooner, so that its rate is known after two seconds, not four (design).
+  static constexpr int kFirstWaves = 3;
+  static constexpr Nanoseconds kFirstPeriod{1'000'000'000};
   static constexpr Nanoseconds kLongestTrip{128'000'000};
   // Design: more hosts than a cluster has; what answers beyond that is counted as refused.
   static constexpr std::size_t kMostClocks = 64;
@@ -67,6 +70,7 @@ class ClockProber {
   HostTime wave_begin_;
   std::vector<Sent> sent_;  // of this wave
   std::map<std::int32_t, Heard> heard_;
+  std::map<std::int32_t, int> waves_;  // heard of each clock, up to kFirstWaves
   std::int64_t refused_ = 0, contradictory_ = 0;
 };
 

@@ -38,9 +38,10 @@ class OffsetTracker {
   static constexpr double kMaxDrift = 200e-6;
   // How far a clock's rate strays from the mean that was measured: PHI, "frequency tolerance", RFC 5905, figure 5.
   static constexpr double kRateTolerance = 15e-6;
-  // A rate is measured over up to so many waves, half a minute, between instants at least a second apart.
+  // A rate is measured over up to so many waves, half a minute, between instants at least half a second apart: over less,
+  // the uncertainty of both says nothing.
   static constexpr std::size_t kRemembered = 16;
-  static constexpr Nanoseconds kShortestBase{1'000'000'000};
+  static constexpr Nanoseconds kShortestBase{500'000'000};
   // As fast as the kernel slews a clock: 500 ppm, RFC 5905, section 11.3 and adjtimex(2).
   static constexpr double kMaxSlew = 500e-6;
   // An error is slewed away in about so long, where that is not too fast (design: one period of the maps' consumers).

@@ -3,13 +3,14 @@
 //
 //   in   CLOCK_PROBE                              requests and replies, in a thread of its own
 //        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
-//   out  CLOCK_PROBE                              eight requests every 2 s; a reply to each request
+//   out  CLOCK_PROBE                              eight requests every 2 s or less; a reply to each request
 //        CLOCK_MAP                                twice a second, one per clock of another host
 //        SYNC_REPORT                              once a second
 //
 // Losing the probes' replies, its maps grow less certain and say so. Losing CONTACT_EVENTS or PRESENTED only leaves it less to
 // report; a sense that falls silent is named in the report.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 
 #include "sync/clock_agreement.h"
@@ -33,6 +34,15 @@ constexpr sync::Nanoseconds kMapPeriod{500'000'000};
 template <class Message>
 void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
   while (const auto received = queue.pop()) matcher.observe(received->message, received->arrival);
+}
+
+// For the live table: how many clocks are known, and how well at the worst.
+std::string clocks_note(const std::vector<clock_map_t>& maps) {
+  if (maps.empty()) return "";
+  std::int64_t worst_ns = 0;
+  for (const clock_map_t& m : maps) worst_ns = std::max(worst_ns, m.uncertainty_ns);
+  return std::to_string(maps.size()) + " other clock" + (maps.size() == 1 ? "" : "s") + " known to " +
+         std::to_string((worst_ns + 999) / 1000) + " us";
 }
 
 }  // namespace
@@ -72,7 +82,9 @@ int main(int argc, char** argv) try {
     while (const auto wave = probes.pop()) agreement.add(*wave);
     if (now >= next_maps) {
       next_maps = std::max(next_maps + kMapPeriod, now);
-      for (clock_map_t& map : agreement.maps(clock.read(now))) node.bus().publish(channels::kClockMap, map);
+      std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
+      for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);
+      node.set_state(node_health_t::RUNNING, clocks_note(maps));
     }
     feed(matcher, health);
     feed(matcher, events);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -34,6 +35,13 @@ std::string duration(Nanoseconds t) {
   char text[32];
   const double ms = static_cast<double>(t.count()) * 1e-6;
   std::snprintf(text, sizeof text, ms < 10 ? "%.1f ms" : ms < 1000 ? "%.0f ms" : "%.3g s", ms < 1000 ? ms : ms * 1e-3);
+  return text;
+}
+
+// Never rounded down.
+std::string uncertainty(Nanoseconds t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f ms", std::ceil(static_cast<double>(t.count()) * 1e-4) * 1e-2);
   return text;
 }
 
@@ -88,7 +96,7 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
               (m.lost > 0 ? " LOST " + std::to_string(m.lost) : "");
     for (const pair_report_t& p : report_->pairs)
       line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "") +
-              " +-" + duration(Nanoseconds(p.uncertainty_ns));
+              " +-" + uncertainty(Nanoseconds(p.uncertainty_ns));
     out += cut(line, 2 * width);
   }
   return out;

@@ -65,8 +65,15 @@ TEST_CASE("A wave is eight probes 64 ms apart, every two seconds, and keeps the 
   CHECK(waves[0].replies == 6);
   CHECK(waves[0].sample.offset == Nanoseconds(kAhead - 100));
   CHECK(waves[0].sample.at == begin + ClockProber::kSpacing + Nanoseconds(1100));
-  CHECK(p.prober.next() == begin + ClockProber::kPeriod);
-  CHECK_FALSE(p.prober.request(begin + Nanoseconds(1'900 * kMs), begin, 1));
+  SECTION("a new clock is asked again after one second, twice") {
+    CHECK(p.prober.next() == begin + ClockProber::kFirstPeriod);
+    const std::vector<std::pair<std::int64_t, std::int64_t>> ways(8, {500, 500});
+    p.wave(ways);
+    CHECK(p.prober.next() == begin + 2 * ClockProber::kFirstPeriod);
+    p.wave(ways);
+    CHECK(p.prober.next() == begin + 2 * ClockProber::kFirstPeriod + ClockProber::kPeriod);
+    CHECK_FALSE(p.prober.request(p.prober.next() - Nanoseconds(1), begin, 1));
+  }
 }
 
 TEST_CASE("One answer of eight is a wave, none is no wave, and the next wave comes all the same") {
