@@ -11,11 +11,12 @@ bool SenderClock::observe(const header_t& h, HostTime arrival) {
   run_id_ = h.run_id;
   clock_ = h.clock;
   if (ours() && clock_ == own_.clock) return false;
-  bool jumped = one_way_.observe(h.publish_time_ns, arrival);
+  const bool jumped = one_way_.observe(h.publish_time_ns, arrival);
   const Reading reading = read(h.publish_time_ns, arrival);
-  if (reading.how == How::kMapped && reading.time - reading.uncertainty > arrival + kTolerance) jumped = true;
-  if (jumped) distrust_until_ = arrival + kDistrust;
-  return jumped;
+  if (reading.how != How::kMapped) return jumped;
+  const bool contradicted = reading.time - reading.uncertainty > arrival + kTolerance;
+  if (contradicted) distrust_until_ = arrival + kDistrust;
+  return contradicted;
 }
 
 SenderClock::Reading SenderClock::read(std::int64_t sender_ns, HostTime now) const {

@@ -14,7 +14,8 @@ namespace tactus::sync {
 //   kSame     of our run and our clock: nothing to read
 //   kMapped   of our run, and a map of its clock is published: good to the map's uncertainty
 //   kOneWay   anything else, as a replayed log: by arrival, good to the smallest latency, which nobody knows
-// A map is not believed for a while when the sender's stamps contradict it: its clock has just jumped.
+// A map is not believed for a while when the sender's stamps contradict it, for nothing arrives before it was sent: its clock
+// has just jumped forward. A jump back looks like latency until the probes have noticed it, within three seconds.
 class SenderClock {
  public:
   enum class How { kUnknown, kSame, kMapped, kOneWay };

@@ -56,16 +56,13 @@ TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its hea
   RunScript run;
   if (!time_namespaces(run)) return;
   Running r;
-  const std::vector<std::string> common{"--run-id", std::to_string(Running::kRunId), "--out", r.folder.path()};
-  const auto there = [&](const std::string& node, const std::string& name) {
-    std::vector<std::string> command{programs() / node, "--name", name};
-    command.insert(command.end(), common.begin(), common.end());
-    r.processes.spawn(name, an_hour_ahead(command));
-  };
+  // Both in one time namespace: each namespace is a clock of its own, and a host has one sync_node.
+  const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + r.folder.path().string();
+  const std::string there = (programs() / "sync_node").string() + common + " --name sync_node_there & exec " +
+                            (programs() / "visual_node").string() + common;
+  r.processes.spawn("visual_node", an_hour_ahead({"sh", "-c", there}));
   auto& reports = r.ear.bus().queue<sync_report_t>(channels::kSyncReport, 64);
   r.processes.start("sync_node");
-  there("sync_node", "sync_node_there");
-  there("visual_node", "visual_node");
   r.processes.start("audio_node");
   r.processes.start("haptic_node");
   r.processes.start("sim_node", {tapping_scene()});
