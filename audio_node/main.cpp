@@ -59,7 +59,7 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream contacts(options.run_id);
+  sync::ContactStream contacts(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
   std::int64_t scenes = 0;

@@ -57,7 +57,7 @@ int main(int argc, char** argv) try {
       session.reset();
       const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
-      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, options.run_id);
+      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, node.bus().clocks());
       std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
                 << "\n";
       node.set_tool(choice.tool);

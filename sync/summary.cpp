@@ -16,7 +16,8 @@ void RunSummary::observe(const log_info_t& m) {
   live_from_ns_ = m.live_from_ns;
   if (info_) return;
   info_ = m;
-  matcher_ = PresentationMatcher(m.header.run_id);
+  maps_ = std::make_unique<ClockMaps>(m.header.run_id);
+  matcher_ = PresentationMatcher(OwnClock(m.header.run_id, m.header.clock, maps_.get()));
 }
 
 void RunSummary::observe(const node_health_t& m, HostTime now) {
@@ -74,6 +75,7 @@ void RunSummary::add(const LogEvent& e) {
     match(m);
     if (!info_ || m.header.run_id == info_->header.run_id) observe(m, now);
   });
+  feed.template operator()<clock_map_t>(channels::kClockMap, [&](const clock_map_t& m) { maps_->observe(m, now); });
   feed.template operator()<contact_events_t>(channels::kContactEvents, match);
   feed.template operator()<presented_t>(channels::kPresented, match);
   if (header && e.channel == channels::kWorldState) observe_course(*header);

@@ -40,7 +40,7 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream stream(options.run_id);
+  sync::ContactStream stream(node.bus().clocks());
   thermal::Choice choice;
   thermal::Ticks ticks;
   std::optional<thermal::Renderer> renderer;

@@ -33,8 +33,8 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(std::int64_t own_run, const Settings& settings)
-    : settings_(settings), contacts_(own_run), bodies_(own_run), flashes_(settings), ledger_(settings) {}
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings)
+    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                                      const HeightMaps& height_maps) {
