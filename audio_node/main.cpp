@@ -59,7 +59,7 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream contacts(options.run_id);
+  sync::ContactStream contacts(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
   std::int64_t scenes = 0;
@@ -111,10 +111,11 @@ int main(int argc, char** argv) try {
     sense.publish(now);
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
-    node.set_state(!impacts                   ? node_health_t::WAITING
-                   : !plays                   ? node_health_t::OUTPUT_LOST
-                   : now - sense.newest_arrival() > kInputLost ? node_health_t::INPUT_LOST
-                                              : node_health_t::RUNNING,
+    node.set_state(!impacts                                     ? node_health_t::WAITING
+                   : !plays                                     ? node_health_t::OUTPUT_LOST
+                   : sense.newest_arrival() == sync::HostTime{} ? node_health_t::READY
+                   : now - sense.newest_arrival() > kInputLost  ? node_health_t::INPUT_LOST
+                                                                : node_health_t::RUNNING,
                    output.note());
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());
   }

@@ -57,14 +57,15 @@ int main(int argc, char** argv) try {
       session.reset();
       const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
-      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, options.run_id);
+      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, node.bus().clocks());
       std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
                 << "\n";
       node.set_tool(choice.tool);
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
-      node.set_state(node_health_t::WAITING, session ? "waits for a touch model" : choice.problem);
+      node.set_state(session ? node_health_t::READY : node_health_t::WAITING,
+                     session ? "waits for a touch model" : choice.problem);
     }
     while (const auto m = touch.pop())
       if (session) session->push(m->message, m->arrival);

@@ -18,11 +18,11 @@ std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice,
 }  // namespace
 
 Session::Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-                 std::int64_t own_run)
+                 sync::OwnClock own)
     : device_(device_of(scene, choice, device)),
       renderer_(scene, choice.tool, choice.settings),
-      touch_(choice.tool, own_run),
-      events_(own_run) {}
+      touch_(choice.tool, own),
+      events_(own) {}
 
 TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
   TickInput in;

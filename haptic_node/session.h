@@ -28,7 +28,7 @@ class Session {
   // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. Throws
   // std::runtime_error with one sentence when there is no such device.
   Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-          std::int64_t own_run);
+          sync::OwnClock own);
 
   void push(const touch_model_t& model, sync::HostTime arrival) { touch_.push(model, arrival); }
   void push(const contact_events_t& events, sync::HostTime arrival) { events_.push(events, arrival); }

@@ -14,8 +14,8 @@ namespace tactus::haptic {
 
 class TouchInput {
  public:
-  // own_run: messages of this cluster run carry our own clock.
-  TouchInput(int tool, std::int64_t own_run) : tool_(tool), simulation_(own_run) {}
+  // own: messages of another clock are read through its map; those of another run by arrival.
+  TouchInput(int tool, sync::OwnClock own) : tool_(tool), simulation_(own) {}
 
   // Those of other tools, of a simulation that has been replaced, and older ones are ignored.
   void push(const touch_model_t& model, sync::HostTime arrival);

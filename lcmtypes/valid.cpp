@@ -35,6 +35,10 @@ bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation
 bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
 bool between(long value, long low, long high) { return value >= low && value <= high; }
 
+// 36 years of uptime: sums and differences of such times cannot overflow.
+constexpr long kLatestClockTime = 1L << 60;
+bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
+
 bool sane(const header_t& h) {
   return h.sim_time_ns >= -1 && h.publish_time_ns >= 0 && h.run_id > 0 && h.incarnation > 0 && h.seq >= 0;
 }
@@ -92,7 +96,10 @@ bool sane(const histogram_t& h) {
     if (bin < 0) return false;
   return h.max_ns >= 0;
 }
-bool sane(const input_health_t& i) { return i.age_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0; }
+bool sane(const input_health_t& i) {
+  return i.age_ns >= -1 && i.uncertainty_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0;
+}
+bool sane(const pair_report_t& p) { return p.n >= 0 && p.uncertainty_ns >= 0; }
 bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF); }
 bool sane_bump(const material_def_t& m) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
@@ -158,10 +165,10 @@ bool valid(const tool_state_t& m) {
 bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
   return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
-         between(m.state, node_health_t::WAITING, node_health_t::OUTPUT_LOST) &&
-         sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
-         m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&
-         sane_not_negative(m.realtime_factor) && all_sane(m.inputs);
+         between(m.state, node_health_t::WAITING, node_health_t::READY) && sane_not_negative(m.nominal_rate_Hz) &&
+         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && m.stale_ticks >= 0 &&
+         sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) &&
+         m.foreign_control >= 0 && all_sane(m.inputs);
 }
 bool valid(const degradation_t& m) {
   return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
@@ -187,7 +194,22 @@ bool valid(const thermal_state_t& m) {
   return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&
          sane_not_negative(m.area_m2) && sane(m.heat_flux_W_m2) && sane(m.skin_degC) && sane(m.commanded_degC);
 }
-bool valid(const sync_report_t& m) { return sane(m.header); }
+bool valid(const sync_report_t& m) { return sane(m.header) && page_of(m.page, m.pages) && all_sane(m.pairs); }
+bool valid(const clock_probe_t& m) {
+  if (!sane(m.header) || !between(m.kind, clock_probe_t::REQUEST, clock_probe_t::REPLY) ||
+      !clock_time(m.request_sent_ns))
+    return false;
+  if (m.kind == clock_probe_t::REQUEST)
+    return m.asking_clock == m.header.clock && m.request_arrived_ns == -1 && m.reply_sent_ns == -1;
+  return m.asking_clock != m.header.clock && clock_time(m.request_arrived_ns) && clock_time(m.reply_sent_ns) &&
+         m.request_arrived_ns <= m.reply_sent_ns;
+}
+bool valid(const clock_map_t& m) {
+  return sane(m.header) && m.of_clock != m.to_clock && m.to_clock == m.header.clock && clock_time(m.at_ns) &&
+         between(m.offset_ns, -kLatestClockTime, kLatestClockTime) && std::abs(m.drift) <= 0.002 &&
+         m.uncertainty_ns >= 0 && m.uncertainty_drift >= 0 && m.uncertainty_drift <= 0.01 && m.epoch >= 0 &&
+         m.round_trip_ns >= 0 && m.replies >= 0;
+}
 bool valid(const scene_manifest_t& m) { return sane(m.header) && page_of(m.page, m.pages) && all_sane(m.assets); }
 bool valid(const asset_request_t& m) {
   return sane(m.header) && m.first_chunk >= 0 && between(m.chunk_count, 1, 1 << 20);

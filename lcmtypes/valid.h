@@ -4,6 +4,8 @@
 
 #include <tactus/asset_chunk_t.hpp>
 #include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/clock_probe_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
@@ -28,6 +30,8 @@ namespace tactus {
 // True when every field is in the range that its comment in the .lcm file gives.
 bool valid(const asset_chunk_t&);
 bool valid(const asset_request_t&);
+bool valid(const clock_map_t&);
+bool valid(const clock_probe_t&);
 bool valid(const contact_events_t&);
 bool valid(const contact_frame_t&);
 bool valid(const degradation_t&);

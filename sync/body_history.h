@@ -29,7 +29,7 @@ class BodyHistory {
   static constexpr Nanoseconds kStaleAfter{200'000'000};
   static constexpr std::size_t kSamplesPerBody = 64;
 
-  explicit BodyHistory(std::int64_t own_run) : follower_(own_run) {}
+  explicit BodyHistory(OwnClock own) : follower_(own) {}
 
   void push(const world_state_t& page, HostTime arrival);
   // Hermite in position, SLERP in orientation. A body that a snapshot leaves out rests where it was.

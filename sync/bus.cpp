@@ -79,7 +79,7 @@ std::string lcm_url(const BusOptions& o, int port) {
 }
 
 Bus::Bus(Identity identity, const BusOptions& options)
-    : identity_(std::move(identity)), connections_(std::make_unique<Connections>()) {
+    : identity_(std::move(identity)), maps_(identity_.run_id), connections_(std::make_unique<Connections>()) {
   connections_->realtime = open(lcm_url(options, options.port), identity_, options, options.port);
   connections_->bulk =
       options.memory ? connections_->realtime
@@ -97,6 +97,28 @@ void Bus::subscribe(const char* channel, InboxBase* inbox, Port port) {
   if (port != Port::kBulk) join(*connections_->realtime);
   if (port == Port::kBulk || (port == Port::kBoth && !one_connection)) join(*connections_->bulk);
   connections_->handlers.push_back(std::move(handler));
+}
+
+namespace {
+// Stores what is known of clocks where it is looked up, not where it is taken out.
+class MapInbox : public InboxBase {
+ public:
+  explicit MapInbox(ClockMaps& maps) : InboxBase(channels::kClockMap), maps_(maps) {}
+  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
+    if (const auto m = decode<clock_map_t>(data, size))
+      maps_.observe(*m, arrival);
+    else
+      ++count_.bad;
+  }
+
+ private:
+  ClockMaps& maps_;
+};
+}  // namespace
+
+void Bus::follow_clocks() {
+  map_inbox_ = std::make_unique<MapInbox>(maps_);
+  subscribe(channels::kClockMap, map_inbox_.get(), Port::kRealtime);
 }
 
 void Bus::drain(HostTime now) {
@@ -117,6 +139,7 @@ void Bus::wait(Nanoseconds at_most) {
 
 void Bus::stamp(const char* channel, header_t& h) {
   h.run_id = identity_.run_id;
+  h.clock = identity_.clock;
   h.source = identity_.source;
   h.incarnation = identity_.incarnation;
   h.seq = next_seq_[channel]++;

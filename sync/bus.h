@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
+#include "sync/clock_maps.h"
 #include "sync/identity.h"
 #include "sync/inbox.h"
 #include "sync/pacing.h"
@@ -42,6 +43,11 @@ class Bus {
   Queue<Message>& queue(const char* channel, std::size_t capacity, Port port = Port::kRealtime) {
     return add(std::make_unique<Queue<Message>>(channel, capacity), channel, port);
   }
+
+  // Heeds the clock maps of this run from now on. For processes that drain; call before the first drain.
+  void follow_clocks();
+  // Our clock and what is known of others. Refers to this bus.
+  OwnClock clocks() const { return {identity_.run_id, identity_.clock, &maps_}; }
 
   // Hands everything that has arrived to the inboxes, at most kMaxDrain messages, without waiting.
   void drain(HostTime now);
@@ -79,6 +85,8 @@ class Bus {
   bool refuse() { return ++refused_, false; }
 
   Identity identity_;
+  ClockMaps maps_;
+  std::unique_ptr<InboxBase> map_inbox_;
   std::unique_ptr<Connections> connections_;
   std::vector<std::unique_ptr<InboxBase>> inboxes_;
   std::map<std::string, std::int64_t> next_seq_;

@@ -36,8 +36,8 @@ class ContactStream {
   static constexpr Nanoseconds kStaleAfter{50'000'000};
   static constexpr std::size_t kMaxPendingEvents = 4096;
 
-  // own_run: messages of this cluster run carry our own clock; those of another run are mapped by arrival.
-  explicit ContactStream(std::int64_t own_run) : follower_(own_run) {}
+  // own: messages of another clock are read through its map; those of another run by arrival.
+  explicit ContactStream(OwnClock own) : follower_(own) {}
 
   void push(const contact_events_t&, HostTime arrival);
   void push(const contact_frame_t&, HostTime arrival);

@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
-  sync::SimFollower simulation(run_id);
+  sync::SimFollower simulation(bus.clocks());
   const sync::HostTime begin = sync::host_now();
   while (sync::host_now() < begin + kListen) {
     bus.wait(kRepeat);

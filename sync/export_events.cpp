@@ -52,4 +52,15 @@ std::string csv_row(const media_clock_t& m) {
   return row.str();
 }
 
+std::string clock_map_csv_names() {
+  return "of_clock,to_clock,at_ns,offset_ns,drift,uncertainty_ns,uncertainty_drift,epoch,round_trip_ns,replies\n";
+}
+
+std::string csv_row(const clock_map_t& m) {
+  std::ostringstream row;
+  row << m.of_clock << ',' << m.to_clock << ',' << m.at_ns << ',' << m.offset_ns << ',' << m.drift << ',' << m.uncertainty_ns
+      << ',' << m.uncertainty_drift << ',' << m.epoch << ',' << m.round_trip_ns << ',' << m.replies << '\n';
+  return row.str();
+}
+
 }  // namespace tactus::sync

@@ -1,8 +1,9 @@
 // Rows of the tables that lay sound and picture on the log's time: contact events, what was presented of them, and which
-// sample or frame was out when. Pure.
+// sample or frame was out when; and of the maps between the clocks of several hosts. Pure.
 #pragma once
 
 #include <string>
+#include <tactus/clock_map_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/presented_t.hpp>
@@ -18,5 +19,7 @@ std::string presented_csv_names();
 std::string csv_row(const std::string& modality, const presentation_t&);
 std::string media_clock_csv_names();
 std::string csv_row(const media_clock_t&);
+std::string clock_map_csv_names();
+std::string csv_row(const clock_map_t&);
 
 }  // namespace tactus::sync

@@ -1,7 +1,7 @@
 // export_events: makes tables of the contact events, of what was presented, and of the clocks of sound and picture.
 //
 //   in   LOG...
-//   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv
+//   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv, DIR/clock_map.csv
 //
 // A damaged log is read as far as it is intact. Each event and each report is listed once, however often it was sent.
 #include <CLI/CLI.hpp>
@@ -18,17 +18,19 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Makes tables of contact events, presentations and media clocks from the log of a run."};
+  CLI::App app{"Makes tables of contact events, presentations, media clocks and clock maps from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
   app.add_option("LOG", logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
   app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
   sync::parse_or_exit(app, "export_events", argc, argv);
 
-  std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv");
+  std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv"),
+      maps(out + "/clock_map.csv");
   events << sync::events_csv_names();
   presented << sync::presented_csv_names();
   clocks << sync::media_clock_csv_names();
+  maps << sync::clock_map_csv_names();
   std::set<std::int64_t> seen;
   std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
   for (const std::string& path : logs) {
@@ -46,10 +48,12 @@ int main(int argc, char** argv) try {
               presented << sync::csv_row(m->modality, p);
       if (e.channel == channels::kMediaClock)
         if (const auto m = sync::decode<media_clock_t>(e.data.data(), e.data.size())) clocks << sync::csv_row(*m);
+      if (e.channel == channels::kClockMap)
+        if (const auto m = sync::decode<clock_map_t>(e.data.data(), e.data.size())) maps << sync::csv_row(*m);
     }
   }
-  events.close(), presented.close(), clocks.close();
-  if (!events || !presented || !clocks)
+  events.close(), presented.close(), clocks.close(), maps.close();
+  if (!events || !presented || !clocks || !maps)
     throw std::runtime_error("cannot write the tables to " + out + "; give --out a folder that can be written");
   std::cout << seen.size() << " events, " << reported.size() << " presentations\n";
   return 0;

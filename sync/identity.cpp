@@ -1,8 +1,10 @@
 #include "sync/identity.h"
 
 #include <sys/random.h>
+#include <sys/stat.h>
 
 #include <cerrno>
+#include <fstream>
 #include <system_error>
 
 namespace tactus::sync {
@@ -14,6 +16,25 @@ std::int64_t fnv1a_64(const void* data, std::size_t size) {
   return static_cast<std::int64_t>(h);
 }
 
+std::int32_t clock_id(std::string_view boot_id, std::uint64_t time_namespace, std::string_view monotonic_offset) {
+  std::string text(boot_id);
+  text.append("/").append(std::to_string(time_namespace)).append("/").append(monotonic_offset);
+  return static_cast<std::int32_t>(fnv1a_32(text));
+}
+
+std::int32_t clock_of_this_process() {
+  std::string boot_id, line, monotonic_offset;
+  std::ifstream boot("/proc/sys/kernel/random/boot_id");
+  std::getline(boot, boot_id);
+  struct stat space {};
+  const bool known = stat("/proc/self/ns/time", &space) == 0;
+  // Two lines, "monotonic <s> <ns>" and "boottime <s> <ns>" (time_namespaces(7)).
+  std::ifstream offsets("/proc/self/timens_offsets");
+  while (std::getline(offsets, line))
+    if (line.starts_with("monotonic")) monotonic_offset = line;
+  return clock_id(boot_id, known ? space.st_ino : 0, monotonic_offset);
+}
+
 Identity Identity::fresh(std::string node, std::int64_t run_id) {
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != sizeof random)
@@ -23,6 +44,7 @@ Identity Identity::fresh(std::string node, std::int64_t run_id) {
   id.node = std::move(node);
   id.incarnation = static_cast<std::int64_t>(random >> 2) + 1;
   id.run_id = run_id;
+  id.clock = clock_of_this_process();
   return id;
 }
 

@@ -16,13 +16,20 @@ constexpr std::uint32_t fnv1a_32(std::string_view text) {
 }
 std::int64_t fnv1a_64(const void* data, std::size_t size);
 
+// Names the CLOCK_MONOTONIC of this process: equal exactly where two processes read the same clock. The parts are the
+// machine's start (boot_id), the time namespace (its inode) and that namespace's monotonic offset: a namespace that ended
+// may leave its inode to one with another offset. Parts that this system lacks are left empty.
+std::int32_t clock_of_this_process();
+std::int32_t clock_id(std::string_view boot_id, std::uint64_t time_namespace, std::string_view monotonic_offset);
+
 struct Identity {
   std::string node;              // process name, e.g. "audio_node"
   std::int32_t source = 0;       // hash of it
   std::int64_t incarnation = 0;  // random, > 0
   std::int64_t run_id = 1;       // of the cluster run
+  std::int32_t clock = 0;        // which CLOCK_MONOTONIC its times are of
 
-  // Draws a fresh incarnation from the operating system. Throws std::system_error when it gives no random numbers.
+  // With this process' clock. Draws a fresh incarnation from the operating system. Throws std::system_error when it gives no random numbers.
   static Identity fresh(std::string node, std::int64_t run_id);
 };
 

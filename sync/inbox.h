@@ -8,9 +8,10 @@
 #include <string>
 #include <utility>
 
+#include "sync/clock_maps.h"
 #include "sync/decode.h"
-#include "sync/sender_clock.h"
 #include "sync/sequence.h"
+#include "sync/time.h"
 
 namespace tactus::sync {
 
@@ -22,8 +23,16 @@ struct InputCount {
   std::int64_t dropped = 0;  // pushed out of a full queue
   std::int64_t newest_publish_ns = -1;
   std::int64_t newest_run_id = 0;
+  std::int32_t newest_clock = 0;
   HostTime newest_arrival{};
 };
+
+// How old the newest message is: by the sender's clock where it can be read on ours, else since its arrival.
+struct InputAge {
+  Nanoseconds age{-1};          // -1: nothing has come
+  Nanoseconds uncertainty{-1};  // half width; -1: not known
+};
+InputAge age_of(const InputCount& input, const OwnClock& own, HostTime now);
 
 template <class Message>
 struct Received {
@@ -49,6 +58,7 @@ class InboxBase {
     if (order != Arrival::kOld) {
       count_.newest_publish_ns = m.header.publish_time_ns;
       count_.newest_run_id = m.header.run_id;
+      count_.newest_clock = m.header.clock;
       count_.newest_arrival = arrival;
     }
     return order;

@@ -4,6 +4,7 @@
 #include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <iostream>
@@ -99,6 +100,7 @@ Node::Node(Declaration declaration, NodeOptions options)
       scheduling_(enter(declaration_, options_)),
       bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
       loop_(declaration_.rate_Hz) {
+  bus_.follow_clocks();
   health_.tool = -1;
   health_.nominal_rate_Hz = declaration_.rate_Hz;
   rate_since_ = tick_begin_ = next_report_ = host_now();
@@ -172,15 +174,15 @@ node_health_t Node::health_message(HostTime now) {
     const InputCount& c = inbox->count();
     input_health_t in{};
     in.channel = c.channel;
-    // Clocks of another run are not ours: their messages are aged by arrival.
-    const bool ours = c.newest_run_id == bus_.identity().run_id;
-    in.age_ns = c.newest_publish_ns < 0 ? -1 : ours ? to_ns(now) - c.newest_publish_ns : (now - c.newest_arrival).count();
-    if (in.age_ns < -1) in.age_ns = 0;
+    const InputAge age = age_of(c, bus_.clocks(), now);
+    in.age_ns = age.age.count();
+    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // ClockMaps::kMostUncertain at the most
     in.messages = c.sequence.messages();
     in.gaps = c.sequence.gaps() + c.dropped;
-    in.bad = c.bad;
+    in.bad = static_cast<std::int32_t>(std::min<std::int64_t>(c.bad, INT32_MAX));
     m.inputs.push_back(in);
   }
+  m.foreign_control = bus_.clocks().maps->foreign();
   m.input_count = static_cast<std::int32_t>(m.inputs.size());
   return m;
 }

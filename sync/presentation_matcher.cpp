@@ -20,6 +20,9 @@ bool was_presented(std::int8_t outcome) {
          outcome == presentation_t::INAUDIBLE;
 }
 
+// What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
+constexpr Nanoseconds kMostUncertain{60'000'000'000};
+
 // Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
 bool is_onset(std::int8_t part, std::int8_t kind) {
   return part == presentation_t::WHOLE ||
@@ -40,14 +43,17 @@ PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, Ho
   return &events_[id];
 }
 
+SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) {
+  SenderClock& clock = clocks_.try_emplace(h.source, own_).first->second;
+  clock.observe(h, arrival);
+  return clock;
+}
+
 void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
-  const bool ours = own_run_ == 0 || m.header.run_id == own_run_;
+  const bool any_run = own_.run_id == 0;
+  const bool ours = any_run || m.header.run_id == own_.run_id;
   TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
-  if (!ours) {
-    SenderClock& clock = foreign_clocks_[m.header.source];
-    clock.observe(m.header.publish_time_ns, arrival, false);
-    map.host = clock.to_host(m.clock.host_ns, arrival);
-  }
+  if (!any_run) map.host = clock_of(m.header, arrival).to_host(m.clock.host_ns, arrival);
   for (const contact_event_t& e : m.events) {
     Event* event = find_or_add(e.event_id, arrival);
     if (event == nullptr || event->known) continue;
@@ -63,9 +69,9 @@ void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
   }
 }
 
-void PresentationMatcher::observe(const node_health_t& m, HostTime) {
-  if (own_run_ == 0) own_run_ = m.header.run_id;
-  if (m.header.run_id != own_run_) {
+void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
+  if (own_.run_id == 0) own_ = OwnClock(m.header.run_id, m.header.clock, own_.maps);
+  if (m.header.run_id != own_.run_id) {
     ++foreign_;
     return;
   }
@@ -73,7 +79,8 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime) {
   r.modality = m.modality;
   r.owes = m.owes;
   r.tool = m.tool;
-  const bool returned = r.life.observe(m.header.incarnation, m.state, host_time(m.header.publish_time_ns));
+  const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
+  const bool returned = r.life.observe(m.header.incarnation, m.state, sent);
   std::erase_if(last_debts_, [&](const LastDebt& d) {
     return d.source == m.header.source || d.simulation == m.header.source;
   });
@@ -87,16 +94,27 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime) {
 }
 
 void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
-  if (m.header.run_id != own_run_) {
+  if (m.header.run_id != own_.run_id) {
     ++foreign_;
     return;
   }
+  const SenderClock& clock = clock_of(m.header, arrival);
   for (const presentation_t& p : m.reports) {
     Event* event = find_or_add(p.event_id, arrival);
     if (event == nullptr || event->reports.size() >= kMaxReportsPerEvent) continue;
     const auto same = [&](const Report& r) { return r.source == m.header.source && r.part == p.part; };
     if (std::any_of(event->reports.begin(), event->reports.end(), same)) continue;
-    event->reports.push_back({m.header.source, m.modality, p.part, p.outcome, p.presented_ns});
+    Report report{m.header.source, m.modality, p.part, p.outcome, -1, Nanoseconds(0)};
+    if (p.presented_ns >= 0) {
+      const SenderClock::Reading at = clock.read(p.presented_ns, arrival);
+      if (at.uncertainty >= Nanoseconds(0)) {
+        report.presented_ns = to_ns(at.time);
+        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMostUncertain.count())) + at.uncertainty;
+      } else {
+        ++unmapped_reports_;
+      }
+    }
+    event->reports.push_back(std::move(report));
     if (event->settled) ++late_reports_;
   }
 }
@@ -181,32 +199,17 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
 
 void PresentationMatcher::count_asynchrony(const Event& e) {
   // Of several nodes of one sense (walls of a room) the first.
-  std::map<std::string, std::int64_t> onset;
+  std::map<std::string, const Report*> onset;
   for (const Report& r : e.reports) {
     if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;
-    const auto [it, first] = onset.emplace(r.modality, r.presented_ns);
-    if (!first) it->second = std::min(it->second, r.presented_ns);
+    const Report*& first = onset[r.modality];
+    if (first == nullptr || r.presented_ns < first->presented_ns) first = &r;
   }
-  for (const auto& [a, time_a] : onset)
-    for (const auto& [b, time_b] : onset)
-      if (named_before(a, b)) pairs_[{a, b}].add(Nanoseconds(time_b - time_a));
-}
-
-sync_report_t PresentationMatcher::report() const {
-  sync_report_t m{};
-  m.header.sim_time_ns = -1;
-  m.begins = begins_;
-  m.hits = hits_;
-  m.ends = ends_;
-  for (const auto& [name, t] : tallies_)
-    m.modalities.push_back(
-        {name, t.owed, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
-  m.modality_count = static_cast<std::int32_t>(m.modalities.size());
-  for (const auto& [names, soa] : pairs_)
-    m.pairs.push_back({names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
-                       soa.quantile(0.95).count()});
-  m.pair_count = static_cast<std::int32_t>(m.pairs.size());
-  return m;
+  for (const auto& [a, report_a] : onset)
+    for (const auto& [b, report_b] : onset)
+      if (named_before(a, b))
+        pairs_[{a, b}].add(Nanoseconds(report_b->presented_ns - report_a->presented_ns),
+                           report_a->uncertainty + report_b->uncertainty);
 }
 
 }  // namespace tactus::sync

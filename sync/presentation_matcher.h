@@ -59,8 +59,9 @@ class PresentationMatcher {
   static constexpr Nanoseconds kRemember{5'000'000'000};
   static constexpr std::size_t kMaxEvents = 1 << 16;
 
-  // Health and reports of another run are ignored and counted. 0: the run of the first health that arrives.
-  explicit PresentationMatcher(std::int64_t own_run) : own_run_(own_run) {}
+  // All times are put on this clock. Health and reports of another run are ignored and counted. Run 0: run and clock of the
+  // first health that arrives.
+  explicit PresentationMatcher(OwnClock own) : own_(own) {}
 
   void observe(const contact_events_t&, HostTime arrival);
   void observe(const node_health_t&, HostTime arrival);
@@ -77,8 +78,10 @@ class PresentationMatcher {
   const std::map<std::string, DebtTally>& modalities() const { return tallies_; }
   // soa(a, b) = t_present(b) - t_present(a), a named before b.
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
-  sync_report_t report() const;
 
+  // Reports of a time on a clock that nobody has mapped: they count as presented, but not for the asynchrony, for nobody
+  // knows how uncertain it would be.
+  std::int64_t unmapped_reports() const { return unmapped_reports_; }
   // Reports of events that were settled already, of events never heard of, and messages of other runs.
   std::int64_t late_reports() const { return late_reports_; }
   std::int64_t unknown_reports() const { return unknown_reports_; }
@@ -104,7 +107,8 @@ class PresentationMatcher {
     std::string modality;
     std::int8_t part = 0;
     std::int8_t outcome = 0;
-    std::int64_t presented_ns = -1;
+    std::int64_t presented_ns = -1;   // on our clock; -1: not, or not known
+    Nanoseconds uncertainty{0};       // half width
   };
   struct Event {
     bool known = false;  // false: so far only reports of it came
@@ -119,13 +123,14 @@ class PresentationMatcher {
 
   Event* find_or_add(std::int64_t id, HostTime arrival);
   bool owes(const Renderer&, const Event&) const;
+  SenderClock& clock_of(const header_t&, HostTime arrival);
   void settle(Event&, HostTime now, bool last);
   void settle_debt(Renderer&, std::int32_t source, const Event&, HostTime now, bool last);
   void count_asynchrony(const Event&);
 
-  std::int64_t own_run_;
+  OwnClock own_;
   std::map<std::int32_t, Renderer> renderers_;       // by source
-  std::map<std::int32_t, SenderClock> foreign_clocks_;  // of simulations of other runs
+  std::map<std::int32_t, SenderClock> clocks_;  // by source
   std::map<std::int64_t, Event> events_;
   std::multimap<HostTime, std::int64_t> due_;
   std::multimap<HostTime, std::int64_t> forget_;
@@ -133,7 +138,7 @@ class PresentationMatcher {
   std::map<std::string, DebtTally> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;
-  std::int64_t late_reports_ = 0, unknown_reports_ = 0, foreign_ = 0, overflow_ = 0;
+  std::int64_t late_reports_ = 0, unknown_reports_ = 0, foreign_ = 0, overflow_ = 0, unmapped_reports_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -17,8 +17,10 @@ bool NodeLife::observe(std::int64_t incarnation, std::int8_t state, HostTime sen
     spans_.push_back(next);
   }
   Span& now = spans_.back();
-  if ((state == node_health_t::RUNNING || state == node_health_t::STALE) && now.owes_from == HostTime::max()) {
-    now.owes_from = sent + kGrace;
+  const bool ready = state == node_health_t::READY;
+  if ((ready || state == node_health_t::RUNNING || state == node_health_t::STALE) &&
+      now.owes_from == HostTime::max()) {
+    now.owes_from = ready ? sent : sent + kGrace;
     first_owes_from_ = std::min(first_owes_from_, now.owes_from);
   }
   while (spans_.size() > 1 && sent - spans_[1].begin > kRemember) spans_.pop_front();
@@ -27,8 +29,7 @@ bool NodeLife::observe(std::int64_t incarnation, std::int8_t state, HostTime sen
 
 NodeLife::Answer NodeLife::during(HostTime from, HostTime to, HostTime now) const {
   if (from < first_owes_from_) return {Fate::kAbsent, false};
-  const auto after =
-      std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) { return s.begin > from; });
+  const auto after = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) { return s.begin > from; });
   if (after == spans_.begin()) return {Fate::kDead, false};  // longer ago than is remembered
   for (auto span = std::prev(after);; ++span) {
     if (!span->able || from < span->owes_from) return {Fate::kDead, false};
@@ -46,8 +47,8 @@ NodeLife::Answer NodeLife::during(HostTime from, HostTime to, HostTime now) cons
 }
 
 bool NodeLife::died_before(std::int64_t incarnation, HostTime until, HostTime now) const {
-  const auto last = std::find_if(spans_.rbegin(), spans_.rend(),
-                                 [&](const Span& s) { return s.incarnation == incarnation; });
+  const auto last =
+      std::find_if(spans_.rbegin(), spans_.rend(), [&](const Span& s) { return s.incarnation == incarnation; });
   if (last == spans_.rend() || last->end >= until) return false;
   return last != spans_.rbegin() || now - last->end > kDeath;
 }

@@ -15,7 +15,7 @@ class NodeLife {
   static constexpr Nanoseconds kStall{300'000'000};
   static constexpr Nanoseconds kDeath{500'000'000};
   // From its first report that it runs, a node has so long until it owes anything: its subscriptions and its map between
-  // the clocks have to settle.
+  // the clocks have to settle. One that was ready before the world began owes from then on.
   static constexpr Nanoseconds kGrace{200'000'000};
   // How far back questions can be asked.
   static constexpr Nanoseconds kRemember{10'000'000'000};

@@ -5,10 +5,11 @@
 
 namespace tactus::sync {
 
-void SoaHistogram::add(Nanoseconds soa) {
+void SoaHistogram::add(Nanoseconds soa, Nanoseconds uncertainty) {
   const Nanoseconds inside = std::clamp(soa, -kRange, kRange - Nanoseconds(1));
   ++bins_[static_cast<std::size_t>((inside + kRange) / kBin)];
   ++count_;
+  uncertainty_ = std::max(uncertainty_, uncertainty);
 }
 
 Nanoseconds SoaHistogram::quantile(double q) const {

@@ -14,8 +14,10 @@ class SoaHistogram {
   static constexpr Nanoseconds kBin{100'000};
   static constexpr Nanoseconds kRange{2'000'000'000};
 
-  void add(Nanoseconds soa);
+  void add(Nanoseconds soa, Nanoseconds uncertainty);
   std::int64_t count() const { return count_; }
+  // The largest half width of an interval that surely holds one of them.
+  Nanoseconds uncertainty() const { return uncertainty_; }
   // Interpolated within its bin; 0 when empty. 0 <= q <= 1.
   Nanoseconds quantile(double q) const;
 
@@ -23,6 +25,7 @@ class SoaHistogram {
   static constexpr std::int64_t kBins = 2 * kRange / kBin;
   std::vector<std::int32_t> bins_ = std::vector<std::int32_t>(kBins, 0);
   std::int64_t count_ = 0;
+  Nanoseconds uncertainty_{0};
 };
 
 }  // namespace tactus::sync

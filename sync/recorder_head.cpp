@@ -10,7 +10,7 @@ namespace {
 
 // Any header has the same length on the wire.
 void stamp(header_t& h, const Identity& id, std::int64_t seq, HostTime time) {
-  h = {-1, to_ns(time), id.run_id, id.source, id.incarnation, seq};
+  h = {-1, to_ns(time), id.clock, id.run_id, id.source, id.incarnation, seq};
 }
 
 std::vector<scene_manifest_t> manifest_pages(const std::vector<HeadAsset>& assets) {

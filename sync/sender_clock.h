@@ -1,39 +1,53 @@
-// Maps the clock of one sender to this host's clock.
+// Reads the times of one sender on this host's clock, by the best that is known of its clock. Pure.
 #pragma once
 
 #include <cstdint>
+#include <tactus/header_t.hpp>
 
+#include "sync/clock_maps.h"
+#include "sync/one_way_clock.h"
 #include "sync/time.h"
 
 namespace tactus::sync {
 
-// One-way estimator (Olson, "A passive solution to the sensor synchronization problem", IROS 2010): every arrival
-// bounds the offset, because latency is never negative: offset = sender - host >= stamp - arrival. The largest bound is
-// kept and relaxed with its age by the worst drift of the two clocks. The bias is the smallest latency seen.
-//
-// A sender of the same run on the same host has the same clock: then the offset is 0 and nothing is estimated.
+// In this order:
+//   kSame     of our run and our clock: nothing to read
+//   kMapped   of our run, and a map of its clock is published: good to the map's uncertainty
+//   kOneWay   anything else, as a replayed log: by arrival, good to the smallest latency, which nobody knows
+// A map is not believed for a while when the sender's stamps contradict it, for nothing arrives before it was sent: its clock
+// has just jumped forward. A jump back looks like latency until the probes have noticed it, within three seconds.
 class SenderClock {
  public:
-  // Worst relative drift of two quartz clocks: 200 ppm is twice the usual +-100 ppm tolerance of one.
-  static constexpr double kMaxDrift = 200e-6;
-  // A bound that falls below the kept one by more than this is no latency but a clock that jumped.
-  static constexpr Nanoseconds kJump{2'000'000'000};
+  enum class How { kUnknown, kSame, kMapped, kOneWay };
+  struct Reading {
+    HostTime time{};
+    How how = How::kUnknown;
+    Nanoseconds uncertainty{-1};  // half width; -1: not known
+  };
+  // The next waves of probes have noticed the jump by then: two periods, their length and the maps' own.
+  static constexpr Nanoseconds kDistrust{6'000'000'000};
+  // A stamp that lies so far beyond its arrival contradicts the map. Arrivals read from a log are good to 1 us and the
+  // recorder's own clock pairs to less than this (design).
+  static constexpr Nanoseconds kTolerance{1'000'000};
 
-  // stamp_ns: the sender's CLOCK_MONOTONIC; same_clock: it is known to be ours. Returns true when the clock jumped and
-  // the estimate was begun anew.
-  bool observe(std::int64_t stamp_ns, HostTime arrival, bool same_clock);
+  explicit SenderClock(OwnClock own) : own_(own) {}
 
-  bool known() const { return known_; }
-  // On this host's clock. Unknown clocks map to themselves.
-  HostTime to_host(std::int64_t sender_ns, HostTime now) const;
+  // True when the clock is seen to have jumped.
+  bool observe(const header_t& header, HostTime arrival);
+
+  bool known() const { return heard_; }
+  Reading read(std::int64_t sender_ns, HostTime now) const;
+  HostTime to_host(std::int64_t sender_ns, HostTime now) const { return read(sender_ns, now).time; }
 
  private:
-  Nanoseconds offset_at(HostTime now) const;
+  bool ours() const { return run_id_ == own_.run_id; }
 
-  bool known_ = false;
-  bool same_clock_ = false;
-  Nanoseconds offset_{0};  // sender - host when last improved
-  HostTime improved_{};
+  OwnClock own_;
+  bool heard_ = false;
+  std::int64_t run_id_ = 0;
+  std::int32_t clock_ = 0;
+  HostTime distrust_until_{};
+  OneWayClock one_way_;
 };
 
 }  // namespace tactus::sync

@@ -17,7 +17,7 @@ Sense::Sense(Node& node)
     : node_(node),
       degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)),
       playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
-      simulation_(node.options().run_id),
+      simulation_(node.bus().clocks()),
       playout_(node.declaration().modality),
       reporter_(node.declaration().modality) {
   if (node.options().profile.empty()) return;

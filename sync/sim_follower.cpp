@@ -18,11 +18,11 @@ Follow SimFollower::follow(const header_t& header, const sim_clock_t& clock, Hos
     verdict = Follow::kRestart;
   }
   if (verdict == Follow::kRestart) {
-    sender_ = SenderClock{};
+    sender_ = SenderClock(own_);
     newest_publish_ns_ = 0;
   }
   last_arrival_ = arrival;
-  sender_.observe(header.publish_time_ns, arrival, header.run_id == own_run_);
+  sender_.observe(header, arrival);
   if (header.publish_time_ns >= newest_publish_ns_) {
     newest_publish_ns_ = header.publish_time_ns;
     clock_ = clock;

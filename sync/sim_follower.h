@@ -27,7 +27,7 @@ class SimFollower {
   static constexpr Nanoseconds kEpoch{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;
 
-  explicit SimFollower(std::int64_t own_run) : own_run_(own_run) {}
+  explicit SimFollower(OwnClock own) : own_(own) {}
 
   Follow follow(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   // Nothing before the first message.
@@ -35,12 +35,12 @@ class SimFollower {
   std::int64_t incarnation() const { return incarnation_; }
 
  private:
-  std::int64_t own_run_;
+  OwnClock own_;
   std::int64_t incarnation_ = 0;
   std::int64_t newest_publish_ns_ = 0;
   HostTime last_arrival_{};
   std::deque<std::int64_t> replaced_;
-  SenderClock sender_;
+  SenderClock sender_{own_};
   sim_clock_t clock_{};
 };
 

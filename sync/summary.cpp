@@ -8,22 +8,25 @@
 namespace tactus::sync {
 
 void RunSummary::observe(const log_info_t& m) {
-  // The first of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run the
-  // first says what was meant.
+  // The first of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run
+  // the first says what was meant.
   if (time_known_) return;
   time_known_ = true;
   realtime_offset_ns_ = m.realtime_offset_ns;
   live_from_ns_ = m.live_from_ns;
   if (info_) return;
   info_ = m;
-  matcher_ = PresentationMatcher(m.header.run_id);
+  maps_ = std::make_unique<ClockMaps>(m.header.run_id);
+  matcher_ = PresentationMatcher(OwnClock(m.header.run_id, m.header.clock, maps_.get()));
 }
 
 void RunSummary::observe(const node_health_t& m, HostTime now) {
   auto [it, first] = lives_[m.node].try_emplace(m.header.incarnation);
   Life& life = it->second;
-  // A node waits at another rate than it runs at: its rate is counted from when it began to run as it does at the end.
-  const bool began_to_run = m.state == node_health_t::RUNNING && life.first.state == node_health_t::WAITING;
+  // A node waits at another rate than it runs at: its rate is counted from when it began to run as it does at the
+  // end.
+  const bool began_to_run = m.state == node_health_t::RUNNING && (life.first.state == node_health_t::WAITING ||
+                                                                  life.first.state == node_health_t::READY);
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
   life.last = m;
   life.last_heard = now;
@@ -75,6 +78,7 @@ void RunSummary::add(const LogEvent& e) {
     match(m);
     if (!info_ || m.header.run_id == info_->header.run_id) observe(m, now);
   });
+  feed.template operator()<clock_map_t>(channels::kClockMap, [&](const clock_map_t& m) { maps_->observe(m, now); });
   feed.template operator()<contact_events_t>(channels::kContactEvents, match);
   feed.template operator()<presented_t>(channels::kPresented, match);
   if (header && e.channel == channels::kWorldState) observe_course(*header);
@@ -164,8 +168,9 @@ std::string RunSummary::failure() const {
       also(name + " was not alive at the end");
   }
   for (const auto& [modality, tally] : matcher_.modalities())
-    if (tally.lost > 0) also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
-                             " owed contact events");
+    if (tally.lost > 0)
+      also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
+           " owed contact events");
   return why;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tactus/log_info_t.hpp>
@@ -107,7 +108,9 @@ class RunSummary {
   std::int64_t realtime_offset_ns_ = 0;
   std::int64_t live_from_ns_ = 0;
   SummaryClock clock_;
-  PresentationMatcher matcher_{0};
+  // Run 0: that of the first that speaks.
+  std::unique_ptr<ClockMaps> maps_ = std::make_unique<ClockMaps>(0);
+  PresentationMatcher matcher_{OwnClock(0, 0, maps_.get())};
   std::map<std::string, std::map<std::int64_t, Life>> lives_;  // by node, by incarnation
   std::map<std::string, Channel, std::less<>> channels_;
   std::map<std::int64_t, Course> courses_;

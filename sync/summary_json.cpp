@@ -15,6 +15,9 @@ double rounded(double x, double per_unit) { return std::round(x * per_unit) / pe
 double us(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-3, 10); }
 double ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6, 100); }
 
+// An uncertainty is never rounded down.
+double ms_up(Nanoseconds t) { return std::ceil(static_cast<double>(t.count()) * 1e-4) * 1e-2; }
+
 Json quantiles(const Histogram& h) {
   return {{"p50", us(h.quantile(0.5))}, {"p99", us(h.quantile(0.99))}, {"p999", us(h.quantile(0.999))}, {"max", us(h.max())}};
 }
@@ -64,11 +67,12 @@ Json contacts(const PresentationMatcher& m) {
 }
 
 Json asynchrony(const PresentationMatcher& m) {
-  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}};
+  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}};
   Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
   for (const auto& [names, soa] : m.pairs())
     out[names.first + "_" + names.second] = {{"n", soa.count()}, {"p05", ms(soa.quantile(0.05))},
-                                             {"p50", ms(soa.quantile(0.5))}, {"p95", ms(soa.quantile(0.95))}};
+                                             {"p50", ms(soa.quantile(0.5))}, {"p95", ms(soa.quantile(0.95))},
+                                             {"uncertainty", ms_up(soa.uncertainty())}};
   return out;
 }
 

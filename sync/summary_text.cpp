@@ -53,11 +53,11 @@ std::string absent(const RunSummary& s) {
 }
 
 std::string asynchrony(const PresentationMatcher& m) {
-  std::string out = line("%-22s %7s %8s %8s %8s", "asynchrony/ms", "n", "p05", "p50", "p95");
+  std::string out = line("%-22s %7s %8s %8s %8s %8s", "asynchrony/ms", "n", "p05", "p50", "p95", "+-");
   for (const auto& [names, soa] : m.pairs())
-    out += line("%-22s %7lld %8.2f %8.2f %8.2f", (names.first + " to " + names.second).c_str(),
+    out += line("%-22s %7lld %8.2f %8.2f %8.2f %8.3f", (names.first + " to " + names.second).c_str(),
                 static_cast<long long>(soa.count()), ms(soa.quantile(0.05)), ms(soa.quantile(0.5)),
-                ms(soa.quantile(0.95)));
+                ms(soa.quantile(0.95)), ms(soa.uncertainty()));
   return m.pairs().empty() ? "" : out;
 }
 

@@ -1,18 +1,28 @@
-// sync_node: matches contact events with what each sense reports of them. It coordinates; nobody needs it to run.
+// sync_node: agrees on time with the other hosts, and matches contact events with what each sense reports of them. One per
+// host. It coordinates; nobody needs it to run.
 //
-//   in   CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
+//   in   CLOCK_PROBE                              requests and replies, in a thread of its own
+//        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
 //        DEGRADATION                              the profile that somebody puts in force
-//   out  SYNC_REPORT                              once a second
+//   out  CLOCK_PROBE                              eight requests every 2 s or less; a reply to each request
+//        CLOCK_MAP                                twice a second, one per clock of another host
+//        SYNC_REPORT                              once a second
 //        DEGRADATION                              again once a second, for who comes late
 //
-// Losing CONTACT_EVENTS or PRESENTED only leaves it less to report; a sense that falls silent is named in the report.
+// Losing the probes' replies, its maps grow less certain and say so. Losing CONTACT_EVENTS or PRESENTED only leaves it less to
+// report; a sense that falls silent is named in the report.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
 #include <optional>
 
+#include "sync/clock_agreement.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/identity.h"
 #include "sync/node.h"
 #include "sync/presentation_matcher.h"
+#include "sync/probe_thread.h"
+#include "sync/sync_report_pages.h"
 
 using namespace tactus;
 
@@ -23,10 +33,21 @@ constexpr std::size_t kEventsQueue = 4096;
 constexpr std::size_t kReportsQueue = 4096;
 constexpr std::size_t kHealthQueue = 1024;
 constexpr sync::Nanoseconds kReportPeriod{1'000'000'000};
+// A process that has just started has the maps after so long (design: with the probes' first wave, less than a second in all).
+constexpr sync::Nanoseconds kMapPeriod{500'000'000};
 
 template <class Message>
 void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
   while (const auto received = queue.pop()) matcher.observe(received->message, received->arrival);
+}
+
+// For the live table: how many clocks are known, and how well at the worst.
+std::string clocks_note(const std::vector<clock_map_t>& maps) {
+  if (maps.empty()) return "";
+  std::int64_t worst_ns = 0;
+  for (const clock_map_t& m : maps) worst_ns = std::max(worst_ns, m.uncertainty_ns);
+  return std::to_string(maps.size()) + " other clock" + (maps.size() == 1 ? "" : "s") + " known to " +
+         std::to_string((worst_ns + 999) / 1000) + " us";
 }
 
 }  // namespace
@@ -36,18 +57,29 @@ int main(int argc, char** argv) try {
                                       .modality = "",
                                       .rate_Hz = 50,  // at the least: it wakes when something arrives
                                       .fifo_priority = 40,
-                                      .about = "Matches contact events with what each sense reports of them."};
+                                      .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);
+  double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
+  // For tests only, hence not in --help: the clock that is compared with others drifts, and jumps once.
+  app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
+  app.add_option("--emulate-jump", jump_ms)->group("");
+  app.add_option("--emulate-jump-after", jump_after_s)->group("");
   sync::parse_or_exit(app, declaration.node, argc, argv);
 
   sync::Node node(declaration, options);
   auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, kEventsQueue);
   auto& presented = node.bus().queue<presented_t>(channels::kPresented, kReportsQueue);
+  const sync::HostTime start = sync::host_now();
+  const sync::EmulatedClock clock{drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
+                                  jump_ms != 0 ? start + sync::from_seconds(jump_after_s) : sync::HostTime::max()};
+  std::cerr << options.name << ": clock " << node.bus().identity().clock << " at " << sync::to_ns(start) << " ns" << std::endl;
+  sync::ProbeThread probes(options.bus, node.bus().identity(), clock);
+  sync::ClockAgreement agreement(node.bus().identity().clock);
+  sync::PresentationMatcher matcher(node.bus().clocks());
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
-  sync::PresentationMatcher matcher(options.run_id);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile;
   if (const std::string& text = node.options().profile; !text.empty()) {
@@ -56,9 +88,16 @@ int main(int argc, char** argv) try {
   }
   node.set_state(node_health_t::RUNNING);
 
-  sync::HostTime next_report = sync::host_now() + kReportPeriod;
+  sync::HostTime next_report = start + kReportPeriod, next_maps = start + kMapPeriod;
   while (node.running()) {
     const sync::HostTime now = node.wait_for_event();
+    while (const auto wave = probes.pop()) agreement.add(*wave);
+    if (now >= next_maps) {
+      next_maps = std::max(next_maps + kMapPeriod, now);
+      std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
+      for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);
+      node.set_state(node_health_t::RUNNING, clocks_note(maps));
+    }
     feed(matcher, health);
     feed(matcher, events);
     feed(matcher, presented);
@@ -68,8 +107,7 @@ int main(int argc, char** argv) try {
     matcher.advance(now);
     if (now < next_report) continue;
     next_report = std::max(next_report + kReportPeriod, now);
-    sync_report_t report = matcher.report();
-    node.bus().publish(channels::kSyncReport, report);
+    for (sync_report_t& page : sync::report_pages(matcher)) node.bus().publish(channels::kSyncReport, page);
     if (profile) sync::send_profile(node.bus(), *profile);
   }
   return 0;

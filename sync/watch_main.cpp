@@ -53,7 +53,7 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("watch", std::max<std::int64_t>(1, run_id)), bus_options);
   auto& health = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
-  auto& report = bus.latest<sync_report_t>(channels::kSyncReport);
+  auto& report = bus.queue<sync_report_t>(channels::kSyncReport, 256);
   const bool in_place = !once && !json && isatty(STDOUT_FILENO) == 1;
   sync::WatchTable table;
   sync::HostTime next = sync::host_now() + kPeriod;
@@ -63,7 +63,8 @@ int main(int argc, char** argv) try {
     bus.drain(now);
     while (const auto m = health.pop())
       if (run_id == 0 || m->message.header.run_id == run_id) table.observe(m->message, m->arrival);
-    if (const sync_report_t* m = report.take(); m && (run_id == 0 || m->header.run_id == run_id)) table.observe(*m);
+    while (const auto m = report.pop())
+      if (run_id == 0 || m->message.header.run_id == run_id) table.observe(m->message);
     if (now < next) continue;
     next += kPeriod;
     show(table, now, json, in_place);

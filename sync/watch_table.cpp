@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,7 @@ std::string state_name(std::int8_t state) {
     case node_health_t::STALE: return "stale";
     case node_health_t::INPUT_LOST: return "input lost";
     case node_health_t::OUTPUT_LOST: return "output lost";
+    case node_health_t::READY: return "ready";
     default: return "?";
   }
 }
@@ -35,6 +37,13 @@ std::string duration(Nanoseconds t) {
   char text[32];
   const double ms = static_cast<double>(t.count()) * 1e-6;
   std::snprintf(text, sizeof text, ms < 10 ? "%.1f ms" : ms < 1000 ? "%.0f ms" : "%.3g s", ms < 1000 ? ms : ms * 1e-3);
+  return text;
+}
+
+// Never rounded down.
+std::string uncertainty(Nanoseconds t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f ms", std::ceil(static_cast<double>(t.count()) * 1e-4) * 1e-2);
   return text;
 }
 
@@ -90,7 +99,8 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
       line += " | " + m.modality + " " + std::to_string(m.presented) + "/" + std::to_string(m.owed) +
               (m.lost > 0 ? " LOST " + std::to_string(m.lost) : "");
     for (const pair_report_t& p : report_->pairs)
-      line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "");
+      line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "") +
+              " +-" + uncertainty(Nanoseconds(p.uncertainty_ns));
     out += cut(line, 2 * width);
   }
   return out;
@@ -112,7 +122,8 @@ std::string WatchTable::to_json(HostTime now) const {
     for (const pair_report_t& p : report_->pairs)
       pairs[p.a + "_" + p.b] = {{"n", p.n}, {"p05_ms", static_cast<double>(p.p05_ns) * 1e-6},
                                 {"p50_ms", static_cast<double>(p.p50_ns) * 1e-6},
-                                {"p95_ms", static_cast<double>(p.p95_ns) * 1e-6}};
+                                {"p95_ms", static_cast<double>(p.p95_ns) * 1e-6},
+                                {"uncertainty_ms", static_cast<double>(p.uncertainty_ns) * 1e-6}};
     out["begin"] = report_->begins;
     out["hit"] = report_->hits;
     out["end"] = report_->ends;

@@ -8,6 +8,7 @@
 #include <tactus/sync_report_t.hpp>
 #include <vector>
 
+#include "sync/sync_report_pages.h"
 #include "sync/time.h"
 
 namespace tactus::sync {
@@ -17,7 +18,10 @@ class WatchTable {
   static constexpr Nanoseconds kLostAfter{500'000'000};
 
   void observe(const node_health_t&, HostTime arrival);
-  void observe(const sync_report_t& report) { report_ = report; }
+  // A page; the report is shown when all its pages have come.
+  void observe(const sync_report_t& page) {
+    if (auto whole = pages_.take(page)) report_ = std::move(whole);
+  }
 
   struct Row {
     std::string node;
@@ -43,6 +47,7 @@ class WatchTable {
     HostTime arrival;
   };
   std::map<std::string, Node> nodes_;
+  SyncReportReader pages_;
   std::optional<sync_report_t> report_;
 };
 

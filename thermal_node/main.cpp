@@ -40,7 +40,7 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream stream(options.run_id);
+  sync::ContactStream stream(node.bus().clocks());
   thermal::Choice choice;
   thermal::Ticks ticks;
   std::optional<thermal::Renderer> renderer;
@@ -71,7 +71,9 @@ int main(int argc, char** argv) try {
     for (const presentation_t& report : renderer->reports()) sense.report(report);
     sense.publish(now);
     node.count_rendered(static_cast<std::int64_t>(renderer->reports().size()));
-    if (renderer->input_lost())
+    if (sense.newest_arrival() == sync::HostTime{})
+      node.set_state(node_health_t::READY, "waits for contacts");
+    else if (renderer->input_lost())
       node.set_state(node_health_t::INPUT_LOST, "no contacts: the command returns to resting skin");
     else
       node.set_state(node_health_t::RUNNING);

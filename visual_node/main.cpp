@@ -62,7 +62,7 @@ int main(int argc, char** argv) try {
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   auto& events = sense.events();
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
-  visual::FrameComposer composer(options.run_id, settings);
+  visual::FrameComposer composer(node.bus().clocks(), settings);
   visual::Recording recording(keep);
   std::string said;
 

@@ -77,7 +77,7 @@ void Simulation::look() {
     touch.describe(motions_, tool_contacts_);
     models_[i] = touch.model();
     tools_[i].push.books(models_[i].applied, kMostBooks);
-    models_[i].applied_count = static_cast<std::int32_t>(models_[i].applied.size());
+    models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
   }
   std::stable_sort(events_.begin(), events_.end(),
                    [](const contact_event_t& a, const contact_event_t& b) { return a.time_ns < b.time_ns; });

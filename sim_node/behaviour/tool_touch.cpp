@@ -231,7 +231,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     if (p.bump_asset != 0) p.bump_u_body = to_vec3f(Vector3d::Unit(bump_axes(normal_body).u));
     model_.planes.push_back(p);
   }
-  model_.plane_count = static_cast<std::int32_t>(model_.planes.size());
+  model_.plane_count = static_cast<std::int8_t>(model_.planes.size());
 }
 
 void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact_t>& out) const {

@@ -69,10 +69,10 @@ Bytes encoded_sample(Samples& samples) {
   return bytes;
 }
 
-#define EVERY_MESSAGE                                                                                          \
-  touch_model_t, contact_events_t, contact_frame_t, world_state_t, tool_state_t, thermal_state_t, presented_t, \
-      node_health_t, sync_report_t, media_clock_t, scene_manifest_t, asset_request_t, asset_chunk_t, scene_t,  \
-      mesh_t, log_info_t, degradation_t, degraded_t, playout_t, playout_request_t
+#define EVERY_MESSAGE                                                                                             \
+  touch_model_t, contact_events_t, contact_frame_t, world_state_t, tool_state_t, thermal_state_t, presented_t,    \
+      node_health_t, sync_report_t, clock_probe_t, clock_map_t, media_clock_t, scene_manifest_t, asset_request_t, \
+      asset_chunk_t, scene_t, mesh_t, log_info_t, degradation_t, degraded_t, playout_t, playout_request_t
 
 }  // namespace
 
@@ -183,7 +183,7 @@ TEMPLATE_TEST_CASE("An enumeration out of range is refused", "", EVERY_MESSAGE) 
 }
 
 TEMPLATE_TEST_CASE("A page outside its pages is refused", "", contact_events_t, contact_frame_t, world_state_t,
-                   scene_manifest_t) {
+                   scene_manifest_t, sync_report_t) {
   Samples samples(7);
   const int wrong[][2] = {{0, 0}, {1, 1}, {-1, 1}, {5, 3}, {0, -1}, {std::numeric_limits<int>::max(), 2}};
   for (const auto& [page, pages] : wrong) {

@@ -20,6 +20,7 @@ class Samples {
   void fill(header_t& h) {
     h.sim_time_ns = whole(-1, 1'000'000'000);
     h.publish_time_ns = whole(0, 1'000'000'000);
+    h.clock = whole(-1000, 1000);
     h.run_id = whole(1, 100);
     h.source = whole(-1000, 1000);
     h.incarnation = whole(1, 1000);
@@ -109,7 +110,7 @@ class Samples {
   void fill(int& bin) { bin = whole(0, 1 << 30); }
   void fill(histogram_t& h) { h.max_ns = whole(0, 1 << 30), fill_list(h.bin_count, h.bins, 0, 80); }
   void fill(input_health_t& i) {
-    i.channel = name(), i.age_ns = whole(-1, 1000), i.messages = whole(0, 9), i.gaps = whole(0, 9),
+    i.channel = name(), i.age_ns = whole(-1, 1000), i.uncertainty_ns = whole(-1, 9), i.messages = whole(0, 9), i.gaps = whole(0, 9),
     i.bad = whole(0, 9);
   }
   void fill(modality_report_t& r) { r.modality = name(), r.owed = whole(0, 9), r.presented = whole(0, 9); }
@@ -165,9 +166,23 @@ class Samples {
     fill_list(m.input_count, m.inputs, 0, 6);
   }
   void fill(sync_report_t& m) {
-    fill(m.header);
+    fill(m.header), fill_page(m);
     m.begins = whole(0, 99), m.hits = whole(0, 99), m.ends = whole(0, 99);
     fill_list(m.modality_count, m.modalities, 0, 5), fill_list(m.pair_count, m.pairs, 0, 6);
+  }
+  void fill(clock_probe_t& m) {
+    fill(m.header);
+    m.kind = static_cast<std::int8_t>(whole(0, 1)), m.nonce = whole(-1000, 1000), m.request_sent_ns = whole(0, 1000);
+    const bool reply = m.kind == clock_probe_t::REPLY;
+    m.asking_clock = reply ? m.header.clock + 1 : m.header.clock;
+    m.request_arrived_ns = reply ? whole(0, 1000) : -1;
+    m.reply_sent_ns = reply ? m.request_arrived_ns + whole(0, 1000) : -1;
+  }
+  void fill(clock_map_t& m) {
+    fill(m.header);
+    m.to_clock = m.header.clock, m.of_clock = m.to_clock - 1, m.at_ns = whole(0, 1000), m.offset_ns = whole(-1000, 1000);
+    m.drift = real(-0.001, 0.001), m.uncertainty_ns = whole(0, 1000), m.uncertainty_drift = real(0, 0.001);
+    m.epoch = whole(0, 5), m.round_trip_ns = whole(0, 1000), m.replies = whole(0, 8);
   }
   void fill(media_clock_t& m) {
     fill(m.header);

@@ -80,18 +80,6 @@ TEST_CASE("A report of 30 presentations fits a datagram") {
   CHECK(sync::encode(m).size() <= kMost);
 }
 
-TEST_CASE("A sync report of six senses and all their pairs fits a datagram") {
-  test::Samples samples(1);
-  sync_report_t m{};
-  m.modalities = full<modality_report_t>(samples, 6);
-  m.modality_count = 6;
-  for (auto& r : m.modalities) r.modality = "haptic";
-  m.pairs = full<pair_report_t>(samples, 15);
-  m.pair_count = 15;
-  for (auto& p : m.pairs) p.a = p.b = "haptic";
-  CHECK(sync::encode(m).size() <= kMost);
-}
-
 TEST_CASE("A manifest page of 12 long names and a full chunk fit a datagram") {
   test::Samples samples(1);
   scene_manifest_t manifest{};

@@ -165,3 +165,29 @@ TEST_CASE("The address says group, port, reach and a receive buffer") {
   const std::string url = sync::lcm_url(options, 7000);
   CHECK(url.starts_with("udpm://239.255.76.67:7000?ttl=1&recv_buf_size="));
 }
+
+TEST_CASE("An input is aged by the sender's clock where that can be read, else since it arrived") {
+  using namespace tactus::sync;
+  ClockMaps maps(7);
+  clock_map_t m{};
+  m.header.run_id = 7;
+  m.of_clock = 2, m.to_clock = 1, m.offset_ns = 1'000'000, m.uncertainty_ns = 100;
+  maps.observe(m, host_time(0));
+  const OwnClock own(7, 1, &maps);
+  InputCount in;
+  CHECK(age_of(in, own, host_time(5000)).age == Nanoseconds(-1));
+  in.newest_publish_ns = 2000, in.newest_run_id = 7, in.newest_clock = 1, in.newest_arrival = host_time(4000);
+  CHECK(age_of(in, own, host_time(5000)).age == Nanoseconds(3000));
+  CHECK(age_of(in, own, host_time(5000)).uncertainty == Nanoseconds(0));
+  in.newest_clock = 2, in.newest_publish_ns = 1'002'500;
+  CHECK(age_of(in, own, host_time(5000)).age == Nanoseconds(2500));
+  CHECK(age_of(in, own, host_time(5000)).uncertainty >= Nanoseconds(100));
+  const auto by_arrival = [&] {
+    const InputAge age = age_of(in, own, host_time(5000));
+    return age.age == Nanoseconds(1000) && age.uncertainty == Nanoseconds(-1);
+  };
+  in.newest_clock = 3;
+  CHECK(by_arrival());
+  in.newest_clock = 1, in.newest_run_id = 8;
+  CHECK(by_arrival());
+}

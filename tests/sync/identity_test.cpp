@@ -30,3 +30,13 @@ TEST_CASE("Ids of two incarnations do not meet, and are never negative") {
   CHECK(prefixed_id(5, 1) != prefixed_id(5, 2));
   CHECK(prefixed_id(-1, -1) >= 0);
 }
+
+TEST_CASE("A clock is named by the machine's start, its time namespace and that namespace's offset") {
+  const auto id = clock_id("a", 1, "monotonic 0 0");
+  CHECK(id == clock_id("a", 1, "monotonic 0 0"));
+  CHECK(id != clock_id("b", 1, "monotonic 0 0"));
+  CHECK(id != clock_id("a", 2, "monotonic 0 0"));
+  CHECK(id != clock_id("a", 1, "monotonic 5 0"));
+  CHECK(clock_of_this_process() == clock_of_this_process());
+  CHECK(Identity::fresh("audio_node", 1).clock == Identity::fresh("sim_node", 2).clock);
+}

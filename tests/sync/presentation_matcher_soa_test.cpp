@@ -14,7 +14,7 @@ TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin
     std::normal_distribution<> ns(round * 1e7 - 5e7, 1e6 * (1 + round));
     for (int i = 0; i < 1001; ++i) {
       list.push_back(static_cast<std::int64_t>(ns(random)));
-      histogram.add(Nanoseconds(list.back()));
+      histogram.add(Nanoseconds(list.back()), Nanoseconds(0));
     }
     std::sort(list.begin(), list.end());
     for (double q : {0.05, 0.5, 0.95}) {
@@ -30,9 +30,9 @@ TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin
 TEST_CASE("An empty list of asynchronies has no quantiles, and what is beyond the range counts at its edge") {
   SoaHistogram histogram;
   CHECK(histogram.quantile(0.5) == Nanoseconds(0));
-  histogram.add(Nanoseconds(-9'000'000'000));
+  histogram.add(Nanoseconds(-9'000'000'000), Nanoseconds(0));
   CHECK(histogram.quantile(0.5) <= -SoaHistogram::kRange + SoaHistogram::kBin);
-  for (int i = 0; i < 3; ++i) histogram.add(Nanoseconds(9'000'000'000));
+  for (int i = 0; i < 3; ++i) histogram.add(Nanoseconds(9'000'000'000), Nanoseconds(0));
   CHECK(histogram.quantile(0.9) >= SoaHistogram::kRange - SoaHistogram::kBin);
   CHECK(histogram.count() == 4);
 }

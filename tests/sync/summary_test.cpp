@@ -114,7 +114,7 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   for (const char* outcome : {"lost", "stalled", "dropped_by_profile"}) CHECK(j["contacts"][outcome] == 0);
   CHECK(j["asynchrony_ms"]["audio_visual"]["n"] == 80);
   CHECK(j["asynchrony_ms"]["audio_visual"]["p50"].get<double>() == Approx(-7).margin(0.1));
-  CHECK(j["asynchrony_ms"]["haptic_audio"] == Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}}));
+  CHECK(j["asynchrony_ms"]["haptic_audio"] == Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}}));
   CHECK(j["asynchrony_ms"].contains("haptic_visual"));
   CHECK(j["bus"]["WORLD_STATE"]["messages"] == 501);
   CHECK(j["bus"]["WORLD_STATE"]["gaps"] == 0);
@@ -300,4 +300,46 @@ TEST_CASE("The head of another log that crossed the bus in a replay does not cha
   const RunSummary s = log.summary();
   CHECK(s.scene() == "room.sdf");
   CHECK(s.matcher().hits() == 80);
+}
+
+TEST_CASE("What was presented on another host is put on the recorder's clock by the maps in the log, and its uncertainty told") {
+  constexpr std::int64_t kAhead = 3'600'000'000'000;
+  const bool mapped = GENERATE(true, false);
+  RunLog log;
+  const auto there = [&](auto m) {
+    m.header.clock = 2;
+    m.header.publish_time_ns += kAhead;
+    return m;
+  };
+  for (int ms = 0; ms <= 6000; ms += 100) {
+    log.health("visual_node", "visual", ms, 60);
+    log.send(channels::kNodeHealth,
+             there(MatcherFixture::health_message("audio_node", "audio", node_health_t::OWES_HIT, ms)), ms);
+    if (mapped && ms % 500 == 0) {
+      clock_map_t map{};
+      map.header = header_of("sync_node", 1, 0, to_ns(MatcherFixture::at(ms)));
+      map.of_clock = 2, map.at_ns = map.header.publish_time_ns, map.offset_ns = kAhead, map.uncertainty_ns = 120'000;
+      log.send(channels::kClockMap, map, ms);
+    }
+    if (ms < 1000 || ms > 4000) continue;
+    log.send(channels::kContactEvents, MatcherFixture::event_message(ms, ms - 1, contact_event_t::HIT, 100), ms);
+    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", ms, ms + 12), ms + 2);
+    presented_t heard = there(MatcherFixture::presented_message("audio_node", "audio", ms, ms + 19));
+    heard.header.publish_time_ns = to_ns(MatcherFixture::at(ms)) + kAhead;
+    heard.reports[0].presented_ns += kAhead;
+    heard.reports[0].uncertainty_ns = 30'000;
+    log.send(channels::kPresented, heard, ms + 1);
+  }
+  const Json j = Json::parse(to_json(log.summary()));
+  CHECK(j["contacts"]["by_modality"]["audio"]["presented"] == 31);
+  CHECK(j["contacts"]["lost"] == 0);
+  const Json& pair = j["asynchrony_ms"]["audio_visual"];
+  if (mapped) {
+    CHECK(pair["n"] == 31);
+    CHECK(pair["p50"].get<double>() == Approx(-7).margin(0.1));
+    CHECK(pair["uncertainty"].get<double>() == Approx(0.16));  // 120 and 30 us, rounded up
+  } else {
+    CHECK(pair["n"] == 0);
+    CHECK(pair["uncertainty"].is_null());
+  }
 }

@@ -18,8 +18,8 @@ node_health_t health(const std::string& node) {
   m.missed_ticks = 3;
   m.contacts_rendered = 17;
   m.note = "SCHED_FIFO 60, memory locked";
-  m.inputs = {{"TOUCH_MODEL", 1'300'000, 100, 0, 0}, {"CONTACT_EVENTS", 9'000'000'000, 5, 0, 0},
-              {"SCENE_MANIFEST", 700'000'000, 5, 0, 0}};
+  m.inputs = {{"TOUCH_MODEL", 1'300'000, 0, 100, 0, 0}, {"CONTACT_EVENTS", 9'000'000'000, 0, 5, 0, 0},
+              {"SCENE_MANIFEST", 700'000'000, 0, 5, 0, 0}};
   m.input_count = 3;
   return m;
 }
@@ -58,7 +58,7 @@ TEST_CASE("The table fits the terminal") {
   sync_report_t report{};
   report.hits = 12;
   report.modalities = {{"audio", 12, 11, 1, 0, 0, 0, 0}};
-  report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3}};
+  report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3, 40'000}};
   table.observe(report);
   for (std::size_t width : {40u, 80u, 110u}) {
     std::istringstream lines(table.to_text(kNow, width));
@@ -71,7 +71,7 @@ TEST_CASE("The table fits the terminal") {
   CHECK_THAT(text, Catch::Contains("999.9"));
   CHECK_THAT(text, Catch::Contains("1.3 ms TOUCH_MODEL"));
   CHECK_THAT(text, Catch::Contains("audio 11/12 LOST 1"));
-  CHECK_THAT(text, Catch::Contains("haptic to audio -20 ms"));
+  CHECK_THAT(text, Catch::Contains("haptic to audio -20 ms +-0.04 ms"));
 }
 
 TEST_CASE("Before the first report the table says so") {

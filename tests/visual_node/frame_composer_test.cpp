@@ -108,7 +108,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK_FALSE(f.list.overlay.empty());
   load();
   f = frame(16'000'000);
-  CHECK(f.state == node_health_t::WAITING);
+  CHECK(f.state == node_health_t::READY);
   CHECK(x_of(f) == Approx(2));  // where the scene puts it
   hear(30'000'000);
   CHECK(frame(32'000'000).state == node_health_t::RUNNING);

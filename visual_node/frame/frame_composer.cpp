@@ -23,7 +23,8 @@ Eigen::Isometry3d to_isometry(const sync::BodyPose& p) { return Eigen::Translati
 
 const char* word(const Frame& frame) {
   switch (frame.state) {
-    case node_health_t::WAITING: return "WAITING";
+    case node_health_t::WAITING:
+    case node_health_t::READY: return "WAITING";
     case node_health_t::INPUT_LOST: return "LOST";
     case node_health_t::STALE: return frame.how == sync::How::kHeld ? "HELD" : "STALE";
     default: return "";
@@ -32,8 +33,8 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(std::int64_t own_run, const Settings& settings)
-    : settings_(settings), contacts_(own_run), bodies_(own_run), flashes_(settings), ledger_(settings) {}
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings)
+    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                                      const HeightMaps& height_maps) {
@@ -76,6 +77,7 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
   if (!scene_) {
     frame.note = "waits for the scene";
   } else if (frame.how == sync::How::kNone) {
+    frame.state = node_health_t::READY;
     frame.note = "waits for the state of the world";
   } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
     frame.state = node_health_t::INPUT_LOST;

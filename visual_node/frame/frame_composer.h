@@ -28,8 +28,8 @@ struct Frame {
 
 class FrameComposer {
  public:
-  // own_run: messages of this run carry our own clock.
-  FrameComposer(std::int64_t own_run, const Settings& settings);
+  // own: messages of another clock are read through its map; those of another run by arrival.
+  FrameComposer(sync::OwnClock own, const Settings& settings);
 
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }

@@ -1,0 +1,93 @@
+// Two hosts whose clocks differ: they agree on time, and what one presents is known on the other.
+#include <nlohmann/json.hpp>
+
+#include "tests/cluster/run_script.h"
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+using nlohmann::json;
+
+namespace {
+
+// A command on a host of its own, as far as its clock is concerned: an hour ahead.
+std::vector<std::string> an_hour_ahead(std::vector<std::string> command) {
+  const std::vector<std::string> host{"unshare", "--time", "--monotonic", "3600", "--fork", "--kill-child"};
+  command.insert(command.begin(), host.begin(), host.end());
+  return command;
+}
+
+bool time_namespaces(RunScript& run) {
+  run.processes.spawn("probe", an_hour_ahead({"true"}));
+  return run.processes.wait_for_exit("probe", 20) == 0;
+}
+
+// One scenario of scripts/measure_clocks.
+json measured(RunScript& run, const std::string& scenario) {
+  const std::filesystem::path file = run.folder.path() / (scenario + ".json");
+  run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/measure_clocks").string(),
+                                  "--seconds", "16", "--only", scenario, "--json", file});
+  const int status = run.processes.wait_for_exit("measure", 90);
+  UNSCOPED_INFO(run.processes.said("measure"));
+  if (status == 77) return {};
+  const json rows = json::parse(contents(file), nullptr, false);
+  REQUIRE(rows.is_array());
+  REQUIRE(rows.size() == 1);
+  return rows[0];
+}
+
+}  // namespace
+
+TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced") {
+  const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
+  RunScript run;
+  const json row = measured(run, scenario);
+  if (row.is_null()) return;  // no time namespaces here
+  INFO(row.dump());
+  REQUIRE(row["n"].get<int>() > 20);
+  CHECK(row["within"].get<double>() >= 0.99);
+  CHECK(row["uncertainty_us"]["50"].get<double>() < 20'000);
+  if (scenario == "held") CHECK(row["uncertainty_us"]["50"].get<double>() > 1'000);
+  CHECK(row["clocks"].get<int>() == (scenario == "restart" ? 2 : 1));
+  CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
+}
+
+TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly") {
+  RunScript run;
+  if (!time_namespaces(run)) return;
+  Running r;
+  // Both in one time namespace: each namespace is a clock of its own, and a host has one sync_node.
+  const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + r.folder.path().string();
+  const std::string there = (programs() / "sync_node").string() + common + " --name sync_node_there & exec " +
+                            (programs() / "visual_node").string() + common;
+  r.processes.spawn("visual_node", an_hour_ahead({"sh", "-c", there}));
+  auto& reports = r.ear.bus().queue<sync_report_t>(channels::kSyncReport, 64);
+  r.processes.start("sync_node");
+  r.processes.start("audio_node");
+  r.processes.start("haptic_node");
+  r.processes.start("sim_node", {tapping_scene()});
+  const auto source = static_cast<std::int32_t>(sync::fnv1a_32("sync_node"));
+  std::optional<pair_report_t> pair;
+  const auto known = [&] {
+    while (const auto m = reports.pop())
+      for (const pair_report_t& p : m->message.pairs)
+        if (m->message.header.source == source && p.a == "audio" && p.b == "visual" && p.n > 20) pair = p;
+    return pair.has_value();
+  };
+  const bool presented = r.ear.wait_until(known, kPatience_s);
+  INFO(r.words());
+  REQUIRE(presented);
+  // Half an hour would be the wrong clock; half a second is a slow machine.
+  CHECK(std::abs(pair->p50_ns) < 500'000'000);
+  CHECK(pair->uncertainty_ns > 1'000);
+  const node_health_t* health = r.ear.health("visual_node");
+  REQUIRE(health);
+  bool aged = false;
+  for (const input_health_t& in : health->inputs) {
+    if (in.channel != channels::kWorldState) continue;
+    aged = true;
+    CHECK(in.uncertainty_ns > 0);
+    CHECK(in.age_ns < 5'000'000'000);
+  }
+  CHECK(aged);
+}
