@@ -48,7 +48,7 @@ const std::map<std::string, Names> kHarmless{
     {"visualize", {"false", "0"}},   {"light_on", {"true", "1"}},   {"laser_retro", {"0"}},
     {"lighting", {"true", "1"}},     {"double_sided", {"false", "0"}}};
 
-// Step and rate of the simulation: reference/architecture, haptic group.
+// Step and rate of the simulation: one step for each tick of touch.
 constexpr double kStep_s = 0.001, kRate_Hz = 1000;
 
 const Names* children_of(const std::string& parent, const std::string& name) {
