@@ -4,6 +4,8 @@
 #include <array>
 #include <iterator>
 
+#include "lcmtypes/channels.h"
+
 namespace tactus::sync {
 namespace {
 
@@ -26,6 +28,13 @@ bool is_onset(std::int8_t part, std::int8_t kind) {
          part == (kind == contact_event_t::HIT ? presentation_t::TRANSIENT : presentation_t::CONSTRAINT);
 }
 
+template <class Map>
+bool has_room(const Map& map, const typename Map::key_type& key, std::size_t most) {
+  return map.size() < most || map.contains(key);
+}
+
+bool fits(const sync_report_t& m) { return m.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes); }
+
 }  // namespace
 
 bool named_before(const std::string& a, const std::string& b) {
@@ -44,6 +53,10 @@ void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
   const bool ours = own_run_ == 0 || m.header.run_id == own_run_;
   TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
   if (!ours) {
+    if (!has_room(foreign_clocks_, m.header.source, kMaxSenses)) {
+      ++overflow_;
+      return;
+    }
     SenderClock& clock = foreign_clocks_[m.header.source];
     clock.observe(m.header.publish_time_ns, arrival, false);
     map.host = clock.to_host(m.clock.host_ns, arrival);
@@ -69,14 +82,18 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime) {
     ++foreign_;
     return;
   }
+  if (!has_room(renderers_, m.header.source, kMaxSenses) ||
+      (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxSenses))) {
+    ++overflow_;
+    return;
+  }
   Renderer& r = renderers_[m.header.source];
   r.modality = m.modality;
   r.owes = m.owes;
   r.tool = m.tool;
   const bool returned = r.life.observe(m.header.incarnation, m.state, host_time(m.header.publish_time_ns));
-  std::erase_if(last_debts_, [&](const LastDebt& d) {
-    return d.source == m.header.source || d.simulation == m.header.source;
-  });
+  std::erase_if(last_debts_,
+                [&](const LastDebt& d) { return d.source == m.header.source || d.simulation == m.header.source; });
   if (r.modality.empty()) return;
   DebtTally& tally = tallies_[r.modality];
   if (returned) {
@@ -184,8 +201,13 @@ void PresentationMatcher::count_asynchrony(const Event& e) {
     if (!first) it->second = std::min(it->second, r.presented_ns);
   }
   for (const auto& [a, time_a] : onset)
-    for (const auto& [b, time_b] : onset)
-      if (named_before(a, b)) pairs_[{a, b}].add(Nanoseconds(time_b - time_a));
+    for (const auto& [b, time_b] : onset) {
+      if (!named_before(a, b)) continue;
+      if (has_room(pairs_, {a, b}, kMaxPairs))
+        pairs_[{a, b}].add(Nanoseconds(time_b - time_a));
+      else
+        ++overflow_;
+    }
 }
 
 sync_report_t PresentationMatcher::report() const {
@@ -194,14 +216,22 @@ sync_report_t PresentationMatcher::report() const {
   m.begins = begins_;
   m.hits = hits_;
   m.ends = ends_;
-  for (const auto& [name, t] : tallies_)
+  for (const auto& [name, t] : tallies_) {
     m.modalities.push_back(
         {name, t.owed, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
-  m.modality_count = static_cast<std::int32_t>(m.modalities.size());
-  for (const auto& [names, soa] : pairs_)
-    m.pairs.push_back({names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
-                       soa.quantile(0.95).count()});
-  m.pair_count = static_cast<std::int32_t>(m.pairs.size());
+    ++m.modality_count;
+    if (fits(m)) continue;
+    m.modalities.resize(static_cast<std::size_t>(--m.modality_count));
+    break;
+  }
+  for (const auto& [names, soa] : pairs_) {
+    m.pairs.push_back({names.first, names.second, soa.count(), soa.quantile(0.05).count(),
+                       soa.quantile(0.5).count(), soa.quantile(0.95).count()});
+    ++m.pair_count;
+    if (fits(m)) continue;
+    m.pairs.resize(static_cast<std::size_t>(--m.pair_count));
+    break;
+  }
   return m;
 }
 

@@ -333,3 +333,24 @@ TEST_CASE("A flood of events takes bounded memory and is counted") {
   f.event(n, 60000);
   CHECK(f.matcher.overflow() == 1000);
 }
+
+TEST_CASE(
+    "A flood of invented senses takes bounded memory, is counted, and leaves room in the report for the real "
+    "ones") {
+  MatcherFixture f;
+  f.healths("audio_node", "audio", kHit, 0, 3000);
+  for (int i = 0; i < 200; ++i)
+    f.health("n" + std::to_string(i), "z" + std::to_string(i) + std::string(60, 'z'), kHit, 1000);
+  CHECK(f.matcher.modalities().size() == PresentationMatcher::kMaxSenses);
+  CHECK(f.matcher.overflow() == 201 - static_cast<std::int64_t>(PresentationMatcher::kMaxSenses));
+  for (int i = 0; i < 60; ++i) {
+    f.event(i, 2000);
+    for (int j = 0; j < 30; ++j) f.presented("p" + std::to_string(j), "s" + std::to_string(30 * i + j), i, 2010);
+  }
+  f.matcher.advance(f.at(4000));
+  CHECK(f.matcher.pairs().size() == PresentationMatcher::kMaxPairs);
+  CHECK(f.tally("audio").owed == 60);
+  const sync_report_t report = f.matcher.report();
+  CHECK(report.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
+  CHECK(report.modalities.at(0).modality == "audio");
+}
