@@ -16,18 +16,18 @@ double us(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-3,
 double ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6, 100); }
 
 Json quantiles(const Histogram& h) {
-  return {{"p50", us(h.quantile(0.5))}, {"p99", us(h.quantile(0.99))}, {"p999", us(h.quantile(0.999))}, {"max", us(h.max())}};
+  return {{"p50", us(h.quantile(0.5))},
+          {"p99", us(h.quantile(0.99))},
+          {"p999", us(h.quantile(0.999))},
+          {"max", us(h.max())}};
 }
 
 Json nodes(const RunSummary& s) {
   Json out = Json::object();
   for (const auto& [name, n] : s.nodes())
-    out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
-                 {"ticks", n.ticks},
-                 {"missed_ticks", n.missed_ticks},
-                 {"tick_us", quantiles(n.tick)},
-                 {"wake_us", quantiles(n.wake)},
-                 {"restarts", n.restarts},
+    out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)}, {"ticks", n.ticks},
+                 {"missed_ticks", n.missed_ticks},      {"tick_us", quantiles(n.tick)},
+                 {"wake_us", quantiles(n.wake)},        {"restarts", n.restarts},
                  {"scheduling", n.scheduling}};
   return out;
 }
@@ -48,25 +48,40 @@ Json contacts(const PresentationMatcher& m) {
     const auto it = m.modalities().find(name);
     const DebtTally t = it == m.modalities().end() ? DebtTally{} : it->second;
     presented[name] = t.presented;
-    by_modality[name] = {{"owed", t.owed}, {"presented", t.presented}, {"lost", t.lost}, {"stalled", t.stalled},
-                         {"dead", t.dead}, {"dropped_by_profile", t.dropped_by_profile}, {"dropped_late", t.dropped_late}};
+    by_modality[name] = {{"owed", t.owed},
+                         {"presented", t.presented},
+                         {"lost", t.lost},
+                         {"stalled", t.stalled},
+                         {"dead", t.dead},
+                         {"dropped_by_profile", t.dropped_by_profile},
+                         {"dropped_late", t.dropped_late}};
     sum.lost += t.lost;
     sum.stalled += t.stalled;
     sum.dead += t.dead;
     sum.dropped_by_profile += t.dropped_by_profile;
     sum.dropped_late += t.dropped_late;
   }
-  return {{"begin", m.begins()}, {"hit", m.hits()}, {"end", m.ends()}, {"presented", presented}, {"lost", sum.lost},
-          {"stalled", sum.stalled}, {"dropped_by_profile", sum.dropped_by_profile}, {"dead", sum.dead},
-          {"dropped_late", sum.dropped_late}, {"by_modality", by_modality}};
+  return {{"begin", m.begins()},
+          {"hit", m.hits()},
+          {"end", m.ends()},
+          {"presented", presented},
+          {"lost", sum.lost},
+          {"stalled", sum.stalled},
+          {"dropped_by_profile", sum.dropped_by_profile},
+          {"dead", sum.dead},
+          {"dropped_late", sum.dropped_late},
+          {"overflow", m.overflow()},
+          {"by_modality", by_modality}};
 }
 
 Json asynchrony(const PresentationMatcher& m) {
   const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}};
   Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
   for (const auto& [names, soa] : m.pairs())
-    out[names.first + "_" + names.second] = {{"n", soa.count()}, {"p05", ms(soa.quantile(0.05))},
-                                             {"p50", ms(soa.quantile(0.5))}, {"p95", ms(soa.quantile(0.95))}};
+    out[names.first + "_" + names.second] = {{"n", soa.count()},
+                                             {"p05", ms(soa.quantile(0.05))},
+                                             {"p50", ms(soa.quantile(0.5))},
+                                             {"p95", ms(soa.quantile(0.95))}};
   return out;
 }
 
@@ -79,6 +94,7 @@ std::string to_json(const RunSummary& s) {
   const Json out = {{"scene", s.scene()},
                     {"seconds", rounded(s.seconds(), 1000)},
                     {"recorded_seconds", rounded(s.recorded_seconds(), 1000)},
+                    {"log_holes_seconds", rounded(s.holes_seconds(), 1000)},
                     {"seed", s.seed()},
                     {"git", s.git()},
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},

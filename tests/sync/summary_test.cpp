@@ -44,8 +44,8 @@ struct RunLog {
   }
   void health(const std::string& node, const std::string& modality, double ms, double rate_Hz,
               std::int64_t incarnation = 1, std::int8_t state_ = node_health_t::RUNNING, std::int64_t missed = 0) {
-    node_health_t m = MatcherFixture::health_message(node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms,
-                                                     incarnation, state_);
+    node_health_t m = MatcherFixture::health_message(
+        node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms, incarnation, state_);
     m.nominal_rate_Hz = rate_Hz;
     m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
     m.missed_ticks = missed;
@@ -79,7 +79,8 @@ void ordinary_run(RunLog& log) {
     const int id = ms;
     log.send(channels::kContactEvents, MatcherFixture::event_message(id, ms - 1, contact_event_t::HIT, 100), ms);
     log.send(channels::kPresented, MatcherFixture::presented_message("audio_node", "audio", id, ms + 19), ms + 1);
-    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", id, ms + 12), ms + 2);
+    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", id, ms + 12),
+             ms + 2);
   }
 }
 
@@ -88,7 +89,8 @@ void ordinary_run(RunLog& log) {
 TEST_CASE("The summary of a run holds what the contract promises") {
   RunLog log;
   ordinary_run(log);
-  const RunSummary s = log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}});
+  const RunSummary s =
+      log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}});
   CHECK(s.failure().empty());
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "room.sdf");
@@ -111,7 +113,8 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   for (const char* outcome : {"lost", "stalled", "dropped_by_profile"}) CHECK(j["contacts"][outcome] == 0);
   CHECK(j["asynchrony_ms"]["audio_visual"]["n"] == 80);
   CHECK(j["asynchrony_ms"]["audio_visual"]["p50"].get<double>() == Approx(-7).margin(0.1));
-  CHECK(j["asynchrony_ms"]["haptic_audio"] == Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}}));
+  CHECK(j["asynchrony_ms"]["haptic_audio"] ==
+        Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}}));
   CHECK(j["asynchrony_ms"].contains("haptic_visual"));
   CHECK(j["bus"]["WORLD_STATE"]["messages"] == 501);
   CHECK(j["bus"]["WORLD_STATE"]["gaps"] == 0);
@@ -122,8 +125,12 @@ TEST_CASE("The summary of a run holds what the contract promises") {
 TEST_CASE("What the caller knows better replaces what the log says") {
   RunLog log;
   ordinary_run(log);
-  const RunSummary s = log.summary(
-      {.scene = "other.sdf", .git = "def", .seconds = 20, .seed = 1, .nodes = {}, .restarts = {{"audio_node", 4}}});
+  const RunSummary s = log.summary({.scene = "other.sdf",
+                                    .git = "def",
+                                    .seconds = 20,
+                                    .seed = 1,
+                                    .nodes = {},
+                                    .restarts = {{"audio_node", 4}}});
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "other.sdf");
   CHECK(j["git"] == "def");
@@ -134,9 +141,11 @@ TEST_CASE("What the caller knows better replaces what the log says") {
 
 TEST_CASE("Incarnations of a node are added up") {
   RunLog log;
-  for (int ms = 0; ms <= 4000; ms += 100) log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
+  for (int ms = 0; ms <= 4000; ms += 100)
+    log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
   for (int ms = 4200; ms <= 5000; ms += 100) log.health("audio_node", "audio", ms, 100, 2, node_health_t::WAITING);
-  for (int ms = 5100; ms <= 9000; ms += 100) log.health("audio_node", "audio", ms, 1000, 2, node_health_t::RUNNING, 7);
+  for (int ms = 5100; ms <= 9000; ms += 100)
+    log.health("audio_node", "audio", ms, 1000, 2, node_health_t::RUNNING, 7);
   const auto nodes = log.summary().nodes();
   const NodeSummary& n = nodes.at("audio_node");
   CHECK(n.restarts == 1);
@@ -152,8 +161,12 @@ TEST_CASE("A run with a loss, or without a node that must be there, is a failure
   ordinary_run(log);
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8100, contact_event_t::HIT, 100), 10001);
   for (int ms = 10100; ms < 14000; ms += 100) log.health("visual_node", "visual", ms, 60);
-  const SummaryOptions options{.scene = {}, .git = {}, .seconds = {}, .seed = {},
-                               .nodes = {"audio_node", "visual_node", "haptic_node"}, .restarts = {}};
+  const SummaryOptions options{.scene = {},
+                               .git = {},
+                               .seconds = {},
+                               .seed = {},
+                               .nodes = {"audio_node", "visual_node", "haptic_node"},
+                               .restarts = {}};
   const std::string why = log.summary(options).failure();
   CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
   CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));
@@ -242,4 +255,49 @@ TEST_CASE("The head of another log that crossed the bus in a replay does not cha
   const RunSummary s = log.summary();
   CHECK(s.scene() == "room.sdf");
   CHECK(s.matcher().hits() == 80);
+}
+
+TEST_CASE("A recorder that was stopped leaves a hole, which is said and fails the run") {
+  RunLog log;
+  const auto speak = [&](int from_ms, int to_ms) {
+    for (int ms = from_ms; ms <= to_ms; ms += 100) log.health("audio_node", "audio", ms, 750);
+  };
+  speak(0, 2000);
+  SECTION("with a jump in the numbering") {
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(5000, 8000);
+    const RunSummary s = log.summary();
+    CHECK(s.holes_seconds() == Approx(3));
+    CHECK_THAT(s.failure(), Catch::Contains("the log has a hole of 3 s"));
+    CHECK_THAT(to_text(s), Catch::Contains("the log has a hole of 3.0 s"));
+    CHECK(Json::parse(to_json(s))["log_holes_seconds"] == Approx(3));
+  }
+  SECTION("also when the kernel had kept what came first") {
+    speak(5000, 6500);
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(6600, 8000);
+    CHECK(log.summary().holes_seconds() == Approx(3));
+  }
+  SECTION("a silence of the nodes themselves is none") {
+    speak(5000, 8000);
+    CHECK(log.summary().holes_seconds() == 0);
+    CHECK(log.summary().failure().empty());
+  }
+  SECTION("nor is a loss while the log goes on") {
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(2100, 5000);
+    CHECK(log.summary().holes_seconds() == 0);
+  }
+}
+
+TEST_CASE("A run with more events than can be matched is a failure that is named") {
+  RunLog log;
+  ordinary_run(log);
+  for (int i = 0; i < static_cast<int>(PresentationMatcher::kMaxEvents) + 10; ++i)
+    log.send(channels::kContactEvents,
+             MatcherFixture::event_message(1'000'000 + i, 9900, contact_event_t::END, 100), 9901);
+  log.health("audio_node", "audio", 10'100, 750);
+  const RunSummary s = log.summary();
+  CHECK_THAT(s.failure(), Catch::Contains("found no room"));
+  CHECK_THAT(to_text(s), Catch::Contains("found no room"));
 }
