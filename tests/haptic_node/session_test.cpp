@@ -64,6 +64,34 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   CHECK_THAT(limits_sentence(choose(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
+TEST_CASE("A scene cannot loosen what protects the hand; the command line can") {
+  scene_t s = scene();
+  const Settings safe;
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{{"force_limit", "30"},
+                                                                                    {"slew_limit", "100000"},
+                                                                                    {"energy_limit", "10"},
+                                                                                    {"power_limit", "50"},
+                                                                                    {"stale_after", "1"},
+                                                                                    {"fade", "1"},
+                                                                                    {"transient_limit", "20"},
+                                                                                    {"stiffness_limit", "20000"},
+                                                                                    {"mass_factor", "0.5"},
+                                                                                    {"damping_ratio", "0.1"},
+                                                                                    {"device_damping", "100"}}) {
+    INFO(name);
+    s.settings.resize(1);
+    s.settings[0].node = "haptic_node";
+    s.settings[0].name = name;
+    s.settings[0].value = value;
+    const Choice refused = choose(s, "", {});
+    REQUIRE(refused.refused.size() == 1);
+    CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
+    CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
+    CHECK(choose(scene(), "", {name + "=" + value}).refused.empty());
+  }
+  CHECK(choose(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
+}
+
 TEST_CASE("A session touches what its own tool is told of, and nothing else") {
   const scene_t s = pressing_scene();
   Session session(s, choice_of(s), std::nullopt, 1);

@@ -119,6 +119,10 @@ TEST_CASE("A setting that a node does not have, or out of range, is refused with
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(refusal("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
+                                                                      Catch::Contains("only tighten") &&
+                                                                      Catch::Contains("8 N or less"));
+  CHECK(refusal("<tactus:haptic_node force_limit='3 N'/>").empty());
 }
 
 TEST_CASE("A node that is not built here is warned of and passed on: a sixth sense may live elsewhere") {
