@@ -47,6 +47,7 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
   auto& events = sense.events();
+  haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
   std::optional<haptic::Session> session;
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
@@ -54,17 +55,17 @@ int main(int argc, char** argv) try {
     const sync::HostTime now = node.wait();
     sense.step(now);
     if (scenes.poll(now)) {
-      session.reset();
       const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
-      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, options.run_id);
-      std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
-                << "\n";
+      if (session) session->let_go();
+      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, options.run_id, safety);
+      std::cerr << options.name << ": "
+                << (choice.tool >= 0 ? haptic::limits_sentence(choice.settings) : choice.problem) << "\n";
       node.set_tool(choice.tool);
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
-      node.set_state(node_health_t::WAITING, session ? "waits for a touch model" : choice.problem);
+      node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for a touch model" : choice.problem);
     }
     while (const auto m = touch.pop())
       if (session) session->push(m->message, m->arrival);
@@ -75,6 +76,7 @@ int main(int argc, char** argv) try {
                                                   .touch_delay = sense.profile_delay(),
                                                   .force_step_N = sense.output().force_step_N,
                                                   .touch_arrival = touch.count().newest_arrival});
+    if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);

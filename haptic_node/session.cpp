@@ -18,21 +18,26 @@ std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice,
 }  // namespace
 
 Session::Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-                 std::int64_t own_run)
+                 std::int64_t own_run, Safety& safety)
     : device_(device_of(scene, choice, device)),
-      renderer_(scene, choice.tool, choice.settings),
+      renderer_(scene, choice.tool, choice.settings, safety),
       touch_(choice.tool, own_run),
-      events_(own_run) {}
+      events_(own_run) {
+  safety.set_limits(safety_limits(choice.settings));
+}
 
 TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
   TickInput in;
   in.now = now;
   in.device = device_->read(now);
-  in.fresh = touch_.take();
-  // A commanded gap is not a loss.
-  in.touch_arrival = touch_.arrival();
-  if (in.touch_arrival && degraded.touch_arrival) in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
-  in.map = touch_.map(now);
+  if (!over_) {
+    in.fresh = touch_.take();
+    // A commanded gap is not a loss.
+    in.touch_arrival = touch_.arrival();
+    if (in.touch_arrival && degraded.touch_arrival)
+      in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
+    in.map = touch_.map(now);
+  }
   in.transient_delay = degraded.delay;
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;

@@ -25,10 +25,11 @@ struct Degraded {
 
 class Session {
  public:
-  // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. Throws
-  // std::runtime_error with one sentence when there is no such device.
+  // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. safety: of
+  // the process, outlives this; it goes on with the limits of this scene. Throws std::runtime_error with one
+  // sentence when there is no such device.
   Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-          std::int64_t own_run);
+          std::int64_t own_run, Safety& safety);
 
   void push(const touch_model_t& model, sync::HostTime arrival) { touch_.push(model, arrival); }
   void push(const contact_events_t& events, sync::HostTime arrival) { events_.push(events, arrival); }
@@ -36,6 +37,11 @@ class Session {
   // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
   // the next.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {});
+
+  // Its scene is over: from now on touch models are ignored, and the force goes to zero as fast as the limits
+  // allow.
+  void let_go() { over_ = true; }
+  bool over() const { return over_; }
 
   bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
   bool lost() const { return renderer_.lost(); }
@@ -45,6 +51,7 @@ class Session {
   Renderer renderer_;
   TouchInput touch_;
   sync::ContactStream events_;
+  bool over_ = false;
 };
 
 }  // namespace tactus::haptic
