@@ -5,21 +5,17 @@
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
-namespace {
 
-std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice,
-                                  const std::optional<DeviceSpec>& given) {
+std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given) {
   const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
   const auto& body = scene.bodies[static_cast<std::size_t>(tool.body)];
   const DeviceSpec spec = given ? *given : tool.device.empty() ? DeviceSpec{} : parse_device_spec(tool.device);
   return make_device(spec, tool, to_eigen(body.pose.position_m), choice.settings);
 }
 
-}  // namespace
-
-Session::Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-                 std::int64_t own_run, Safety& safety)
-    : device_(device_of(scene, choice, device)),
+Session::Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, std::int64_t own_run,
+                 Safety& safety)
+    : device_(std::move(device)),
       renderer_(scene, choice.tool, choice.settings, safety),
       touch_(choice.tool, own_run),
       events_(own_run) {

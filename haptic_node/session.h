@@ -23,22 +23,29 @@ struct Degraded {
   std::optional<sync::HostTime> touch_arrival;
 };
 
+// The device of the tool that was chosen. given: from the command line; null: as the tool says, maybe from a
+// file, so not for a loop. Throws std::runtime_error with one sentence when there is no such device.
+std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given = nullptr);
+
 class Session {
  public:
-  // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. safety: of
-  // the process, outlives this; it goes on with the limits of this scene. Throws std::runtime_error with one
-  // sentence when there is no such device.
-  Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-          std::int64_t own_run, Safety& safety);
+  // choice.tool must be one of the scene's. safety: of the process, outlives this; it goes on with the limits of
+  // this scene.
+  Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, std::int64_t own_run,
+          Safety& safety);
 
-  void push(const touch_model_t& model, sync::HostTime arrival) { touch_.push(model, arrival); }
-  void push(const contact_events_t& events, sync::HostTime arrival) { events_.push(events, arrival); }
+  void push(const touch_model_t& model, sync::HostTime arrival) {
+    if (!over_) touch_.push(model, arrival);
+  }
+  void push(const contact_events_t& events, sync::HostTime arrival) {
+    if (!over_) events_.push(events, arrival);
+  }
 
   // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
   // the next.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {});
 
-  // Its scene is over: from now on touch models are ignored, and the force goes to zero as fast as the limits
+  // Its scene is over: from now on what comes is ignored, and the force goes to zero as fast as the limits
   // allow.
   void let_go() { over_ = true; }
   bool over() const { return over_; }

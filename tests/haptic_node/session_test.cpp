@@ -95,7 +95,7 @@ TEST_CASE("A scene cannot loosen what protects the hand; the command line can") 
 TEST_CASE("A session touches what its own tool is told of, and nothing else") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), std::nullopt, 1, safety);
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   const auto floor = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
   CHECK_FALSE(session.heard());
   for (int ms = 0; ms < 100; ++ms) {
@@ -119,7 +119,7 @@ TEST_CASE("A session touches what its own tool is told of, and nothing else") {
 TEST_CASE("Events that are repeated, as they are on the bus, are rendered once") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), std::nullopt, 1, safety);
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   int begins = 0, hits = 0;
   for (int ms = 0; ms < 300; ++ms) {
     session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
@@ -141,7 +141,7 @@ TEST_CASE("Events that are repeated, as they are on the bus, are rendered once")
 TEST_CASE("A restarted simulation is followed, its first touch model comes without a kick") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), std::nullopt, 1, safety);
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   double last = 0;
   for (int ms = 0; ms < 1000; ++ms) {
     // Killed at 200 ms, back at 500 ms with a time of its own that begins at 0.
@@ -165,7 +165,7 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
   // So slow that the way from 0.4 N takes 40 ms.
   const Choice slow = choose(s, "", {"slew_limit=10", "energy_limit=0.4"});
   Safety safety{safety_limits(slow.settings)};
-  std::optional<Session> session(std::in_place, s, slow, std::nullopt, 1, safety);
+  std::optional<Session> session(std::in_place, s, slow, device_of(s, slow), 1, safety);
   Vector3d last = Vector3d::Zero();
   const auto tick = [&](int ms) {
     const Vector3d force = session->step(host_ms(ms)).force_N;
@@ -179,12 +179,12 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
   REQUIRE(last.z() > 0.3);
   SECTION("of a scene that follows") {
     const double given_J = safety.energy_J();
-    session.emplace(s, slow, std::nullopt, 1, safety);
+    session.emplace(s, slow, device_of(s, slow), 1, safety);
     tick(300);
     CHECK(last.z() > 0.3);
+    CHECK(safety.energy_J() == given_J);  // a new hand in another place: no work
     for (int ms = 301; ms < 330; ++ms) tick(ms);
     CHECK(last.z() > 0);
-    CHECK(safety.energy_J() == given_J);  // a new hand in another place: no work
   }
   SECTION("and of one without this tool, whose touch models are ignored") {
     session->let_go();
@@ -199,9 +199,12 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
   CHECK(last.norm() == 0);
 }
 
-TEST_CASE("A device that the scene names but nobody knows is refused in one sentence") {
+TEST_CASE("A device that the scene names but nobody can make is refused in one sentence") {
   scene_t s = scene();
-  s.tools[0].device = "phantom";
-  Safety safety{SafetyLimits{}};
-  CHECK_THROWS_WITH(Session(s, choice_of(s), std::nullopt, 1, safety), Contains("phantom"));
+  for (const std::string device : {"phantom", "playback:/no/such.csv", "playback:/dev/zero"}) {
+    s.tools[0].device = device;
+    CHECK_THROWS_WITH(device_of(s, choice_of(s)), Contains(device.substr(device.find(':') + 1)));
+    const DeviceSpec given;
+    CHECK(device_of(s, choice_of(s), &given));  // the command line goes before the scene
+  }
 }
