@@ -51,6 +51,8 @@ constexpr Nanoseconds kReportPeriod{100'000'000};
 // A loop that was demoted gets its priority back after so long below 80 %.
 constexpr Nanoseconds kForgiven{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
+// A note may quote what came over the bus; a report with it still fits a datagram.
+constexpr std::size_t kLongestNote = 140;
 
 }  // namespace
 
@@ -181,6 +183,7 @@ node_health_t Node::health_message(HostTime now) {
   m.modality = declaration_.modality;
   m.owes = declaration_.owes;
   m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
+  if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
   std::int64_t forgotten = 0;
