@@ -5,6 +5,13 @@
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
+namespace {
+
+// From a step of the simulation to the tick that takes its touch model: a few of each. More is a clock that is
+// wrong.
+constexpr sync::Nanoseconds kLongestWay{10'000'000};
+
+}  // namespace
 
 std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given) {
   const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
@@ -22,18 +29,32 @@ Session::Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Dev
   safety.set_limits(safety_limits(choice.settings));
 }
 
+// The path of the device begins with the world: at the instant of the first touch model, to which simulated time
+// gives the same place in every run. One that is held back on purpose is not seen yet; then it is the arrival that
+// counts.
+void Session::begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded) {
+  if (!since_) since_ = now;
+  const bool arrived = degraded.touch_arrival && *degraded.touch_arrival >= *since_;
+  if (path_begun_ || (!fresh && !arrived)) return;
+  path_begun_ = true;
+  const auto map = touch_.map(now);
+  const sync::HostTime at = fresh && map ? map->to_host(sync::sim_time(fresh->header.sim_time_ns)) : now;
+  device_->begin(std::clamp(at, now - kLongestWay, now));
+}
+
 TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
   TickInput in;
   in.now = now;
-  in.device = device_->read(now);
   if (!over_) {
     in.fresh = touch_.take();
+    begin_path(now, in.fresh, degraded);
     // A commanded gap is not a loss.
     in.touch_arrival = touch_.arrival();
     if (in.touch_arrival && degraded.touch_arrival)
       in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
     in.map = touch_.map(now);
   }
+  in.device = device_->read(now);
   in.transient_delay = degraded.delay;
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;

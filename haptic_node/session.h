@@ -54,11 +54,15 @@ class Session {
   bool lost() const { return renderer_.lost(); }
 
  private:
+  void begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded);
+
   std::unique_ptr<Device> device_;
   Renderer renderer_;
   TouchInput touch_;
   sync::ContactStream events_;
   bool over_ = false;
+  std::optional<sync::HostTime> since_;  // the first tick
+  bool path_begun_ = false;
 };
 
 }  // namespace tactus::haptic

@@ -44,6 +44,7 @@ int main(int argc, char** argv) try {
   thermal::Choice choice;
   thermal::Ticks ticks;
   std::optional<thermal::Renderer> renderer;
+  std::optional<double> element_degC;  // as commanded last, whatever the scene
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
@@ -61,12 +62,13 @@ int main(int argc, char** argv) try {
       node.set_state(node_health_t::WAITING, choice.problem);
       renderer.reset();
       if (choice.tool >= 0)
-        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body);
+        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body, element_degC);
     }
     if (!renderer) continue;
     const thermal::Tick tick =
         ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
     thermal_state_t state = renderer->step(tick);
+    element_degC = state.commanded_degC;
     node.bus().publish(channels::kThermalState, state);
     for (const presentation_t& report : renderer->reports()) sense.report(report);
     sense.publish(now);

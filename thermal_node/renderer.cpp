@@ -28,13 +28,14 @@ bool usable(sync::How how) { return how != sync::How::kNone && how != sync::How:
 
 }  // namespace
 
-Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body)
+Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
+                   std::optional<double> element_degC)
     : settings_(settings),
       materials_(std::move(materials)),
       tool_(tool),
       tool_body_(tool_body),
       skin_(skin_properties(settings)),
-      controller_(limits(settings), settings.skin_rest_degC) {}
+      controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)) {}
 
 // Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
 // the force and area of the touch itself and then weighted with its time.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/material_def_t.hpp>
 #include <tactus/presentation_t.hpp>
@@ -18,8 +19,10 @@ namespace tactus::thermal {
 
 class Renderer {
  public:
-  // materials: of the scene; tool, tool_body: index of the tool in the scene and its body.
-  Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body);
+  // materials: of the scene; tool, tool_body: index of the tool in the scene and its body. element_degC: where the
+  // element stands, as another scene left it; nothing: at resting skin.
+  Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
+           std::optional<double> element_degC = std::nullopt);
 
   // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
   // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin

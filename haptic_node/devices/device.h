@@ -22,6 +22,9 @@ class Device {
   static constexpr sync::Nanoseconds kWatchdog{20'000'000};
 
   virtual ~Device() = default;
+  // The world has begun: a device that follows a path begins it at this instant, and rests at its first point
+  // before.
+  virtual void begin(sync::HostTime) {}
   // Where the hand is at `now`. Call once a tick, then write once.
   virtual DeviceState read(sync::HostTime now) = 0;
   // Force on the hand, N, world frame, held until the next write.

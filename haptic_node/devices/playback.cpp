@@ -8,11 +8,7 @@ Playback::Playback(Motion motion, const Placement& placement)
       placement_(placement) {}
 
 DeviceState Playback::read(sync::HostTime now) {
-  if (!begun_) {
-    begun_ = true;
-    start_ = now;
-  }
-  const double t = curve_.begin_s() + sync::to_seconds(now - start_) * placement_.rate;
+  const double t = curve_.begin_s() + (begin_ ? sync::to_seconds(now - *begin_) * placement_.rate : 0);
   const auto at = curve_.at(t);
   const auto [i, s] = curve_.locate(t);
   DeviceState state;

@@ -1,6 +1,8 @@
 // A device that imposes a recorded motion and ignores the force: the same stroke for every condition of a study.
 #pragma once
 
+#include <optional>
+
 #include "haptic_node/devices/device.h"
 #include "haptic_node/devices/monotone_cubic.h"
 #include "haptic_node/devices/motion_file.h"
@@ -11,7 +13,8 @@ namespace tactus::haptic {
 class Playback : public Device {
  public:
   Playback(Motion motion, const Placement& placement);
-  // The motion begins with its first sample at the first read, and rests at its last.
+  // The motion begins with its first sample, and rests at its last.
+  void begin(sync::HostTime at) override { begin_ = at; }
   DeviceState read(sync::HostTime now) override;
   void write(const Eigen::Vector3d&) override {}
 
@@ -19,8 +22,7 @@ class Playback : public Device {
   MonotoneCubic curve_;
   std::vector<Eigen::Quaterniond> orientations_;
   Placement placement_;
-  bool begun_ = false;
-  sync::HostTime start_{};
+  std::optional<sync::HostTime> begin_;
 };
 
 }  // namespace tactus::haptic

@@ -25,7 +25,7 @@ VirtualHand::VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& han
     : path_(std::move(path)), loop_(loop), hand_(hand) {}
 
 MonotoneCubic::At VirtualHand::target(sync::HostTime now) const {
-  double t = sync::to_seconds(now - start_);
+  double t = begin_ && now > *begin_ ? sync::to_seconds(now - *begin_) : 0;
   const double period = path_.end_s() - path_.begin_s();
   if (loop_ && period > 0 && t > path_.end_s()) t = path_.begin_s() + std::fmod(t - path_.begin_s(), period);
   return path_.at(t);
@@ -45,9 +45,9 @@ void VirtualHand::advance(const MonotoneCubic::At& to, const Eigen::Vector3d& fo
 }
 
 DeviceState VirtualHand::read(sync::HostTime now) {
-  if (!begun_) {
-    begun_ = true;
-    start_ = last_ = now;
+  if (!read_) {
+    read_ = true;
+    last_ = now;
     target_ = target(now);
     position_ = target_.position;
   }

@@ -1,6 +1,8 @@
 // A hand of mathematics: a mass that a spring and a damper pull along a path, so that contact pushes it back.
 #pragma once
 
+#include <optional>
+
 #include "haptic_node/devices/device.h"
 #include "haptic_node/devices/monotone_cubic.h"
 
@@ -17,7 +19,7 @@ class VirtualHand : public Device {
   // loop: begins again at its first point after its last; `path` should end where it begins.
   VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& hand);
 
-  // The path begins at the first read.
+  void begin(sync::HostTime at) override { begin_ = at; }
   DeviceState read(sync::HostTime now) override;
   void write(const Eigen::Vector3d& force_N) override { force_ = force_N; }
 
@@ -28,8 +30,9 @@ class VirtualHand : public Device {
   MonotoneCubic path_;
   bool loop_;
   HandImpedance hand_;
-  bool begun_ = false;
-  sync::HostTime start_{}, last_{};
+  std::optional<sync::HostTime> begin_;  // of the path
+  bool read_ = false;
+  sync::HostTime last_{};
   MonotoneCubic::At target_{};  // where the path was at last_
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();

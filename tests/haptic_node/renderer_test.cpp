@@ -46,6 +46,7 @@ TEST_CASE("A hand that presses on a wall rests where its spring and the coupling
   Bench bench(settings);
   TickOutput* out = nullptr;
   double energy_J = 0;
+  hand.begin(host_ms(0));
   Vector3d last = hand.read(host_ms(0)).position;
   for (int ms = 0; ms < 3000; ++ms) {
     const DeviceState state = hand.read(host_ms(ms));

@@ -160,6 +160,41 @@ TEST_CASE("A restarted simulation is followed, its first touch model comes witho
   CHECK(last > 0.3);
 }
 
+TEST_CASE("The path of the hand begins with the world, not with the process") {
+  scene_t s = scene();
+  s.tools[0].waypoints.resize(2);
+  s.tools[0].waypoints[1].time_s = 0.5;
+  s.tools[0].waypoints[1].position_m.x = 0.1;
+  s.tools[0].waypoint_count = 2;
+  Safety safety{SafetyLimits{}};
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
+  const auto x = [](const TickOutput& out) { return out.state.device.position_m.x; };
+  // The scene is offered half a second before its time begins; the ticks fall anywhere between its steps.
+  const double tick_ms = GENERATE(0.0, 0.3, 0.9);
+  for (int ms = -500; ms < 0; ++ms) CHECK(x(session.step(host_ms(ms + tick_ms))) == 0);
+  SECTION("at the simulated instant of its first touch model") {
+    double at_250 = 0;
+    for (int ms = 0; ms < 1000; ++ms) {
+      session.push(sent(ms, {}), host_ms(ms));
+      const double here = x(session.step(host_ms(ms + tick_ms)));
+      if (ms == 250) at_250 = here;
+    }
+    CHECK(at_250 == Approx(0.05 + 0.3e-3 * tick_ms).margin(2e-4));  // half way, at 0.3 m/s
+    CHECK(x(session.step(host_ms(1000))) == Approx(0.1).epsilon(1e-6));
+  }
+  SECTION("also when touch models are held back on purpose: then as the first one arrives") {
+    double held = 0;
+    for (int ms = 0; ms < 300; ++ms) {
+      if (ms >= 200) session.push(sent(ms - 200, {}), host_ms(ms));
+      held = x(session.step(host_ms(ms), {.touch_arrival = host_ms(ms)}));
+    }
+    CHECK(held > 0.05);
+  }
+  SECTION("and not with the arrivals of the world before it") {
+    for (int ms = 0; ms < 300; ++ms) CHECK(x(session.step(host_ms(ms), {.touch_arrival = host_ms(-501)})) == 0);
+  }
+}
+
 TEST_CASE("When the scene changes the force goes on from where it is, through the limits") {
   const scene_t s = pressing_scene();
   // So slow that the way from 0.4 N takes 40 ms.

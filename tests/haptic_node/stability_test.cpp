@@ -37,6 +37,7 @@ Run press(std::optional<Body> body, double delay_ms) {
   VirtualHand hand(
       MonotoneCubic({0, 0.3}, {Vector3d(0, 0, 0.015), Vector3d(0, 0, -0.005)}, MonotoneCubic::Ends::kRest), false,
       {settings.hand_mass_kg, settings.hand_damping_Ns_m, settings.hand_stiffness_N_m});
+  hand.begin(host_ms(0));
   Bench bench(settings);
   std::deque<touch_model_t> on_the_way;
   double impulse = 0, told_impulse = 0, extreme = 0;

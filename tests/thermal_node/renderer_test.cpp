@@ -245,3 +245,19 @@ TEST_CASE("The same contacts give the same command to the bit") {
   };
   CHECK(run() == run());
 }
+
+TEST_CASE("When the scene changes the command goes on from where the element stands, no faster than it may") {
+  Hand hand;
+  const double stands = hand.press(kCopper, 5, 100).commanded_degC;
+  REQUIRE(stands < 31);
+  const thermal::Settings settings;
+  hand.renderer = Renderer(settings, kMaterials, 0, 9, stands);
+  const double most = settings.slew_max_K_s * sync::to_seconds(kTick) + 1e-5;
+  double last = stands;
+  for (int i = 0; i < 100; ++i) {
+    const double command = hand.rest().commanded_degC;
+    CHECK(std::abs(command - last) <= most);
+    last = command;
+  }
+  CHECK(last == Approx(settings.skin_rest_degC).margin(0.01));
+}

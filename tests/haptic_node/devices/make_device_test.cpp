@@ -53,6 +53,7 @@ TEST_CASE("A virtual hand follows the waypoints of its tool") {
   tool.waypoints = {waypoint(0, 0), waypoint(1, 0.1)};
   SECTION("once") {
     const auto hand = make_device({}, tool, Vector3d::Zero(), {});
+    hand->begin(at_s(0));
     hand->read(at_s(0));
     for (double t = 0.001; t < 3; t += 0.001) hand->read(at_s(t));
     CHECK(hand->read(at_s(3)).position.x() == Approx(0.1));
@@ -60,6 +61,7 @@ TEST_CASE("A virtual hand follows the waypoints of its tool") {
   SECTION("again and again, going back at an even pace") {
     tool.loop = 1;
     const auto hand = make_device({}, tool, Vector3d::Zero(), {});
+    hand->begin(at_s(0));
     hand->read(at_s(0));
     for (double t = 0.001; t < 1.5; t += 0.001) CHECK(std::abs(hand->read(at_s(t)).velocity.x()) < 0.4);
     CHECK(hand->read(at_s(1.52)).position.x() == Approx(0).margin(1e-3));  // 0.1 m at 0.2 m/s after 1 s
@@ -67,6 +69,7 @@ TEST_CASE("A virtual hand follows the waypoints of its tool") {
   SECTION("and without any it rests") {
     tool.waypoints.clear();
     const auto hand = make_device({}, tool, Vector3d(1, 2, 3), {});
+    hand->begin(at_s(0));
     hand->read(at_s(0));
     CHECK(hand->read(at_s(1)).position == Vector3d(1, 2, 3));
   }

@@ -58,6 +58,9 @@ TEST_CASE("A motion is of a regular file, with an end and lines of a size") {
 TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, and rests at the last") {
   const Motion motion = read("time_s,x_m,y_m,z_m\n10,0,0,0\n10.1,0.1,0,0\n10.2,0.2,0,0\n10.4,0.2,0.3,0\n");
   Playback device(motion, Placement{2, {1, 0, 0}, 0.5});
+  CHECK(device.read(at_s(-3)).position == Vector3d(1, 0, 0));
+  CHECK(device.read(at_s(-1)).velocity.norm() == 0);
+  device.begin(at_s(0));
   CHECK(device.read(at_s(0)).position == Vector3d(1, 0, 0));
   CHECK((device.read(at_s(0.2)).position - Vector3d(1.2, 0, 0)).norm() < 1e-12);
   CHECK((device.read(at_s(0.1)).position - Vector3d(1.1, 0, 0)).norm() < 1e-12);
@@ -70,7 +73,7 @@ TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, an
 
 TEST_CASE("A playback turns evenly between two orientations") {
   Playback device(read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,0.7071068,0,0,0.7071068\n"), {});
-  device.read(at_s(0));
+  device.begin(at_s(0));
   const Eigen::AngleAxisd half(device.read(at_s(0.5)).orientation);
   CHECK(half.angle() == Approx(M_PI / 4).epsilon(1e-6));
 }
@@ -88,7 +91,7 @@ TEST_CASE("Recorded strokes play as they were recorded") {
     const Motion motion = read_motion(entry.path().string());
     REQUIRE(motion.times_s.size() > 100);
     Playback device(motion, {});
-    device.read(at_s(0));
+    device.begin(at_s(0));
     double worst = 0;
     for (std::size_t i = 0; i < motion.times_s.size(); ++i) {
       const DeviceState state = device.read(at_s(motion.times_s[i] - motion.times_s[0]));

@@ -54,6 +54,7 @@ TEST_CASE("A hand follows its path and begins again, without a jump") {
   const MonotoneCubic path({0, 0.5, 1}, {Vector3d::Zero(), {0.1, 0, 0}, Vector3d::Zero()},
                            MonotoneCubic::Ends::kRest);
   VirtualHand hand(path, true, kHand);
+  hand.begin(at_ms(0));
   Vector3d last = hand.read(at_ms(0)).position;
   CHECK(last == Vector3d::Zero());
   for (int ms = 1; ms < 5000; ++ms) {
@@ -65,6 +66,25 @@ TEST_CASE("A hand follows its path and begins again, without a jump") {
   // 0.5 s after a beginning it is near the far end. Lag of a second-order follower whose damper sees the target's
   // velocity: m/k times the acceleration, at most 0.1/300 * 6 * 0.1/0.25 = 0.8 mm.
   CHECK((hand.read(at_ms(5500)).position - Vector3d(0.1, 0, 0)).norm() < 0.0008);
+}
+
+TEST_CASE("A hand rests at the first point of its path until the path begins, and may be pushed there") {
+  const MonotoneCubic path({0, 0.5}, {{0.1, 0, 0}, {0.2, 0, 0}}, MonotoneCubic::Ends::kRest);
+  VirtualHand hand(path, false, kHand);
+  for (int ms = 0; ms < 700; ++ms) CHECK(hand.read(at_ms(ms)).position == Vector3d(0.1, 0, 0));
+  SECTION("which takes as long as it is") {
+    hand.begin(at_ms(699.5));
+    for (int ms = 700; ms <= 949; ++ms) hand.read(at_ms(ms));
+    CHECK(hand.read(at_ms(949.5)).position.x() == Approx(0.15).margin(2e-4));  // but for the lag of the hand
+    CHECK(hand.read(at_ms(1600)).position.x() == Approx(0.2).epsilon(1e-6));
+  }
+  SECTION("by a force") {
+    for (int ms = 700; ms < 1700; ++ms) {
+      hand.write({0, 0, 3});
+      hand.read(at_ms(ms));
+    }
+    CHECK((hand.read(at_ms(1700)).position - Vector3d(0.1, 0, 0.01)).norm() < 1e-9);
+  }
 }
 
 TEST_CASE("A force that is not renewed is dropped") {
