@@ -6,8 +6,8 @@
 #include <string>
 
 #include "audio_node/device/stream.h"
-#include "audio_node/opening.h"
 #include "audio_node/settings.gen.h"
+#include "sync/opening.h"
 
 namespace tactus::audio {
 
@@ -56,7 +56,7 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
-  std::optional<Opening<Stream>> opening_;
+  std::optional<sync::Opening<Stream>> opening_;
   std::unique_ptr<Stream> stream_;
   std::deque<presentation_t> unsounded_;
 };

@@ -10,10 +10,12 @@
 // transients. The loop never waits for another node.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "haptic_node/session.h"
 #include "sync/node.h"
+#include "sync/opening.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 
@@ -39,14 +41,18 @@ int main(int argc, char** argv) try {
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
-  std::optional<haptic::DeviceSpec> device;
-  if (!device_spec.empty()) device = haptic::parse_device_spec(device_spec);
+  std::shared_ptr<const haptic::DeviceSpec> device_given;
+  if (!device_spec.empty())
+    device_given = std::make_shared<haptic::DeviceSpec>(haptic::parse_device_spec(device_spec));
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
   auto& events = sense.events();
+  haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
+  haptic::Choice choice;
+  std::optional<sync::Opening<haptic::Device>> device;
   std::optional<haptic::Session> session;
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
@@ -54,18 +60,32 @@ int main(int argc, char** argv) try {
     const sync::HostTime now = node.wait();
     sense.step(now);
     if (scenes.poll(now)) {
-      session.reset();
-      const haptic::Choice choice = haptic::choose(*scenes.scene(), tool_name, options.set);
+      choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
-      if (choice.tool >= 0) session.emplace(*scenes.scene(), choice, device, node.bus().clocks());
-      std::cerr << options.name << ": " << (session ? haptic::limits_sentence(choice.settings) : choice.problem)
-                << "\n";
+      if (session) session->let_go();
+      device.reset();
+      if (choice.tool >= 0)  // its file is read in a thread of its own, at no priority
+        device.emplace([scene = *scenes.scene(), choice, given = device_given] {
+          sync::leave_realtime();
+          return haptic::device_of(scene, choice, given.get());
+        });
+      std::cerr << options.name << ": "
+                << (choice.tool >= 0 ? haptic::limits_sentence(choice.settings) : choice.problem) << "\n";
       node.set_tool(choice.tool);
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
-      node.set_state(session ? node_health_t::READY : node_health_t::WAITING,
-                     session ? "waits for a touch model" : choice.problem);
+      node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for its device" : choice.problem);
+    }
+    if (device && device->done()) {
+      try {
+        session.emplace(*scenes.scene(), choice, device->take(), node.bus().clocks(), safety);
+        node.set_state(node_health_t::READY, "waits for a touch model");
+      } catch (const std::exception& e) {
+        std::cerr << options.name << ": " << e.what() << "\n";
+        node.set_state(node_health_t::WAITING, e.what());
+      }
+      device.reset();
     }
     while (const auto m = touch.pop())
       if (session) session->push(m->message, m->arrival);
@@ -76,6 +96,7 @@ int main(int argc, char** argv) try {
                                                   .touch_delay = sense.profile_delay(),
                                                   .force_step_N = sense.output().force_step_N,
                                                   .touch_arrival = touch.count().newest_arrival});
+    if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
 namespace {
-
-// A device drops a force that is not renewed for so long; what happened since then was without force.
-constexpr sync::Nanoseconds kWatchdog = VirtualHand::kWatchdog;
 
 // The force in levels of `step_N` of its size; 0: as it is.
 Eigen::Vector3d stepped(const Eigen::Vector3d& force_N, double step_N) {
@@ -35,13 +31,10 @@ TransientShape transient_shape(const Settings& s) {
           s.late_tolerance_s,
           s.drop_after_s};
 }
-SafetyLimits safety_limits(const Settings& s) {
-  return {s.force_limit_N, s.slew_limit_N_s, s.energy_limit_J, s.power_limit_W};
-}
 
 }  // namespace
 
-Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings)
+Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety)
     : tool_(tool),
       tool_body_(scene.tools[static_cast<std::size_t>(tool)].body),
       radius_m_(scene.tools[static_cast<std::size_t>(tool)].radius_m),
@@ -51,7 +44,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings)
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
       surfaces_(radius_m_, surface_limits(settings)),
       transients_(transient_shape(settings)),
-      safety_(safety_limits(settings)),
+      safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
   for (const material_def_t& m : scene.materials) youngs_modulus_Pa_.push_back(m.youngs_modulus_Pa);
   forces_.reserve(kMaxHalfSpaces);
@@ -192,9 +185,9 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
 TickOutput& Renderer::step(const TickInput& in) {
   out_.reports.clear();
   take_device(in);
-  const sync::Nanoseconds gap = in.now - last_;
-  const double dt = sync::to_seconds(std::clamp(gap, sync::Nanoseconds(1000), kWatchdog));
-  if (gap > kWatchdog) safety_.release();
+  // What happened after the watchdog was without force.
+  const double dt = sync::to_seconds(std::clamp(in.now - last_, sync::Nanoseconds(1000), Device::kWatchdog));
+  safety_.begin_tick(in.now);
   last_ = in.now;
 
   take_touch(in, dt);

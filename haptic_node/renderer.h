@@ -51,8 +51,8 @@ struct TickOutput {
 
 class Renderer {
  public:
-  // The scene is read here and not kept. tool: index in its tools.
-  Renderer(const scene_t& scene, int tool, const Settings& settings);
+  // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
+  Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
 
   // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
   // ticks.
@@ -84,7 +84,7 @@ class Renderer {
   Proxy proxy_;
   LoopDelay loop_delay_;
   Transients transients_;
-  Safety safety_;
+  Safety& safety_;
   Fade fade_;
   ContactBook book_;
   OwedBegins owed_;

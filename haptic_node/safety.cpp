@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_node/devices/device.h"
+
 namespace tactus::haptic {
 namespace {
 
@@ -19,6 +21,15 @@ Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
 }
 
 }  // namespace
+
+SafetyLimits safety_limits(const Settings& s) {
+  return {s.force_limit_N, s.slew_limit_N_s, s.energy_limit_J, s.power_limit_W};
+}
+
+void Safety::begin_tick(sync::HostTime now) {
+  if (now - renewed_ > Device::kWatchdog) last_.setZero();
+  renewed_ = now;
+}
 
 Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
   const double work_J = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt ? last_.dot(moved_m) : 0;

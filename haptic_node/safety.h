@@ -1,10 +1,12 @@
 // What keeps the person safe whatever arrives: the force is limited in size, in change per time and in the energy
-// that it gives to the hand, and it fades when the touch model is lost.
+// that it gives to the hand, and it fades when the touch model is lost. Scenes come and go; the hand, its force
+// and what it has been given stay, so there is one Safety for the life of the process.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 
+#include "haptic_node/settings.gen.h"
 #include "sync/time.h"
 
 namespace tactus::haptic {
@@ -15,6 +17,7 @@ struct SafetyLimits {
   double energy_J = 0.49;
   double power_W = 1;
 };
+SafetyLimits safety_limits(const Settings& settings);
 
 // A passivity observer (Hannaford and Ryu 2002) with an allowance: a tank that what the hand takes in drains and
 // what it gives fills, besides a small power. As it empties the force goes to zero.
@@ -22,12 +25,15 @@ class Safety {
  public:
   explicit Safety(const SafetyLimits& limits) : limits_(limits), tank_J_(limits.energy_J) {}
 
+  // Those of another scene. What the hand has been given stays given, and the force goes on from where it is.
+  void set_limits(const SafetyLimits& limits) { limits_ = limits; }
+
+  // A tick begins. A force that was not renewed within the watchdog of the device has been let go.
+  void begin_tick(sync::HostTime now);
+
   // One tick: the force to command now, N. moved_m: how far the device moved since the last call, under the force
   // that was returned then. A wanted force that is not finite counts as none. Realtime-safe: yes.
   Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
-
-  // The device has let go of the force, because the loop stood still.
-  void release() { last_.setZero(); }
 
   // Energy given to the hand since the beginning, J.
   double energy_J() const { return energy_J_; }
@@ -39,6 +45,7 @@ class Safety {
   double tank_J_;
   double energy_J_ = 0;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+  sync::HostTime renewed_{};
 };
 
 // Factor on the force: 1 while touch models arrive, to 0 within `fade` from the moment at which the newest is

@@ -23,19 +23,32 @@ struct Degraded {
   std::optional<sync::HostTime> touch_arrival;
 };
 
+// The device of the tool that was chosen. given: from the command line; null: as the tool says, maybe from a
+// file, so not for a loop. Throws std::runtime_error with one sentence when there is no such device.
+std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given = nullptr);
+
 class Session {
  public:
-  // device: from the command line; nothing: as the tool says. choice.tool must be one of the scene's. Throws
-  // std::runtime_error with one sentence when there is no such device.
-  Session(const scene_t& scene, const Choice& choice, const std::optional<DeviceSpec>& device,
-          sync::OwnClock own);
+  // choice.tool must be one of the scene's. safety: of the process, outlives this; it goes on with the limits of
+  // this scene.
+  Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, sync::OwnClock own,
+          Safety& safety);
 
-  void push(const touch_model_t& model, sync::HostTime arrival) { touch_.push(model, arrival); }
-  void push(const contact_events_t& events, sync::HostTime arrival) { events_.push(events, arrival); }
+  void push(const touch_model_t& model, sync::HostTime arrival) {
+    if (!over_) touch_.push(model, arrival);
+  }
+  void push(const contact_events_t& events, sync::HostTime arrival) {
+    if (!over_) events_.push(events, arrival);
+  }
 
   // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
   // the next.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {});
+
+  // Its scene is over: from now on what comes is ignored, and the force goes to zero as fast as the limits
+  // allow.
+  void let_go() { over_ = true; }
+  bool over() const { return over_; }
 
   bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
   bool lost() const { return renderer_.lost(); }
@@ -45,6 +58,7 @@ class Session {
   Renderer renderer_;
   TouchInput touch_;
   sync::ContactStream events_;
+  bool over_ = false;
 };
 
 }  // namespace tactus::haptic

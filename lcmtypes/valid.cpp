@@ -12,6 +12,10 @@ namespace {
 constexpr double kMaxMagnitude = 1e9;
 // A minute: what is presented later than that is another event.
 constexpr long kMaxDelay_ns = 60'000'000'000;
+// 31 years since a machine or a world began: differences of such times do not overflow.
+constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
+// No simulation runs faster: at this rate a second of it lies between two pictures.
+constexpr double kMaxSimRate = 100;
 
 bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
 bool sane_not_negative(double x) { return sane(x) && x >= 0; }
@@ -31,6 +35,12 @@ bool unit(const V& v) {
   return std::isfinite(norm) && std::abs(norm - 1) < 1e-2;
 }
 
+// Of a node or a modality: it becomes a key, a file's column and a line on a terminal.
+bool name(const std::string& text) {
+  return !text.empty() && text.size() <= 64 &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
 bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
 bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
 bool between(long value, long low, long high) { return value >= low && value <= high; }
@@ -40,15 +50,19 @@ constexpr long kLatestClockTime = 1L << 60;
 bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
 
 bool sane(const header_t& h) {
-  return h.sim_time_ns >= -1 && h.publish_time_ns >= 0 && h.run_id > 0 && h.incarnation > 0 && h.seq >= 0;
+  return between(h.sim_time_ns, -1, kMaxTime_ns) && between(h.publish_time_ns, 0, kMaxTime_ns) && h.run_id > 0 &&
+         h.incarnation > 0 && h.seq >= 0;
 }
-bool sane(const sim_clock_t& c) { return c.sim_ns >= 0 && c.host_ns >= 0 && sane_not_negative(c.rate); }
+bool sane(const sim_clock_t& c) {
+  return between(c.sim_ns, 0, kMaxTime_ns) && between(c.host_ns, 0, kMaxTime_ns) && sane_not_negative(c.rate) &&
+         c.rate <= kMaxSimRate;
+}
 
 bool sane(const contact_event_t& e) {
-  return between(e.kind, contact_event_t::BEGIN, contact_event_t::END) && e.time_ns >= 0 && e.body_a >= 0 &&
-         e.body_b >= 0 && e.material_a >= -1 && e.material_b >= -1 && e.tool >= -1 && sane(e.point_m) &&
-         unit(e.normal) && sane_not_negative(e.approach_speed_m_s) && finite_positive(e.effective_mass_kg) &&
-         sane_not_negative(e.curvature_1_m);
+  return between(e.kind, contact_event_t::BEGIN, contact_event_t::END) && between(e.time_ns, 0, kMaxTime_ns) &&
+         e.body_a >= 0 && e.body_b >= 0 && e.material_a >= -1 && e.material_b >= -1 && e.tool >= -1 &&
+         sane(e.point_m) && unit(e.normal) && sane_not_negative(e.approach_speed_m_s) &&
+         finite_positive(e.effective_mass_kg) && sane_not_negative(e.curvature_1_m);
 }
 
 bool sane(const contact_t& c) {
@@ -80,7 +94,7 @@ bool sane(const tool_constraint_t& c) {
   return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
 }
 bool sane(const playout_entry_t& e) {
-  return !e.modality.empty() && between(e.delay_ns, -kMaxDelay_ns, kMaxDelay_ns);
+  return name(e.modality) && between(e.delay_ns, -kMaxDelay_ns, kMaxDelay_ns);
 }
 bool sane(const decision_t& d) {
   return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.why, 0, 5) && d.held_ns >= 0 &&
@@ -162,19 +176,19 @@ bool valid(const tool_state_t& m) {
          sane(m.proxy_velocity_m_s) && sane(m.force_N) && sane(m.torque_N_m) && sane(m.transient_N) &&
          sane(m.energy_J) && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
 }
-bool valid(const presented_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.reports); }
+bool valid(const presented_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
-  return sane(m.header) && !m.node.empty() && between(m.owes, 0, 7) && m.tool >= -1 &&
-         between(m.state, node_health_t::WAITING, node_health_t::READY) && sane_not_negative(m.nominal_rate_Hz) &&
-         sane_not_negative(m.rate_Hz) && m.ticks >= 0 && m.missed_ticks >= 0 && m.stale_ticks >= 0 &&
-         sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 && sane_not_negative(m.realtime_factor) &&
-         m.foreign_control >= 0 && all_sane(m.inputs);
+  return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.owes, 0, 7) &&
+         m.tool >= -1 && between(m.state, node_health_t::WAITING, node_health_t::READY) &&
+         sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
+         m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&
+         sane_not_negative(m.realtime_factor) && m.foreign_control >= 0 && all_sane(m.inputs);
 }
 bool valid(const degradation_t& m) {
   return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
          page_of(m.page, m.pages) && m.text.size() <= 1200;
 }
-bool valid(const degraded_t& m) { return sane(m.header) && !m.modality.empty() && all_sane(m.decisions); }
+bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
   return sane(m.header) && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
          sane_not_negative(m.lockstep_Hz) && all_sane(m.entries) &&

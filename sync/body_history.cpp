@@ -38,19 +38,43 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
     case Follow::kIgnore: return;
     case Follow::kRestart:
       bodies_.clear();
+      samples_kept_ = 0;
       newest_.reset();
       break;
     case Follow::kSame: break;
   }
-  const SimTime time = sim_time(page.header.sim_time_ns);
+  const SimTime time = sim_time(page.header.sim_time_ns), latest = follower_.latest_credible();
+  if (newest_ && *newest_ > latest) forget_after(latest);
+  if (time > latest) {
+    ++refused_;
+    return;
+  }
   if (!newest_ || time > *newest_) newest_ = time;
   for (const body_state_t& b : page.bodies) {
+    if (b.body >= kMaxBodies) {
+      ++refused_;
+      continue;
+    }
     auto& samples = bodies_[b.body];
     // Pages may overtake each other: keep the samples in order of time, one per instant.
-    auto at = std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= time; }).base();
+    auto at =
+        std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= time; }).base();
     if (at != samples.begin() && std::prev(at)->time == time) continue;
     samples.insert(at, {time, from_message(b)});
-    if (samples.size() > kSamplesPerBody) samples.pop_front();
+    ++samples_kept_;
+    if (samples.size() <= 2) continue;
+    if (samples.size() <= kSamplesPerBody && samples_kept_ <= kMaxSamples) continue;
+    samples.pop_front();
+    --samples_kept_;
+  }
+}
+
+// What was credible once need not be any more: its message may have been the first of all, and false.
+void BodyHistory::forget_after(SimTime latest) {
+  newest_.reset();
+  for (auto& [body, samples] : bodies_) {
+    for (; !samples.empty() && samples.back().time > latest; --samples_kept_) samples.pop_back();
+    if (!samples.empty() && (!newest_ || samples.back().time > *newest_)) newest_ = samples.back().time;
   }
 }
 

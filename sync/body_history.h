@@ -1,8 +1,9 @@
-// Where the bodies are at an instant, from WORLD_STATE: interpolated between snapshots, extrapolated by a bounded time.
-// Pure.
+// Where the bodies are at an instant, from WORLD_STATE: interpolated between snapshots, extrapolated by a bounded
+// time. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
@@ -23,11 +24,15 @@ struct BodyPose {
 
 class BodyHistory {
  public:
-  // Past the newest sample a body moves on with its velocity for so long, then it is held, then stale: three snapshots
-  // at 60 Hz may be missed before it stops.
+  // Past the newest sample a body moves on with its velocity for so long, then it is held, then stale: three
+  // snapshots at 60 Hz may be missed before it stops.
   static constexpr Nanoseconds kExtrapolateAtMost{50'000'000};
   static constexpr Nanoseconds kStaleAfter{200'000'000};
   static constexpr std::size_t kSamplesPerBody = 64;
+  // More bodies cannot be told of once a second: 2,000 pages of 18.
+  static constexpr int kMaxBodies = 36'000;
+  // Of all bodies together, some 64 MB: when there are more, each keeps fewer.
+  static constexpr std::size_t kMaxSamples = 1 << 19;
 
   explicit BodyHistory(OwnClock own) : follower_(own) {}
 
@@ -37,15 +42,21 @@ class BodyHistory {
   // How the newest snapshot as a whole relates to t.
   How how(SimTime t) const;
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+  // Pages more than 1 s ahead of their simulation's own time, and bodies beyond kMaxBodies.
+  std::int64_t refused() const { return refused_; }
 
  private:
+  void forget_after(SimTime latest);
+
   struct Stamped {
     SimTime time;
     BodyPose pose;
   };
   SimFollower follower_;
   std::map<int, std::deque<Stamped>> bodies_;
+  std::size_t samples_kept_ = 0;
   std::optional<SimTime> newest_;
+  std::int64_t refused_ = 0;
 };
 
 }  // namespace tactus::sync

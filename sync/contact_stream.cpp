@@ -1,6 +1,7 @@
 #include "sync/contact_stream.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tactus::sync {
 namespace {
@@ -38,13 +39,33 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
     lives_order_.clear();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
+    for (auto& kept : contacts_kept_) kept = 0;
   }
+  forget_after(follower_.latest_credible());
   return true;
+}
+
+// What was credible once need not be any more: its message may have been the first of all, and false.
+void ContactStream::forget_after(SimTime latest) {
+  pending_.erase(pending_.upper_bound(latest), pending_.end());
+  for (std::size_t group : {0, 1}) {
+    partial_[group].erase(partial_[group].upper_bound(latest), partial_[group].end());
+    auto& snapshots = snapshots_[group];
+    while (!snapshots.empty() && snapshots.back().time > latest) {
+      contacts_kept_[group] -= snapshots.back().contacts.size();
+      snapshots.pop_back();
+    }
+  }
 }
 
 void ContactStream::push(const contact_events_t& m, HostTime arrival) {
   if (!accept(m.header, m.clock, arrival)) return;
+  const SimTime latest = follower_.latest_credible();
   for (const contact_event_t& event : m.events) {
+    if (sim_time(event.time_ns) > latest) {
+      ++refused_;
+      continue;
+    }
     if (!seen_.insert(event.event_id).second) {
       ++duplicates_;
       continue;
@@ -56,7 +77,10 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
     }
     note_event(event);
     pending_.emplace(sim_time(event.time_ns), event);
-    if (pending_.size() > kMaxPendingEvents) pending_.erase(pending_.begin());
+    if (pending_.size() > kMaxPendingEvents) {
+      pending_.erase(std::prev(pending_.end()));
+      ++overflow_;
+    }
   }
 }
 
@@ -77,8 +101,14 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (!accept(m.header, m.clock, arrival)) return;
   const std::size_t group = m.group == contact_frame_t::TOOL ? 0 : 1;
   const SimTime time = sim_time(m.header.sim_time_ns);
-  auto& snapshots = snapshots_[group];
-  if (!snapshots.empty() && snapshots.back().time >= time) return;  // overtaken or repeated
+  if (time > follower_.latest_credible() || m.pages > kMaxPages) {
+    ++refused_;
+    return;
+  }
+  const auto& snapshots = snapshots_[group];
+  // Repeated, or older than all that is kept.
+  if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
+  if (std::any_of(snapshots.rbegin(), snapshots.rend(), [&](const Snapshot& s) { return s.time == time; })) return;
   Pages& pages = partial_[group][time];
   pages.pages = m.pages;
   pages.arrived[m.page] = m.contacts;
@@ -90,8 +120,19 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   for (auto& [page, contacts] : pages.arrived)
     snapshot.contacts.insert(snapshot.contacts.end(), contacts.begin(), contacts.end());
   partial_[group].erase(partial_[group].begin(), partial_[group].upper_bound(time));
-  snapshots.push_back(std::move(snapshot));
-  if (snapshots.size() > kSnapshots) snapshots.pop_front();
+  insert(group, std::move(snapshot));
+}
+
+// One that was overtaken finds its place: the newest alone never decides that those after it are of no use.
+void ContactStream::insert(std::size_t group, Snapshot snapshot) {
+  auto& snapshots = snapshots_[group];
+  contacts_kept_[group] += snapshot.contacts.size();
+  const auto newer = [&](const Snapshot& s) { return s.time > snapshot.time; };
+  snapshots.insert(std::find_if_not(snapshots.rbegin(), snapshots.rend(), newer).base(), std::move(snapshot));
+  while (snapshots.size() > kSnapshots || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
+    contacts_kept_[group] -= snapshots.front().contacts.size();
+    snapshots.pop_front();
+  }
 }
 
 std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
@@ -112,13 +153,15 @@ bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
 How ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
   if (group.empty() || t < group.front().time) return How::kNone;
   if (t > group.back().time) return t - group.back().time <= kStaleAfter ? How::kHeld : How::kStale;
-  const auto it = std::lower_bound(group.begin(), group.end(), t, [](const Snapshot& s, SimTime x) { return s.time < x; });
+  const auto it =
+      std::lower_bound(group.begin(), group.end(), t, [](const Snapshot& s, SimTime x) { return s.time < x; });
   return it->time == t ? How::kExact : How::kInterpolated;
 }
 
 void ContactStream::append_state(const std::deque<Snapshot>& group, SimTime t, Contacts& out) const {
   if (how(group, t) == How::kNone) return;
-  const auto after = std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
+  const auto after =
+      std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
   const Snapshot& before = *std::prev(after);
   const auto find = [](const Contacts& list, std::int64_t id) {
     return std::find_if(list.begin(), list.end(), [&](const contact_t& c) { return c.contact_id == id; });
@@ -138,7 +181,8 @@ void ContactStream::append_state(const std::deque<Snapshot>& group, SimTime t, C
   for (const contact_t& c : after->contacts) {
     const auto life = lives_.find(c.contact_id);
     const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
-    if (begun && alive(c.contact_id, t) && find(before.contacts, c.contact_id) == before.contacts.end()) out.push_back(c);
+    if (begun && alive(c.contact_id, t) && find(before.contacts, c.contact_id) == before.contacts.end())
+      out.push_back(c);
   }
 }
 

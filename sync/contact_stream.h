@@ -1,5 +1,5 @@
-// Turns the contact channels into what a sense needs for its tick: the events due, the state at an instant, and the
-// integrals over the tick. Pure: time and messages are arguments.
+// Turns the contact channels into what a sense needs for its tick: the events due, the state at an instant, and
+// the integrals over the tick. Pure: time and messages are arguments.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +35,10 @@ class ContactStream {
   // Past the newest snapshot the contact state is held, since its begin and end come as events; then it is stale.
   static constexpr Nanoseconds kStaleAfter{50'000'000};
   static constexpr std::size_t kMaxPendingEvents = 4096;
+  // 2,000 contacts, three a page, are 700 pages.
+  static constexpr int kMaxPages = 1024;
+  // Of all snapshots of a group together: half a second of 2,000 contacts at 60 Hz.
+  static constexpr std::size_t kMaxContacts = 1 << 16;
 
   // own: messages of another clock are read through its map; those of another run by arrival.
   explicit ContactStream(OwnClock own) : follower_(own) {}
@@ -45,22 +49,28 @@ class ContactStream {
   // Map between simulated time and our host clock, from the newest message. Nothing before the first.
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
 
-  // Events whose time is before `until` and that were not taken before, in order of time; each exactly once, however
-  // often it was repeated or replayed within an incarnation. An event that arrives late is returned at the next call.
+  // Events whose time is before `until` and that were not taken before, in order of time; each exactly once,
+  // however often it was repeated or replayed within an incarnation. An event that arrives late is returned at the
+  // next call.
   std::vector<contact_event_t> take_events(SimTime until);
 
   // Contacts alive at `t`, of both groups: the newest complete snapshot at or before t, its forces and depths
-  // interpolated towards the next. `how` is the worse of the two groups. A contact whose begin lies after t or whose end
-  // lies at or before t is not in it, whatever the snapshots say.
+  // interpolated towards the next. `how` is the worse of the two groups. A contact whose begin lies after t or
+  // whose end lies at or before t is not in it, whatever the snapshots say.
   Sample<Contacts> state_at(SimTime t) const;
 
-  // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact shorter
-  // than the interval between snapshots counts. tool_body: the tool's body id, to tell which side is the other body.
+  // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact
+  // shorter than the interval between snapshots counts. tool_body: the tool's body id, to tell which side is the
+  // other body.
   ContactIntegral integral(SimTime t0, SimTime t1, int tool, int tool_body = -1) const;
 
   // How many times a new incarnation or epoch of the simulation ended all contacts.
   std::int64_t restarts() const { return restarts_; }
   std::int64_t duplicates() const { return duplicates_; }
+  // Events and pages that no simulation can have meant: more than 1 s ahead of its own time, or of too many pages.
+  std::int64_t refused() const { return refused_; }
+  // Events that found no room: of all that were pending, the latest.
+  std::int64_t overflow() const { return overflow_; }
 
  private:
   struct Snapshot {
@@ -77,6 +87,8 @@ class ContactStream {
   };
 
   bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
+  void forget_after(SimTime latest);
+  void insert(std::size_t group, Snapshot snapshot);
   void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
   How how(const std::deque<Snapshot>& group, SimTime t) const;
@@ -85,6 +97,8 @@ class ContactStream {
   SimFollower follower_;
   std::int64_t restarts_ = 0;
   std::int64_t duplicates_ = 0;
+  std::int64_t refused_ = 0;
+  std::int64_t overflow_ = 0;
 
   std::multimap<SimTime, contact_event_t> pending_;
   std::set<std::int64_t> seen_;
@@ -93,7 +107,8 @@ class ContactStream {
   std::deque<std::int64_t> lives_order_;
 
   std::map<SimTime, Pages> partial_[2];  // per group
-  std::deque<Snapshot> snapshots_[2];
+  std::deque<Snapshot> snapshots_[2];    // in order of time
+  std::size_t contacts_kept_[2] = {0, 0};
 };
 
 }  // namespace tactus::sync

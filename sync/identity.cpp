@@ -9,11 +9,14 @@
 
 namespace tactus::sync {
 
-std::int64_t fnv1a_64(const void* data, std::size_t size) {
-  std::uint64_t h = 14695981039346656037ull;
+std::uint64_t fnv1a_64(std::uint64_t h, const void* data, std::size_t size) {
   const auto* bytes = static_cast<const unsigned char*>(data);
   for (std::size_t i = 0; i < size; ++i) h = (h ^ bytes[i]) * 1099511628211ull;
-  return static_cast<std::int64_t>(h);
+  return h;
+}
+
+std::int64_t fnv1a_64(const void* data, std::size_t size) {
+  return static_cast<std::int64_t>(fnv1a_64(kFnv1aBegin, data, size));
 }
 
 std::int32_t clock_id(std::string_view boot_id, std::uint64_t time_namespace, std::string_view monotonic_offset) {

@@ -14,6 +14,9 @@ constexpr std::uint32_t fnv1a_32(std::string_view text) {
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
   return h;
 }
+inline constexpr std::uint64_t kFnv1aBegin = 14695981039346656037ull;
+// Piece by piece: begin with kFnv1aBegin.
+std::uint64_t fnv1a_64(std::uint64_t hash, const void* data, std::size_t size);
 std::int64_t fnv1a_64(const void* data, std::size_t size);
 
 // Names the CLOCK_MONOTONIC of this process: equal exactly where two processes read the same clock. The parts are the

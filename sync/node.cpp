@@ -48,7 +48,11 @@ NodeOptions with_profile(NodeOptions o) {
 }
 
 constexpr Nanoseconds kReportPeriod{100'000'000};
+// A loop that was demoted gets its priority back after so long below 80 %.
+constexpr Nanoseconds kForgiven{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
+// A note may quote what came over the bus; a report with it still fits a datagram.
+constexpr std::size_t kLongestNote = 140;
 
 }  // namespace
 
@@ -60,7 +64,9 @@ void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
       ->envname("TACTUS_PORT")
       ->check(CLI::Range(1, 65534))
       ->capture_default_str();
-  app.add_option("--ttl", bus.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255))->capture_default_str();
+  app.add_option("--ttl", bus.ttl, "0: this machine only, 1: this network")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str();
   app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
       ->envname("TACTUS_RUN_ID")
       ->check(CLI::PositiveNumber)
@@ -69,7 +75,9 @@ void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
   app.add_option("--realtime", realtime, "real-time priority: require, try or off")
       ->check(CLI::IsMember({"require", "try", "off"}))
       ->capture_default_str();
-  app.add_option("--out", out, "folder for what this node writes")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("--out", out, "folder for what this node writes")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
   app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.node == "sync_node")
@@ -132,9 +140,16 @@ void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_H
 void Node::end_tick(HostTime now) {
   tick_.add(now - tick_begin_);
   if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
-  if (is_realtime() && guard_.tick(tick_begin_, now)) {
+  if (!demoted_ && !is_realtime()) return;
+  const bool too_busy = guard_.tick(tick_begin_, now);
+  if (too_busy && !demoted_) {
     leave_realtime();
+    demoted_ = true;
     scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
+    std::cerr << options_.name << ": " << scheduling_ << std::endl;
+  } else if (demoted_ && guard_.calm() >= kForgiven) {
+    demoted_ = false;
+    scheduling_ = set_realtime(Realtime::kTry, declaration_.fifo_priority) + " again, after a demotion";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
   }
 }
@@ -168,8 +183,10 @@ node_health_t Node::health_message(HostTime now) {
   m.modality = declaration_.modality;
   m.owes = declaration_.owes;
   m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
+  if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
+  std::int64_t forgotten = 0;
   for (const auto& inbox : bus_.inboxes()) {
     const InputCount& c = inbox->count();
     input_health_t in{};
@@ -181,8 +198,10 @@ node_health_t Node::health_message(HostTime now) {
     in.gaps = c.sequence.gaps() + c.dropped;
     in.bad = static_cast<std::int32_t>(std::min<std::int64_t>(c.bad, INT32_MAX));
     m.inputs.push_back(in);
+    forgotten += c.sequence.forgotten();
   }
   m.foreign_control = bus_.clocks().maps->foreign();
+  if (forgotten > 0) m.note += "; " + std::to_string(forgotten) + " senders too many";
   m.input_count = static_cast<std::int32_t>(m.inputs.size());
   return m;
 }

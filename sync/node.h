@@ -1,5 +1,5 @@
-// What every process of the cluster has: options, identity, priority, the bus, a paced loop, health. A node's main is
-// then the same few lines:
+// What every process of the cluster has: options, identity, priority, the bus, a paced loop, health. A node's main
+// is then the same few lines:
 //
 //   sync::Node node(declaration, options);
 //   while (node.running()) {
@@ -97,6 +97,7 @@ class Node {
   Declaration declaration_;
   NodeOptions options_;
   std::string scheduling_;
+  bool demoted_ = false;
   Bus bus_;
   Loop loop_;
   BusyGuard guard_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <iterator>
 
+#include "lcmtypes/channels.h"
+
 namespace tactus::sync {
 namespace {
 
@@ -29,6 +31,11 @@ bool is_onset(std::int8_t part, std::int8_t kind) {
          part == (kind == contact_event_t::HIT ? presentation_t::TRANSIENT : presentation_t::CONSTRAINT);
 }
 
+template <class Map>
+bool has_room(const Map& map, const typename Map::key_type& key, std::size_t most) {
+  return map.size() < most || map.contains(key);
+}
+
 }  // namespace
 
 bool named_before(const std::string& a, const std::string& b) {
@@ -44,6 +51,8 @@ PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, Ho
 }
 
 SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) {
+  // The one that is forgotten is learnt anew when its sender speaks again.
+  if (!has_room(clocks_, h.source, kMaxSenses)) clocks_.erase(clocks_.begin());
   SenderClock& clock = clocks_.try_emplace(h.source, own_).first->second;
   clock.observe(h, arrival);
   return clock;
@@ -75,15 +84,19 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
     ++foreign_;
     return;
   }
+  if (!has_room(renderers_, m.header.source, kMaxSenses) ||
+      (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxSenses))) {
+    ++overflow_;
+    return;
+  }
   Renderer& r = renderers_[m.header.source];
   r.modality = m.modality;
   r.owes = m.owes;
   r.tool = m.tool;
   const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
   const bool returned = r.life.observe(m.header.incarnation, m.state, sent);
-  std::erase_if(last_debts_, [&](const LastDebt& d) {
-    return d.source == m.header.source || d.simulation == m.header.source;
-  });
+  std::erase_if(last_debts_,
+                [&](const LastDebt& d) { return d.source == m.header.source || d.simulation == m.header.source; });
   if (r.modality.empty()) return;
   DebtTally& tally = tallies_[r.modality];
   if (returned) {
@@ -206,10 +219,14 @@ void PresentationMatcher::count_asynchrony(const Event& e) {
     if (first == nullptr || r.presented_ns < first->presented_ns) first = &r;
   }
   for (const auto& [a, report_a] : onset)
-    for (const auto& [b, report_b] : onset)
-      if (named_before(a, b))
+    for (const auto& [b, report_b] : onset) {
+      if (!named_before(a, b)) continue;
+      if (has_room(pairs_, {a, b}, kMaxPairs))
         pairs_[{a, b}].add(Nanoseconds(report_b->presented_ns - report_a->presented_ns),
                            report_a->uncertainty + report_b->uncertainty);
+      else
+        ++overflow_;
+    }
 }
 
 }  // namespace tactus::sync

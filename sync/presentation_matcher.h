@@ -1,12 +1,14 @@
-// Who owed which contact event a presentation, and what became of it. The heart of sync_node and of the summary. Pure.
+// Who owed which contact event a presentation, and what became of it. The heart of sync_node and of the summary.
+// Pure.
 //
-// A node declares in NODE_HEALTH what it owes. An event is settled 1 s after its time (half a second after it was first
-// heard of, if that is later): nothing waits for a dead sense. Every debt has exactly one outcome:
+// A node declares in NODE_HEALTH what it owes. An event is settled 1 s after its time (half a second after it was
+// first heard of, if that is later): nothing waits for a dead sense. Every debt has exactly one outcome:
 //   presented           the node reported so, also late or inaudible
 //   dropped_by_profile  the node reported so: its degradation asked for it
 //   dropped_late        the node reported so
 //   stalled             no report, and its health had a gap of more than 0.3 s within 0.1 s after the event
-//   dead                no report, and the node was gone, replaced, not running again, or without output within 0.1 s
+//   dead                no report, and the node was gone, replaced, not running again, or without output within
+//   0.1 s
 //                       after the event; or the simulation died before it could repeat the event for its 50 ms
 //   lost                no report from a node that was there
 // A node that never ran owes nothing. A report of what is not owed is no outcome, but counts for the asynchrony.
@@ -41,23 +43,28 @@ struct DebtTally {
   std::int64_t dropped_late = 0;
 };
 
-// True when sense a is named before sense b: the known ones from the quickest to the slowest, then all others by name.
+// True when sense a is named before sense b: the known ones from the quickest to the slowest, then all others by
+// name.
 bool named_before(const std::string& a, const std::string& b);
 
 class PresentationMatcher {
  public:
   static constexpr Nanoseconds kSettleAfter{1'000'000'000};
-  // A node that ends or stalls within this of an event may have had no time to report it: the output is at most some
-  // 50 ms behind the event, and health comes every 100 ms.
+  // A node that ends or stalls within this of an event may have had no time to report it: the output is at most
+  // some 50 ms behind the event, and health comes every 100 ms.
   static constexpr Nanoseconds kReportsWithin{100'000'000};
   // Events are repeated for so long.
   static constexpr Nanoseconds kRepeated{50'000'000};
-  // The processes of a run end one after the other: an event so short before the simulation's last health belongs to the
-  // end.
+  // The processes of a run end one after the other: an event so short before the simulation's last health belongs
+  // to the end.
   static constexpr Nanoseconds kEndsWithin{300'000'000};
   // Repetitions and late reports are recognised for so long after an event was settled.
   static constexpr Nanoseconds kRemember{5'000'000'000};
   static constexpr std::size_t kMaxEvents = 1 << 16;
+  // Nodes, senses, and simulations of other runs.
+  static constexpr std::size_t kMaxSenses = 64;
+  // Each keeps a histogram of 160 kB.
+  static constexpr std::size_t kMaxPairs = 256;
 
   // All times are put on this clock. Health and reports of another run are ignored and counted. Run 0: run and clock of the
   // first health that arrives.
@@ -68,8 +75,8 @@ class PresentationMatcher {
   void observe(const presented_t&, HostTime arrival);
   // Settles what is due.
   void advance(HostTime now);
-  // Nothing more will come: settles all that can be decided, and drops the debts that cannot: of a node that was not
-  // heard of again until now.
+  // Nothing more will come: settles all that can be decided, and drops the debts that cannot: of a node that was
+  // not heard of again until now.
   void finish(HostTime now);
 
   std::int64_t begins() const { return begins_; }
@@ -86,7 +93,7 @@ class PresentationMatcher {
   std::int64_t late_reports() const { return late_reports_; }
   std::int64_t unknown_reports() const { return unknown_reports_; }
   std::int64_t foreign() const { return foreign_; }
-  // Events that found no room.
+  // Events, nodes, senses, pairs and simulations of other runs that found no room.
   std::int64_t overflow() const { return overflow_; }
 
  private:
@@ -97,7 +104,8 @@ class PresentationMatcher {
     NodeLife life;
     std::int64_t dead_unless_it_returns = 0;
   };
-  // A debt called dead because both the node and the simulation fell silent: if neither speaks again, the run had ended.
+  // A debt called dead because both the node and the simulation fell silent: if neither speaks again, the run had
+  // ended.
   struct LastDebt {
     std::int32_t source, simulation;
     std::string modality;

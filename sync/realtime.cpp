@@ -34,8 +34,8 @@ std::string set_realtime(Realtime choice, int priority) {
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
     const std::string why = strerror(errno);
     if (choice == Realtime::kRequire)
-      throw std::runtime_error("SCHED_FIFO " + std::to_string(priority) + " is refused (" + why + "): " +
-                               remedy(priority));
+      throw std::runtime_error("SCHED_FIFO " + std::to_string(priority) + " is refused (" + why +
+                               "): " + remedy(priority));
     return "normal scheduling (SCHED_FIFO refused: " + why + ")";
   }
   // A limited mlockall(MCL_FUTURE) makes later allocations fail, so it is only tried where it cannot.
@@ -56,6 +56,7 @@ bool BusyGuard::tick(HostTime begin, HostTime end) {
   const Nanoseconds span = end - window_begin_;
   if (span < kWindow) return false;
   const bool too_busy = to_seconds(busy_) > kMostBusy * to_seconds(span);
+  calm_ = too_busy ? Nanoseconds(0) : calm_ + span;
   window_begin_ = end;
   busy_ = Nanoseconds(0);
   return too_busy;

@@ -16,8 +16,9 @@ void Recorder::push(const TapBatch& batch) {
     const TapBatch::Message m = batch[i];
     if (const auto header = peek_header(m.data.data(), m.data.size())) {
       auto it = sequences_.find(m.channel);
-      if (it == sequences_.end()) it = sequences_.emplace(m.channel, SequenceTracker()).first;
-      it->second.observe(*header);
+      if (it == sequences_.end() && sequences_.size() < kMaxChannels)
+        it = sequences_.emplace(m.channel, SequenceTracker()).first;
+      if (it != sequences_.end()) it->second.observe(*header);
     }
     if (begun_) {
       write(m.arrival, m.channel, m.data);
@@ -57,12 +58,14 @@ std::int64_t Recorder::gaps() const {
   return sum;
 }
 
-std::string Recorder::note(std::int64_t tap_overflow) const {
+std::string Recorder::note(std::int64_t tap_overflow, std::int64_t tap_oversized) const {
   std::string text;
   if (failing()) text = "the disk refuses the log (" + writer_.trouble() + "); ";
   text += begun_ ? std::to_string(writer_.events()) + " events" : "waits for the scene";
   if (writer_.lost() > 0) text += ", " + std::to_string(writer_.lost()) + " lost for want of disk";
   if (tap_overflow > 0) text += ", " + std::to_string(tap_overflow) + " lost for want of time";
+  if (tap_oversized > 0)
+    text += ", " + std::to_string(tap_oversized) + " left out, larger than any message of ours";
   if (gaps() == 0) return text;
   text += ", gaps:";
   for (const auto& [channel, sequence] : sequences_)

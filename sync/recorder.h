@@ -1,5 +1,5 @@
-// What the recorder does with what it hears: holds it back until the scene is there, then writes it, and counts. Pure but
-// for the sink that it is given.
+// What the recorder does with what it hears: holds it back until the scene is there, then writes it, and counts.
+// Pure but for the sink that it is given.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +21,8 @@ class Recorder {
   // Without a scene after so long, or with so much waiting for it, the log begins without.
   static constexpr Nanoseconds kWaitForScene{5'000'000'000};
   static constexpr std::size_t kMaxHeldBytes = 32 << 20;
+  // Gaps are counted in so many channels; what is on others is written all the same.
+  static constexpr std::size_t kMaxChannels = 256;
   // A disk that refused is tried again after so long.
   static constexpr Nanoseconds kRetryAfter{1'000'000'000};
 
@@ -41,7 +43,7 @@ class Recorder {
   // Messages missing in the numbering of their sender, over all channels.
   std::int64_t gaps() const;
   // One line: what was written, what is missing and where.
-  std::string note(std::int64_t tap_overflow) const;
+  std::string note(std::int64_t tap_overflow, std::int64_t tap_oversized) const;
 
  private:
   struct Held {

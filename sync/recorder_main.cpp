@@ -3,8 +3,8 @@
 //   in   everything, on both ports; the scene and its assets for the head of the log
 //   out  a file; its health says what was lost
 //
-// When nothing arrives it writes nothing; when the scene does not come in 5 s the log begins without it; when the disk is
-// full it says so, keeps what it can, and goes on.
+// When nothing arrives it writes nothing; when the scene does not come in 5 s the log begins without it; when the
+// disk is full it says so, keeps what it can, and goes on.
 #include <time.h>
 
 #include <CLI/CLI.hpp>
@@ -69,13 +69,14 @@ int main(int argc, char** argv) try {
     if (scene.poll(now)) recorder.begin(assets_of(scene), now);
     recorder.poll(now);
     const bool trouble = recorder.failing() || recorder.lost() > 0 || tap.overflow() > 0;
-    node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING, recorder.note(tap.overflow()));
+    node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
+                   recorder.note(tap.overflow(), tap.oversized()));
   }
   tap.stop();
   tap.take(batch);
   recorder.push(batch);
   recorder.finish(sync::host_now());
-  std::cerr << "recorder: " << path << ": " << recorder.note(tap.overflow()) << std::endl;
+  std::cerr << "recorder: " << path << ": " << recorder.note(tap.overflow(), tap.oversized()) << std::endl;
   if (recorder.failing()) throw std::runtime_error(path + " is incomplete; make room on its disk");
   return 0;
 } catch (const std::exception& e) {

@@ -10,7 +10,8 @@
 namespace tactus::sync {
 namespace {
 
-// Both are needed (measured: either alone loses 20,000 messages in a burst). The buffer is capped by net.core.rmem_max.
+// Both are needed (measured: either alone loses 20,000 messages in a burst). The buffer is capped by
+// net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 << 20;
 constexpr int kLcmQueue = 100'000;
 // How soon the thread notices that it shall end.
@@ -25,14 +26,15 @@ std::string url(const BusOptions& o, int port) {
 
 }  // namespace
 
-bool TapBatch::add(HostTime arrival, std::string_view channel, std::span<const std::uint8_t> data,
-                   std::size_t max_bytes) {
-  if (bytes_.size() + channel.size() + data.size() > max_bytes) return false;
+Tapped TapBatch::add(HostTime arrival, std::string_view channel, std::span<const std::uint8_t> data,
+                     std::size_t max_bytes) {
+  if (data.size() > channels::kMaxMessageBytes) return Tapped::kOversized;
+  if (bytes_.size() + channel.size() + data.size() > max_bytes) return Tapped::kNoRoom;
   entries_.push_back({arrival, static_cast<std::uint32_t>(channel.size()), static_cast<std::uint32_t>(data.size()),
                       bytes_.size()});
   bytes_.insert(bytes_.end(), channel.begin(), channel.end());
   bytes_.insert(bytes_.end(), data.begin(), data.end());
-  return true;
+  return Tapped::kKept;
 }
 
 void TapBatch::clear() {
@@ -43,7 +45,8 @@ void TapBatch::clear() {
 TapBatch::Message TapBatch::operator[](std::size_t i) const {
   const Entry& e = entries_[i];
   const std::uint8_t* start = bytes_.data() + e.at;
-  return {e.arrival, {reinterpret_cast<const char*>(start), e.channel_bytes}, {start + e.channel_bytes, e.data_bytes}};
+  return {
+      e.arrival, {reinterpret_cast<const char*>(start), e.channel_bytes}, {start + e.channel_bytes, e.data_bytes}};
 }
 
 struct RecorderTap::Connections {
@@ -63,7 +66,9 @@ struct RecorderTap::Connections {
   void handle(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     const std::span data(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
     const std::lock_guard lock(tap.mutex_);
-    if (!tap.arrived_.add(host_now(), channel, data, kMaxBatchBytes)) ++tap.overflow_;
+    const Tapped how = tap.arrived_.add(host_now(), channel, data, kMaxBatchBytes);
+    if (how == Tapped::kNoRoom) ++tap.overflow_;
+    if (how == Tapped::kOversized) ++tap.oversized_;
   }
 };
 
@@ -79,7 +84,8 @@ void RecorderTap::stop() {
 }
 
 void RecorderTap::listen() {
-  pollfd fds[2] = {{connections_->ports[0].getFileno(), POLLIN, 0}, {connections_->ports[1].getFileno(), POLLIN, 0}};
+  pollfd fds[2] = {{connections_->ports[0].getFileno(), POLLIN, 0},
+                   {connections_->ports[1].getFileno(), POLLIN, 0}};
   while (true) {
     const bool last = stop_;
     poll(fds, 2, last ? 0 : kPollMs);

@@ -1,5 +1,5 @@
-// Hears everything that crosses both ports of the bus, as bytes, and stamps it on arrival in a thread of its own, so that
-// neither decoding nor a slow disk makes a stamp late or a queue full.
+// Hears everything that crosses both ports of the bus, as bytes, and stamps it on arrival in a thread of its own,
+// so that neither decoding nor a slow disk makes a stamp late or a queue full.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,12 @@
 
 namespace tactus::sync {
 
+enum class Tapped {
+  kKept,
+  kNoRoom,
+  kOversized,  // larger than any message of the bus: of nobody that we know, and it would fill the disk
+};
+
 // What arrived since the last look, in order. Keeps its memory when cleared.
 class TapBatch {
  public:
@@ -25,7 +31,8 @@ class TapBatch {
     std::span<const std::uint8_t> data;
   };
 
-  bool add(HostTime arrival, std::string_view channel, std::span<const std::uint8_t> data, std::size_t max_bytes);
+  Tapped add(HostTime arrival, std::string_view channel, std::span<const std::uint8_t> data,
+             std::size_t max_bytes);
   void clear();
   std::size_t size() const { return entries_.size(); }
   Message operator[](std::size_t i) const;
@@ -58,6 +65,8 @@ class RecorderTap {
   void stop();
   // Messages that found no room because nobody took them.
   std::int64_t overflow() const { return overflow_; }
+  // Messages that are left out because they are larger than any of the bus.
+  std::int64_t oversized() const { return oversized_; }
 
  private:
   struct Connections;
@@ -67,6 +76,7 @@ class RecorderTap {
   std::mutex mutex_;
   TapBatch arrived_;
   std::atomic<std::int64_t> overflow_ = 0;
+  std::atomic<std::int64_t> oversized_ = 0;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

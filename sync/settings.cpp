@@ -40,6 +40,10 @@ std::string number_text(double number) {
 }
 std::string unit_text(std::string_view unit) { return unit == "1" || unit == "count" ? "" : " " + std::string(unit); }
 
+std::string sentence_begin(const SettingRow& row, std::string_view value) {
+  return "setting \"" + std::string(row.name) + "\" = \"" + std::string(value) + "\": ";
+}
+
 bool is_choice(std::string_view unit) { return unit.find('|') != std::string_view::npos; }
 
 }  // namespace
@@ -58,7 +62,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
 }
 
 void check_setting(const SettingRow& row, std::string_view value) {
-  const std::string what = "setting \"" + std::string(row.name) + "\" = \"" + std::string(value) + "\": ";
+  const std::string what = sentence_begin(row, value);
   const std::string_view unit = row.unit;
   if (unit == "text") return;
   if (unit == "bool") {
@@ -84,6 +88,18 @@ void check_setting(const SettingRow& row, std::string_view value) {
   if (number < row.min || number > row.max || (unit == "count" && number != std::floor(number)))
     throw std::invalid_argument(what + "must be between " + number_text(row.min) + " and " + number_text(row.max) +
                                 unit_text(unit) + (unit == "count" ? ", whole" : ""));
+}
+
+void check_scene_setting(const SettingRow& row, std::string_view value) {
+  check_setting(row, value);
+  const std::string_view safety = row.safety, unit = row.unit;
+  if (safety.empty()) return;
+  const std::string_view base = unit == "count" ? "1" : unit;
+  const double wanted = parse_quantity(value, base), limit = parse_quantity(row.initial, base);
+  if (safety == "max" ? wanted <= limit : wanted >= limit) return;
+  throw std::invalid_argument(sentence_begin(row, value) + "a scene may only tighten this safety limit, to " +
+                              number_text(limit) + unit_text(unit) + (safety == "max" ? " or less" : " or more") +
+                              "; loosen it with --set on the node's own command line");
 }
 
 }  // namespace tactus::sync

@@ -24,10 +24,17 @@ struct SettingRow {
   double max;
   const char* meaning;
   const char* source;
+  // A limit that protects a person: "max", an upper one, or "min", a lower one. A scene may only tighten it. "":
+  // none.
+  const char* safety = "";
 };
 
 // Checks a value against its row. Throws std::invalid_argument with one sentence that names the setting and its range.
 void check_setting(const SettingRow& row, std::string_view value);
+
+// The same for a value that a scene asks for: one that loosens a safety limit beyond its default does not fit
+// either.
+void check_scene_setting(const SettingRow& row, std::string_view value);
 
 template <class Settings>
 struct SettingField {
@@ -35,13 +42,14 @@ struct SettingField {
   std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*> field;
 };
 
-// Sets one option by name. Throws std::invalid_argument when there is none of that name or the value does not fit.
+// Sets one option by name, if `check` lets it. Throws std::invalid_argument when there is none of that name or the
+// value does not fit.
 template <class Settings>
 void set(Settings& settings, std::span<const SettingField<Settings>> table, std::string_view name,
-         std::string_view value) {
+         std::string_view value, void (*check)(const SettingRow&, std::string_view) = check_setting) {
   for (const auto& entry : table) {
     if (name != entry.row.name) continue;
-    check_setting(entry.row, value);
+    check(entry.row, value);
     std::visit(
         [&](auto field) {
           using Value = std::remove_reference_t<decltype(settings.*field)>;
@@ -58,25 +66,26 @@ void set(Settings& settings, std::span<const SettingField<Settings>> table, std:
   throw std::invalid_argument("there is no setting \"" + std::string(name) + "\"");
 }
 
-// Applies what a scene says of `node` (a list of {node, name, value}), then what the command line says ("name=value").
+// Applies what a scene says of `node` (a list of {node, name, value}), then what the command line says
+// ("name=value"). A scene comes over the bus, from anybody: only the command line may loosen a safety limit.
 // Returns one sentence per refused entry; the others hold.
 template <class Settings, class SceneSettings>
 std::vector<std::string> apply_settings(Settings& settings, std::span<const SettingField<Settings>> table,
                                         std::string_view node, const SceneSettings& from_scene,
                                         const std::vector<std::string>& from_command_line) {
   std::vector<std::string> refused;
-  const auto try_set = [&](std::string_view name, std::string_view value) {
+  const auto try_set = [&](std::string_view name, std::string_view value, auto check) {
     try {
-      set(settings, table, name, value);
+      set(settings, table, name, value, check);
     } catch (const std::invalid_argument& e) {
       refused.push_back(std::string(node) + ": " + e.what());
     }
   };
   for (const auto& s : from_scene)
-    if (s.node == node) try_set(s.name, s.value);
+    if (s.node == node) try_set(s.name, s.value, check_scene_setting);
   for (const std::string& s : from_command_line) {
     const auto equals = s.find('=');
-    try_set(s.substr(0, equals), equals == std::string::npos ? "" : s.substr(equals + 1));
+    try_set(s.substr(0, equals), equals == std::string::npos ? "" : s.substr(equals + 1), check_setting);
   }
   return refused;
 }

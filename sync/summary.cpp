@@ -1,6 +1,7 @@
 #include "sync/summary.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sync/decode.h"
 #include "sync/log_header.h"
@@ -43,6 +44,17 @@ void RunSummary::observe_course(const header_t& h) {
   it->second.last_host_ns = h.publish_time_ns;
 }
 
+void RunSummary::observe_silence(HostTime now) {
+  if (!begin_ || now - now_ <= kHole) return;
+  silence_ = now - now_;
+  silence_end_ = now;
+}
+
+void RunSummary::observe_gap() {
+  if (now_ - silence_end_ <= kHoleShowsWithin) holes_ += silence_;
+  silence_ = Nanoseconds(0);
+}
+
 void RunSummary::add(const LogEvent& e) {
   auto channel = channels_.find(e.channel);
   if (channel == channels_.end()) channel = channels_.emplace(std::string(e.channel), Channel{}).first;
@@ -58,13 +70,19 @@ void RunSummary::add(const LogEvent& e) {
   const HostTime now = clock_.observe(host_time(e.timestamp_us * 1000 - realtime_offset_ns_));
   // What the recorder put at the head did not cross the bus. The log counts in microseconds.
   if (to_ns(now) / 1000 < live_from_ns_ / 1000) return;
+  observe_silence(now);
   now_ = now;
   if (!begin_) begin_ = now;
 
   ChannelSummary& summary = channel->second.summary;
   ++summary.messages;
   summary.bytes += static_cast<std::int64_t>(e.data.size());
-  if (header) channel->second.sequence.observe(*header);
+  if (header) {
+    SequenceTracker& sequence = channel->second.sequence;
+    const std::int64_t gaps = sequence.gaps();
+    sequence.observe(*header);
+    if (sequence.gaps() > gaps) observe_gap();
+  }
 
   const auto feed = [&]<class Message>(const char* name, auto use) {
     if (e.channel != name) return;
@@ -92,6 +110,7 @@ void RunSummary::end_of_log(std::int64_t damaged_regions) {
     recorded_ += now_ - *begin_;
   }
   begin_.reset();
+  silence_ = Nanoseconds(0);
   clock_ = {};
   time_known_ = false;
   live_from_ns_ = 0;
@@ -171,6 +190,11 @@ std::string RunSummary::failure() const {
     if (tally.lost > 0)
       also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
            " owed contact events");
+  if (holes_ > Nanoseconds(0))
+    also("the log has a hole of " + std::to_string(std::llround(holes_seconds())) +
+         " s: the recorder was stopped");
+  if (matcher_.overflow() > 0)
+    also(std::to_string(matcher_.overflow()) + " events or senses found no room to be matched");
   return why;
 }
 

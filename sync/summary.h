@@ -1,5 +1,5 @@
-// What a run was like, from its log alone: rates, losses, who presented what and when. Pure: fed with the events of one
-// log after the other.
+// What a run was like, from its log alone: rates, losses, who presented what and when. Pure: fed with the events
+// of one log after the other.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct SummaryOptions {
   std::optional<std::string> scene, git;
   std::optional<double> seconds;
   std::optional<std::int64_t> seed;
-  std::vector<std::string> nodes;               // that must have been there to the end
+  std::vector<std::string> nodes;                // that must have been there to the end
   std::map<std::string, std::int64_t> restarts;  // as the supervisor counted them
   std::vector<std::string> warnings;             // what was missing where it ran, a sentence each
 };
@@ -56,6 +56,11 @@ class RunSummary {
   // The senses of today.
   static constexpr std::array kSenses{"haptic", "audio", "visual", "thermal"};
 
+  // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
+  static constexpr Nanoseconds kHole{1'000'000'000};
+  // What the kernel kept for it meanwhile comes first.
+  static constexpr Nanoseconds kHoleShowsWithin{2'000'000'000};
+
   explicit RunSummary(SummaryOptions options) : options_(std::move(options)) {}
 
   void add(const LogEvent& event);
@@ -77,6 +82,8 @@ class RunSummary {
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;
   std::int64_t damaged_regions() const { return damaged_regions_; }
+  // For so long in all nothing was recorded, though something was sent: nobody knows who was dead or stalled then.
+  double holes_seconds() const { return to_seconds(holes_); }
 
   // Why the run was not a success, in one sentence; empty: it was.
   std::string failure() const;
@@ -101,6 +108,8 @@ class RunSummary {
   void observe(const log_info_t&);
   void observe(const node_health_t&, HostTime now);
   void observe_course(const header_t&);
+  void observe_silence(HostTime now);
+  void observe_gap();
 
   SummaryOptions options_;
   std::optional<log_info_t> info_;
@@ -117,6 +126,9 @@ class RunSummary {
   std::optional<HostTime> begin_;
   HostTime now_{};
   Nanoseconds recorded_{0};
+  Nanoseconds silence_{0};  // the last one that may be a hole
+  HostTime silence_end_{};
+  Nanoseconds holes_{0};
   std::int64_t damaged_regions_ = 0;
 };
 

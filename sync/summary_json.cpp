@@ -19,7 +19,10 @@ double ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6,
 double ms_up(Nanoseconds t) { return std::ceil(static_cast<double>(t.count()) * 1e-4) * 1e-2; }
 
 Json quantiles(const Histogram& h) {
-  return {{"p50", us(h.quantile(0.5))}, {"p99", us(h.quantile(0.99))}, {"p999", us(h.quantile(0.999))}, {"max", us(h.max())}};
+  return {{"p50", us(h.quantile(0.5))},
+          {"p99", us(h.quantile(0.99))},
+          {"p999", us(h.quantile(0.999))},
+          {"max", us(h.max())}};
 }
 
 Json nodes(const RunSummary& s) {
@@ -52,8 +55,14 @@ Json contacts(const PresentationMatcher& m) {
     const auto it = m.modalities().find(name);
     const DebtTally t = it == m.modalities().end() ? DebtTally{} : it->second;
     presented[name] = t.presented;
-    by_modality[name] = {{"owed", t.owed}, {"presented", t.presented}, {"late", t.late}, {"lost", t.lost},
-                         {"stalled", t.stalled}, {"dead", t.dead}, {"dropped_by_profile", t.dropped_by_profile}, {"dropped_late", t.dropped_late}};
+    by_modality[name] = {{"owed", t.owed},
+                         {"presented", t.presented},
+                         {"late", t.late},
+                         {"lost", t.lost},
+                         {"stalled", t.stalled},
+                         {"dead", t.dead},
+                         {"dropped_by_profile", t.dropped_by_profile},
+                         {"dropped_late", t.dropped_late}};
     sum.late += t.late;
     sum.lost += t.lost;
     sum.stalled += t.stalled;
@@ -61,17 +70,28 @@ Json contacts(const PresentationMatcher& m) {
     sum.dropped_by_profile += t.dropped_by_profile;
     sum.dropped_late += t.dropped_late;
   }
-  return {{"begin", m.begins()}, {"hit", m.hits()}, {"end", m.ends()}, {"presented", presented}, {"late", sum.late}, {"lost", sum.lost},
-          {"stalled", sum.stalled}, {"dropped_by_profile", sum.dropped_by_profile}, {"dead", sum.dead},
-          {"dropped_late", sum.dropped_late}, {"by_modality", by_modality}};
+  return {{"begin", m.begins()},
+          {"hit", m.hits()},
+          {"end", m.ends()},
+          {"presented", presented},
+          {"late", sum.late},
+          {"lost", sum.lost},
+          {"overflow", m.overflow()},
+          {"stalled", sum.stalled},
+          {"dropped_by_profile", sum.dropped_by_profile},
+          {"dead", sum.dead},
+          {"dropped_late", sum.dropped_late},
+          {"by_modality", by_modality}};
 }
 
 Json asynchrony(const PresentationMatcher& m) {
   const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}};
   Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
   for (const auto& [names, soa] : m.pairs())
-    out[names.first + "_" + names.second] = {{"n", soa.count()}, {"p05", ms(soa.quantile(0.05))},
-                                             {"p50", ms(soa.quantile(0.5))}, {"p95", ms(soa.quantile(0.95))},
+    out[names.first + "_" + names.second] = {{"n", soa.count()},
+                                             {"p05", ms(soa.quantile(0.05))},
+                                             {"p50", ms(soa.quantile(0.5))},
+                                             {"p95", ms(soa.quantile(0.95))},
                                              {"uncertainty", ms_up(soa.uncertainty())}};
   return out;
 }
@@ -85,6 +105,7 @@ std::string to_json(const RunSummary& s) {
   const Json out = {{"scene", s.scene()},
                     {"seconds", rounded(s.seconds(), 1000)},
                     {"recorded_seconds", rounded(s.recorded_seconds(), 1000)},
+                    {"log_holes_seconds", rounded(s.holes_seconds(), 1000)},
                     {"seed", s.seed()},
                     {"git", s.git()},
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},

@@ -38,8 +38,8 @@ constexpr std::int64_t to_ns(TimePoint t) {
 constexpr Nanoseconds from_seconds(double s) { return Nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
 constexpr double to_seconds(Nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
 
-// The map between simulated time and the host clock: two members that belong together, and how fast one runs in the
-// other. rate = simulated seconds per host second; 0: paused, every host time maps to `sim`.
+// The map between simulated time and the host clock: two members that belong together, and how fast one runs in
+// the other. rate = simulated seconds per host second; 0: paused, every host time maps to `sim`.
 struct TimeMap {
   SimTime sim{};
   HostTime host{};
@@ -52,7 +52,9 @@ struct TimeMap {
  private:
   static Nanoseconds scaled(Nanoseconds d, double factor) {
     if (factor == 1) return d;  // keeps whole nanoseconds exact
-    return Nanoseconds(static_cast<std::int64_t>(static_cast<double>(d.count()) * factor));
+    const double ns = static_cast<double>(d.count()) * factor;
+    constexpr double kMost = 3e18;  // 95 years, so that what a message makes up does not overflow
+    return Nanoseconds(static_cast<std::int64_t>(!(ns > -kMost) ? -kMost : ns < kMost ? ns : kMost));
   }
 };
 

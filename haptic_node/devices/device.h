@@ -18,6 +18,9 @@ struct DeviceState {
 
 class Device {
  public:
+  // A device whose loop stops must not go on pushing: the amplifier drops a force that is not renewed for so long.
+  static constexpr sync::Nanoseconds kWatchdog{20'000'000};
+
   virtual ~Device() = default;
   // Where the hand is at `now`. Call once a tick, then write once.
   virtual DeviceState read(sync::HostTime now) = 0;

@@ -1,6 +1,4 @@
-// Makes a device from what a person writes: virtual_hand, virtual_hand:FILE or
-// playback:FILE[,scale=S][,offset=X/Y/Z]
-// [,rate=R].
+// Makes a device from what a person or a scene writes (lcmtypes/tool_device.h). It reads files: not for a loop.
 #pragma once
 
 #include <memory>
@@ -14,10 +12,8 @@
 
 namespace tactus::haptic {
 
-struct DeviceSpec {
-  enum class Kind { kVirtualHand, kPlayback } kind = Kind::kVirtualHand;
+struct DeviceSpec : ToolDevice {
   std::optional<Motion> motion;  // of the file, if one was named
-  Placement placement;
 };
 
 // Reads the file, so that what is wrong with it is known before anything starts. Throws std::runtime_error with

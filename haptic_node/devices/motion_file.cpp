@@ -1,16 +1,21 @@
 #include "haptic_node/devices/motion_file.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
+
+#include "lcmtypes/tool_device.h"
 
 namespace tactus::haptic {
 namespace {
 
 // Days of seconds and any place on a site; a larger figure has another unit.
 constexpr double kLargest = 1e6;
+constexpr std::size_t kLongestLine = 1000;
 constexpr std::string_view kHeader = "time_s,x_m,y_m,z_m";
 constexpr std::string_view kHeaderWithPose = "time_s,x_m,y_m,z_m,qw,qx,qy,qz";
 
@@ -56,19 +61,31 @@ void append(Motion& motion, const std::vector<double>& row, const std::string& n
 }  // namespace
 
 Motion read_motion(std::istream& in, const std::string& name) {
-  const auto next = [&](std::string& text) {
-    if (!std::getline(in, text)) return false;
-    if (!text.empty() && text.back() == '\r') text.pop_back();
+  std::array<char, kLongestLine + 1> buffer{};  // with the end of the string
+  std::uintmax_t bytes = 0;
+  std::size_t line = 0;
+  const auto next = [&](std::string_view& text) {
+    ++line;
+    in.getline(buffer.data(), buffer.size());
+    const auto count = static_cast<std::size_t>(in.gcount());
+    if (count == 0) return false;
+    if (in.fail())
+      refuse(name, line, "it is longer than " + std::to_string(kLongestLine) + " characters; this is no motion");
+    if ((bytes += count) > kMaxMotionFileBytes)
+      refuse(name, line,
+             "the file is larger than " + std::to_string(kMaxMotionFileBytes >> 20) + " MiB; shorten it");
+    text = buffer.data();
+    if (text.ends_with('\r')) text.remove_suffix(1);
     return true;
   };
-  std::string text;
+  std::string_view text;
   next(text);
   const bool with_pose = text == kHeaderWithPose;
   if (!with_pose && text != kHeader)
     refuse(name, 1, "the header must be " + std::string(kHeader) + " or " + std::string(kHeaderWithPose));
   Motion motion;
   const std::size_t columns = with_pose ? 8 : 4;
-  for (std::size_t line = 2; next(text); ++line) {
+  while (next(text)) {
     if (text.empty()) continue;
     const auto row = numbers(text, name, line);
     if (row.size() != columns)
@@ -80,6 +97,11 @@ Motion read_motion(std::istream& in, const std::string& name) {
 }
 
 Motion read_motion(const std::string& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  // A pipe or a device may never end, or never begin.
+  if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found)
+    throw std::runtime_error("motion file " + path + " is no regular file that can be read; name a CSV file");
   std::ifstream in(path);
   if (!in) throw std::runtime_error("motion file " + path + " cannot be read; check the path and its permissions");
   return read_motion(in, path);

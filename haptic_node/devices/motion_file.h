@@ -15,7 +15,8 @@ struct Motion {
       orientations;  // unit, neighbours in the same half; identity when the file has none
 };
 
-// Throws std::runtime_error with one sentence that names the file, the line and the remedy.
+// Only a regular file of at most kMaxMotionFileBytes with lines of at most 1 kB: what another machine names may be
+// anything. Throws std::runtime_error with one sentence that names the file, the line and the remedy.
 Motion read_motion(const std::string& path);
 // The same from a stream; `name` is for the sentence.
 Motion read_motion(std::istream& in, const std::string& name);

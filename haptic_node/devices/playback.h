@@ -4,14 +4,9 @@
 #include "haptic_node/devices/device.h"
 #include "haptic_node/devices/monotone_cubic.h"
 #include "haptic_node/devices/motion_file.h"
+#include "lcmtypes/tool_device.h"
 
 namespace tactus::haptic {
-
-struct Placement {
-  double scale = 1;
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  // added after scaling
-  double rate = 1;                                     // speed of the playback
-};
 
 class Playback : public Device {
  public:

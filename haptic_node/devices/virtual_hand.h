@@ -14,9 +14,6 @@ struct HandImpedance {
 
 class VirtualHand : public Device {
  public:
-  // A device whose loop stops must not go on pushing: the amplifier drops a force that is not renewed for so long.
-  static constexpr sync::Nanoseconds kWatchdog{20'000'000};
-
   // loop: begins again at its first point after its last; `path` should end where it begins.
   VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& hand);
 

@@ -17,7 +17,7 @@ void check(const LoadContext& context, const sdf::Element& element, const settin
   if (row == kAllSettings.end())
     context.refuse(element, "has no setting \"" + setting.name + "\": docs/settings.md lists those of " + setting.node);
   try {
-    sync::check_setting(row->row, setting.value);
+    sync::check_scene_setting(row->row, setting.value);
   } catch (const std::invalid_argument& e) {
     context.refuse(element, std::string("does not hold: ") + e.what());
   }

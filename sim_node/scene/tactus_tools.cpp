@@ -1,5 +1,9 @@
 #include "sim_node/scene/tactus_tools.h"
 
+#include <fstream>
+#include <stdexcept>
+
+#include "lcmtypes/tool_device.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/attributes.h"
 
@@ -19,6 +23,19 @@ waypoint_t read_waypoint(const LoadContext& context, const sdf::Element& element
   return waypoint;
 }
 
+// As it is sent to the hand: its motion file, which is found as meshes are, by its whole path.
+std::string read_device(const LoadContext& context, const sdf::Element& element, const std::string& text) try {
+  const ToolDevice device = parse_tool_device(text);
+  if (device.file.empty()) return text;
+  const std::filesystem::path file = context.asset_file(device.file, element);
+  if (std::filesystem::file_size(file) > kMaxMotionFileBytes || !std::ifstream(file))
+    context.refuse(element, "names \"" + device.file + "\", which is not readable or larger than " +
+                                std::to_string(kMaxMotionFileBytes >> 20) + " MiB: give it another motion file");
+  return with_motion_file(text, std::filesystem::absolute(file).lexically_normal().string());
+} catch (const BadDevice& e) {
+  context.refuse(element, std::string("has a bad device: ") + e.what());
+}
+
 void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   tool_def_t tool{};
@@ -26,7 +43,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that something else has: choose another");
   tool.radius_m = attributes.quantity("radius", "m", 0, 1).value_or(kDefaultRadius_m);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
-  tool.device = attributes.text("device").value_or("virtual_hand");
+  tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
   tool.loop = attributes.flag("loop").value_or(false) ? 1 : 0;
   tool.material = -1;
   if (const auto material = attributes.text("material")) {

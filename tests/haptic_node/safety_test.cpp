@@ -75,6 +75,34 @@ TEST_CASE("A device that jumps does no work") {
   CHECK(safety.energy_J() == 0);
 }
 
+TEST_CASE("Limits that are exchanged again and again give the hand no more than the wider ones do") {
+  const SafetyLimits wide, narrow{3, 500, 0.05, 0.1};
+  Safety safety(wide);
+  Vector3d moved = Vector3d::Zero(), force = Vector3d::Zero();
+  double given = 0;
+  for (int k = 1; k <= 10000; ++k) {
+    if (k % 20 == 0) safety.set_limits(k % 40 == 0 ? wide : narrow);
+    given += force.dot(moved);
+    const Vector3d next = safety.limit({8, 0, 0}, moved, kDt);
+    REQUIRE((next - force).norm() <= wide.slew_N_s * kDt + 1e-9);
+    force = next;
+    moved = {1e-3, 0, 0};
+    REQUIRE(given <= wide.energy_J + wide.power_W * k * kDt + 0.008 + 1e-9);
+  }
+}
+
+TEST_CASE("After the watchdog of the device has let go the force begins at none") {
+  Safety safety(SafetyLimits{});
+  const auto press = [&](double ms) {
+    safety.begin_tick(host_ms(ms));
+    return safety.limit({8, 0, 0}, Vector3d::Zero(), kDt).x();
+  };
+  CHECK(press(0) == Approx(2));
+  CHECK(press(1) == Approx(4));
+  CHECK(press(21) == Approx(6));
+  CHECK(press(42) == Approx(2));
+}
+
 TEST_CASE("The force of a lost touch model fades from 50 to 70 ms after the last one, and comes back in 20 ms") {
   Fade fade(0.05, 0.02);
   CHECK(fade.step(host_ms(0), std::nullopt, kDt) == 0);

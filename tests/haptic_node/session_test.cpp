@@ -64,9 +64,38 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   CHECK_THAT(limits_sentence(choose(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
+TEST_CASE("A scene cannot loosen what protects the hand; the command line can") {
+  scene_t s = scene();
+  const Settings safe;
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{{"force_limit", "30"},
+                                                                                    {"slew_limit", "100000"},
+                                                                                    {"energy_limit", "10"},
+                                                                                    {"power_limit", "50"},
+                                                                                    {"stale_after", "1"},
+                                                                                    {"fade", "1"},
+                                                                                    {"transient_limit", "20"},
+                                                                                    {"stiffness_limit", "20000"},
+                                                                                    {"mass_factor", "0.5"},
+                                                                                    {"damping_ratio", "0.1"},
+                                                                                    {"device_damping", "100"}}) {
+    INFO(name);
+    s.settings.resize(1);
+    s.settings[0].node = "haptic_node";
+    s.settings[0].name = name;
+    s.settings[0].value = value;
+    const Choice refused = choose(s, "", {});
+    REQUIRE(refused.refused.size() == 1);
+    CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
+    CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
+    CHECK(choose(scene(), "", {name + "=" + value}).refused.empty());
+  }
+  CHECK(choose(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
+}
+
 TEST_CASE("A session touches what its own tool is told of, and nothing else") {
   const scene_t s = pressing_scene();
-  Session session(s, choice_of(s), std::nullopt, 1);
+  Safety safety{SafetyLimits{}};
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   const auto floor = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
   CHECK_FALSE(session.heard());
   for (int ms = 0; ms < 100; ++ms) {
@@ -89,7 +118,8 @@ TEST_CASE("A session touches what its own tool is told of, and nothing else") {
 
 TEST_CASE("Events that are repeated, as they are on the bus, are rendered once") {
   const scene_t s = pressing_scene();
-  Session session(s, choice_of(s), std::nullopt, 1);
+  Safety safety{SafetyLimits{}};
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   int begins = 0, hits = 0;
   for (int ms = 0; ms < 300; ++ms) {
     session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
@@ -110,7 +140,8 @@ TEST_CASE("Events that are repeated, as they are on the bus, are rendered once")
 
 TEST_CASE("A restarted simulation is followed, its first touch model comes without a kick") {
   const scene_t s = pressing_scene();
-  Session session(s, choice_of(s), std::nullopt, 1);
+  Safety safety{SafetyLimits{}};
+  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   double last = 0;
   for (int ms = 0; ms < 1000; ++ms) {
     // Killed at 200 ms, back at 500 ms with a time of its own that begins at 0.
@@ -129,8 +160,51 @@ TEST_CASE("A restarted simulation is followed, its first touch model comes witho
   CHECK(last > 0.3);
 }
 
-TEST_CASE("A device that the scene names but nobody knows is refused in one sentence") {
+TEST_CASE("When the scene changes the force goes on from where it is, through the limits") {
+  const scene_t s = pressing_scene();
+  // So slow that the way from 0.4 N takes 40 ms.
+  const Choice slow = choose(s, "", {"slew_limit=10", "energy_limit=0.4"});
+  Safety safety{safety_limits(slow.settings)};
+  std::optional<Session> session(std::in_place, s, slow, device_of(s, slow), 1, safety);
+  Vector3d last = Vector3d::Zero();
+  const auto tick = [&](int ms) {
+    const Vector3d force = session->step(host_ms(ms)).force_N;
+    CHECK((force - last).norm() <= 10 * 1e-3 + 1e-9);
+    last = force;
+  };
+  for (int ms = 0; ms < 300; ++ms) {
+    session->push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
+    tick(ms);
+  }
+  REQUIRE(last.z() > 0.3);
+  SECTION("of a scene that follows") {
+    const double given_J = safety.energy_J();
+    session.emplace(s, slow, device_of(s, slow), 1, safety);
+    tick(300);
+    CHECK(last.z() > 0.3);
+    CHECK(safety.energy_J() == given_J);  // a new hand in another place: no work
+    for (int ms = 301; ms < 330; ++ms) tick(ms);
+    CHECK(last.z() > 0);
+  }
+  SECTION("and of one without this tool, whose touch models are ignored") {
+    session->let_go();
+    CHECK(session->over());
+    for (int ms = 300; ms < 330; ++ms) {
+      session->push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
+      tick(ms);
+      CHECK(last.norm() > 0);
+    }
+  }
+  for (int ms = 330; ms < 400; ++ms) tick(ms);
+  CHECK(last.norm() == 0);
+}
+
+TEST_CASE("A device that the scene names but nobody can make is refused in one sentence") {
   scene_t s = scene();
-  s.tools[0].device = "phantom";
-  CHECK_THROWS_WITH(Session(s, choice_of(s), std::nullopt, 1), Contains("phantom"));
+  for (const std::string device : {"phantom", "playback:/no/such.csv", "playback:/dev/zero"}) {
+    s.tools[0].device = device;
+    CHECK_THROWS_WITH(device_of(s, choice_of(s)), Contains(device.substr(device.find(':') + 1)));
+    const DeviceSpec given;
+    CHECK(device_of(s, choice_of(s), &given));  // the command line goes before the scene
+  }
 }

@@ -82,7 +82,8 @@ inline contact_event_t event(std::int64_t id, std::int8_t kind, double sim_ms, s
 
 // Drives a renderer tick by tick with a device that is put where the test says.
 struct Bench {
-  explicit Bench(const Settings& s = {}, const scene_t& in_scene = scene()) : renderer(in_scene, 0, s) {}
+  explicit Bench(const Settings& s = {}, const scene_t& in_scene = scene())
+      : safety(safety_limits(s)), renderer(in_scene, 0, s, safety) {}
 
   // One tick at `ms` of simulated time; the model, if any, arrives just then.
   TickOutput& tick(double ms, const Vector3d& device, const touch_model_t* fresh = nullptr,
@@ -101,6 +102,7 @@ struct Bench {
     return renderer.step(in);
   }
 
+  Safety safety;
   Renderer renderer;
   std::optional<Vector3d> last;
   double last_ms = 0;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <utility>
 
 #include "sync/decode.h"
 #include "tests/lcmtypes/samples.h"
@@ -220,6 +221,39 @@ TEMPLATE_TEST_CASE("Noise is refused, damage is refused or harmless", "", EVERY_
     REQUIRE(valid(*m));
     REQUIRE_NOTHROW(schema().walk(TestType::getTypeName(), bytes));
   }
+}
+
+TEST_CASE("A name that no reader could print is refused") {
+  Samples samples(10);
+  node_health_t health{};
+  presented_t presented{};
+  samples.fill(health), samples.fill(presented);
+  health.modality = "audio";
+  REQUIRE(valid(health));
+  REQUIRE(valid(presented));
+  for (const std::string& bad :
+       {std::string(65, 'a'), std::string("a\x1b[2J"), std::string("\xc3\xa4"), std::string("a\n")}) {
+    node_health_t node = health, modality = health;
+    node.node = modality.modality = presented.modality = bad;
+    CHECK(!valid(node));
+    CHECK(!valid(modality));
+    CHECK(!valid(presented));
+  }
+}
+
+TEST_CASE("A time that would overflow is refused") {
+  Samples samples(11);
+  contact_frame_t frame{};
+  samples.fill(frame);
+  REQUIRE(valid(frame));
+  for (auto* time :
+       {&frame.header.sim_time_ns, &frame.header.publish_time_ns, &frame.clock.sim_ns, &frame.clock.host_ns}) {
+    const auto kept = std::exchange(*time, std::numeric_limits<std::int64_t>::max());
+    CHECK(!valid(frame));
+    *time = kept;
+  }
+  frame.clock.rate = 1000;
+  CHECK(!valid(frame));
 }
 
 TEST_CASE("A message that would be fragmented is refused, though it is valid") {

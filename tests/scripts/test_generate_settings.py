@@ -11,12 +11,12 @@ GOOD = 'rate,Hz,50,1,100,Rate,design\nmode,fast|slow,fast,,,Mode,"Smith, 1999"\n
 
 
 class GenerateSettings(unittest.TestCase):
-    def generate(self, rows, what="header"):
+    def generate(self, rows, what="header", more_columns=""):
         with tempfile.TemporaryDirectory() as root:
             os.mkdir(os.path.join(root, "audio_node"))
             table, out = os.path.join(root, "audio_node", "settings.csv"), os.path.join(root, "out")
             with open(table, "w", encoding="utf-8") as file:
-                file.write("name,unit,default,min,max,meaning,source\n" + rows)
+                file.write(f"name,unit,default,min,max,meaning,source{more_columns}\n" + rows)
             files = [table, out] if what == "header" else [out, table]
             done = subprocess.run([sys.executable, TOOL, what, *files], capture_output=True, text=True)
             text = ""
@@ -46,6 +46,23 @@ class GenerateSettings(unittest.TestCase):
                 self.assertNotEqual(0, code)
                 self.assertIn("settings.csv:6", err)
                 self.assertEqual(1, len(err.strip().splitlines()))
+                self.assertEqual("", text)
+
+    def test_a_limit_that_protects_a_person_is_marked(self):
+        rows = "heat,degC,42,34,43,Heat,design,max\ncold,degC,15,10,30,Cold,design,min\nrate,Hz,50,1,100,Rate,design\n"
+        text = self.generate(rows, more_columns=",safety")[2]
+        self.assertIn('"Heat", "design", "max"}', text)
+        self.assertIn('"Rate", "design", ""}', text)
+        text = self.generate(rows, "markdown", ",safety")[2]
+        self.assertIn("| `heat` | degC | 42 | 34 .. 43; in a scene 34 .. 42 | Heat | design |", text)
+        self.assertIn("| `cold` | degC | 15 | 10 .. 30; in a scene 15 .. 30 | Cold | design |", text)
+
+    def test_a_mark_that_means_nothing_is_refused(self):
+        for row in ("rate,Hz,50,1,100,Rate,design,up", "loud,bool,false,,,Loud,design,max", "name,text,,,,Name,design,min"):
+            with self.subTest(row=row):
+                code, err, text = self.generate(row + "\n", more_columns=",safety")
+                self.assertNotEqual(0, code)
+                self.assertIn("settings.csv:2", err)
                 self.assertEqual("", text)
 
     def test_a_name_given_twice_is_refused(self):

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-world_state_t page(std::int64_t sim_ns, int body, const Eigen::Vector3d& x, const Eigen::Vector3d& v, double angle = 0,
-                   std::int64_t incarnation = 1) {
+world_state_t page(std::int64_t sim_ns, int body, const Eigen::Vector3d& x, const Eigen::Vector3d& v,
+                   double angle = 0, std::int64_t incarnation = 1) {
   world_state_t m{};
   m.header.sim_time_ns = sim_ns;
   m.header.publish_time_ns = sim_ns + 1'000 * kMs;
@@ -31,15 +31,17 @@ world_state_t page(std::int64_t sim_ns, int body, const Eigen::Vector3d& x, cons
   return m;
 }
 
+HostTime at(std::int64_t sim_ns) { return host_time(sim_ns + 1'000 * kMs); }
+
 }  // namespace
 
 TEST_CASE("A thrown body is followed exactly between snapshots") {
-  // A cubic through both ends with both velocities holds any parabola: only float velocities differ (1e-7 relative).
+  // A cubic through both ends with both velocities holds any parabola: only float velocities differ (1e-7
+  // relative).
   const auto x = [](double t) { return Eigen::Vector3d(2 * t, 0, 3 * t - 4.9 * t * t); };
   const auto v = [](double t) { return Eigen::Vector3d(2, 0, 3 - 9.8 * t); };
   BodyHistory history(1);
-  for (int i = 0; i < 10; ++i)
-    history.push(page(i * 16 * kMs, 3, x(i * 0.016), v(i * 0.016)), host_time(0));
+  for (int i = 0; i < 10; ++i) history.push(page(i * 16 * kMs, 3, x(i * 0.016), v(i * 0.016)), at(i * 16 * kMs));
   for (double t = 0.001; t < 0.14; t += 0.0037) {
     const auto s = history.pose(3, SimTime(from_seconds(t)));
     CHECK(s.how == How::kInterpolated);
@@ -49,8 +51,8 @@ TEST_CASE("A thrown body is followed exactly between snapshots") {
 
 TEST_CASE("A turning body is interpolated along the short way round") {
   BodyHistory history(1);
-  history.push(page(0, 0, {0, 0, 0}, {0, 0, 0}, 3.0), host_time(0));
-  history.push(page(10 * kMs, 0, {0, 0, 0}, {0, 0, 0}, 3.4), host_time(0));
+  history.push(page(0, 0, {0, 0, 0}, {0, 0, 0}, 3.0), at(0));
+  history.push(page(10 * kMs, 0, {0, 0, 0}, {0, 0, 0}, 3.4), at(10 * kMs));
   const auto s = history.pose(0, sim_time(5 * kMs));
   const double angle = 2 * std::atan2(s.value.orientation.z(), s.value.orientation.w());
   CHECK(std::abs(std::remainder(angle - 3.2, 2 * M_PI)) < 1e-6);
@@ -58,7 +60,7 @@ TEST_CASE("A turning body is interpolated along the short way round") {
 
 TEST_CASE("Past the newest snapshot a body moves on for 50 ms, is then held, then stale") {
   BodyHistory history(1);
-  history.push(page(0, 0, {1, 0, 0}, {2, 0, 0}), host_time(0));
+  history.push(page(0, 0, {1, 0, 0}, {2, 0, 0}), at(0));
   CHECK(history.pose(0, sim_time(0)).how == How::kExact);
   const auto moving = history.pose(0, sim_time(40 * kMs));
   CHECK(moving.how == How::kExtrapolated);
@@ -71,8 +73,8 @@ TEST_CASE("Past the newest snapshot a body moves on for 50 ms, is then held, the
 
 TEST_CASE("A body that newer snapshots leave out rests where it was") {
   BodyHistory history(1);
-  history.push(page(0, 0, {1, 2, 3}, {0, 0, 0}), host_time(0));
-  for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), host_time(0));
+  history.push(page(0, 0, {1, 2, 3}, {0, 0, 0}), at(0));
+  for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
   const auto s = history.pose(0, sim_time(49 * 16 * kMs));
   CHECK(s.value.position.isApprox(Eigen::Vector3d(1, 2, 3)));
   CHECK(s.how == How::kInterpolated);
@@ -80,8 +82,37 @@ TEST_CASE("A body that newer snapshots leave out rests where it was") {
 
 TEST_CASE("A restarted simulation leaves no pose of the old one") {
   BodyHistory history(1);
-  history.push(page(900 * kMs, 0, {1, 0, 0}, {0, 0, 0}), host_time(0));
-  history.push(page(0, 1, {0, 0, 0}, {0, 0, 0}, 0, 2), host_time(1));
+  history.push(page(900 * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(900 * kMs));
+  history.push(page(0, 1, {0, 0, 0}, {0, 0, 0}, 0, 2), at(901 * kMs));
   CHECK(history.pose(0, sim_time(0)).how == How::kNone);
   CHECK(history.pose(1, sim_time(0)).how == How::kExact);
+}
+
+TEST_CASE("A page far in the future is refused, and what comes after it is heard") {
+  BodyHistory history(1);
+  history.push(page(0, 0, {1, 0, 0}, {0, 0, 0}), at(0));
+  world_state_t forged = page(0, 0, {9, 9, 9}, {0, 0, 0});
+  forged.header.sim_time_ns = 3'600'000 * kMs;
+  history.push(forged, at(0));
+  CHECK(history.refused() == 1);
+  history.push(page(16 * kMs, 0, {2, 0, 0}, {0, 0, 0}), at(16 * kMs));
+  CHECK(history.pose(0, sim_time(16 * kMs)).value.position.x() == 2);
+  CHECK(history.how(sim_time(300 * kMs)) == How::kStale);
+}
+
+TEST_CASE("What a false first page left is forgotten when the time turns out to be another") {
+  BodyHistory history(1);
+  world_state_t forged = page(3'600'000 * kMs, 0, {9, 9, 9}, {0, 0, 0});
+  forged.header.publish_time_ns = forged.clock.host_ns = 1'000 * kMs;
+  history.push(forged, at(0));
+  for (int ms = 16; ms <= 320; ms += 16) history.push(page(ms * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(ms * kMs));
+  CHECK(history.pose(0, sim_time(320 * kMs)).value.position.x() == 1);
+  CHECK(history.how(sim_time(600 * kMs)) == How::kStale);
+}
+
+TEST_CASE("Bodies beyond what any scene can tell of are refused") {
+  BodyHistory history(1);
+  history.push(page(0, BodyHistory::kMaxBodies, {1, 0, 0}, {0, 0, 0}), at(0));
+  CHECK(history.refused() == 1);
+  CHECK(history.pose(BodyHistory::kMaxBodies, sim_time(0)).how == How::kNone);
 }

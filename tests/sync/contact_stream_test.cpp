@@ -94,7 +94,8 @@ TEST_CASE("Events come out in order of their time, each once, whatever the wire 
     for (int i = 0; i < 60; ++i)
       truth.push_back(event(100 + i, i / 2, i % 2 ? contact_event_t::END : contact_event_t::BEGIN,
                             std::uniform_int_distribution<std::int64_t>(0, 200 * kMs)(random)));
-    // Every step repeats what is younger than 50 ms; 30 % of the messages are lost, some twice, and shuffled by 5 ms.
+    // Every step repeats what is younger than 50 ms; 30 % of the messages are lost, some twice, and shuffled by 5
+    // ms.
     std::vector<std::pair<std::int64_t, contact_events_t>> wire;
     for (std::int64_t step = 0; step < 260; ++step) {
       std::vector<contact_event_t> young;
@@ -203,8 +204,10 @@ TEST_CASE("Messages of another run are mapped to our clock by their arrival") {
 TEST_CASE("The integral over a tick is the time average of force and area while in contact") {
   ContactStream stream(kRun);
   for (std::int64_t step = 0; step <= 40; ++step)
-    stream.push(frame(step * kMs, step >= 10 && step < 20 ? std::vector{contact(1, 3)} : std::vector<contact_t>{}), at(step * kMs));
-  stream.push(events(40 * kMs, {event(1, 1, contact_event_t::BEGIN, 9'500'000), event(2, 1, contact_event_t::END, 19'500'000)}),
+    stream.push(frame(step * kMs, step >= 10 && step < 20 ? std::vector{contact(1, 3)} : std::vector<contact_t>{}),
+                at(step * kMs));
+  stream.push(events(40 * kMs, {event(1, 1, contact_event_t::BEGIN, 9'500'000),
+                                event(2, 1, contact_event_t::END, 19'500'000)}),
               at(40 * kMs));
   const auto tick = stream.integral(sim_time(0), sim_time(20 * kMs), 0, 1);
   CHECK(tick.contact_time == Nanoseconds(10 * kMs));
@@ -220,10 +223,92 @@ TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events
   ContactStream stream(kRun);
   stream.push(frame(0, {}), at(0));
   stream.push(frame(20 * kMs, {}), at(20 * kMs));
-  stream.push(events(20 * kMs, {event(1, 1, contact_event_t::BEGIN, 5 * kMs), event(2, 1, contact_event_t::END, 8 * kMs)}),
-              at(20 * kMs));
+  stream.push(
+      events(20 * kMs, {event(1, 1, contact_event_t::BEGIN, 5 * kMs), event(2, 1, contact_event_t::END, 8 * kMs)}),
+      at(20 * kMs));
   const auto tick = stream.integral(sim_time(0), sim_time(20 * kMs), 0, 1);
   CHECK(tick.contact_time == Nanoseconds(3 * kMs));
   CHECK(tick.force_N == Approx(0.2 * 0.5 / 0.020));  // m v over the tick
   CHECK(tick.material == 3);
+}
+
+TEST_CASE("A snapshot far in the future is refused, and what comes after it is heard") {
+  ContactStream stream(kRun);
+  stream.push(frame(10 * kMs, {contact(1, 1)}), at(10 * kMs));
+  SECTION("with an honest clock") {
+    contact_frame_t forged = frame(10 * kMs, {contact(9, 9)});
+    forged.header.sim_time_ns = 3'600'000 * kMs;
+    stream.push(forged, at(10 * kMs));
+    CHECK(stream.refused() == 1);
+  }
+  SECTION("with a clock that agrees with it") {
+    contact_frame_t forged = frame(3'600'000 * kMs, {contact(9, 9)});
+    forged.header.publish_time_ns = 1'010 * kMs;
+    forged.clock.host_ns = 1'010 * kMs;
+    stream.push(forged, at(10 * kMs));
+  }
+  SECTION("within a second it is kept and silences nobody either") {
+    contact_frame_t forged = frame(10 * kMs, {contact(9, 9)});
+    forged.header.sim_time_ns = 900 * kMs;
+    stream.push(forged, at(10 * kMs));
+    CHECK(stream.refused() == 0);
+  }
+  stream.push(frame(20 * kMs, {contact(1, 2)}), at(20 * kMs));
+  const auto state = stream.state_at(sim_time(20 * kMs));
+  CHECK(state.how == How::kExact);
+  REQUIRE(state.value.size() == 1);
+  CHECK(state.value[0].contact_id == 1);
+}
+
+TEST_CASE("What a false first message left is forgotten when the time turns out to be another") {
+  ContactStream stream(kRun);
+  contact_frame_t forged = frame(3'600'000 * kMs, {contact(9, 9)});
+  forged.header.publish_time_ns = forged.clock.host_ns = 1'000 * kMs;
+  contact_events_t lie = events(3'600'000 * kMs, {event(77, 7, contact_event_t::HIT, 3'600'000 * kMs)});
+  lie.header.publish_time_ns = lie.clock.host_ns = 1'000 * kMs;
+  stream.push(forged, at(0));
+  stream.push(lie, at(0));
+  for (int ms = 1; ms <= 310; ++ms) stream.push(frame(ms * kMs, {contact(1, 1)}), at(ms * kMs));
+  const auto state = stream.state_at(sim_time(310 * kMs));
+  REQUIRE(state.value.size() == 1);
+  CHECK(state.value[0].contact_id == 1);
+  CHECK(stream.take_events(SimTime::max()).empty());
+}
+
+TEST_CASE("A snapshot published 20 ms ahead of its time is let in, at any speed of the simulation") {
+  for (const double rate : {0.01, 1.0, 5.0}) {
+    ContactStream stream(kRun);
+    for (int ms = 0; ms < 3000; ms += 16) {
+      const auto sim_ns = static_cast<std::int64_t>(ms * rate * kMs);
+      contact_frame_t m = frame(sim_ns + 20 * kMs, {contact(1, 1)});
+      m.header.publish_time_ns = (ms + 1'000) * kMs;
+      m.clock = {sim_ns, (ms + 1'000) * kMs, rate};
+      stream.push(m, at(ms * kMs));
+    }
+    CHECK(stream.refused() == 0);
+    CHECK(stream.restarts() == 0);
+  }
+}
+
+TEST_CASE("Events of a future that nobody can know are refused, and those of now come through") {
+  ContactStream stream(kRun);
+  std::vector<contact_event_t> lies;
+  for (int i = 0; i < 5000; ++i) lies.push_back(event(1000 + i, i, contact_event_t::HIT, 3'600'000 * kMs + i));
+  stream.push(events(10 * kMs, {event(1, 1, contact_event_t::HIT, 9 * kMs)}), at(10 * kMs));
+  stream.push(events(10 * kMs, lies), at(10 * kMs));
+  CHECK(stream.refused() == 5000);
+  const auto due = stream.take_events(SimTime::max());
+  REQUIRE(due.size() == 1);
+  CHECK(due[0].event_id == 1);
+}
+
+TEST_CASE("When too many events are pending the latest give way, and are counted") {
+  ContactStream stream(kRun);
+  std::vector<contact_event_t> early, late;
+  for (int i = 0; i < 5000; ++i) late.push_back(event(10'000 + i, i, contact_event_t::HIT, 500 * kMs + i));
+  for (int i = 0; i < 10; ++i) early.push_back(event(i, i, contact_event_t::HIT, 9 * kMs + i));
+  stream.push(events(10 * kMs, late), at(10 * kMs));
+  stream.push(events(10 * kMs, early), at(10 * kMs));
+  CHECK(stream.overflow() == 5010 - static_cast<std::int64_t>(ContactStream::kMaxPendingEvents));
+  CHECK(stream.take_events(sim_time(10 * kMs)).size() == 10);
 }

@@ -14,7 +14,8 @@ constexpr int kHit = node_health_t::OWES_HIT;
 constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
 }  // namespace
 
-TEST_CASE("However messages are lost, repeated and reordered, every debt has one outcome and nothing counts twice") {
+TEST_CASE(
+    "However messages are lost, repeated and reordered, every debt has one outcome and nothing counts twice") {
   struct Node {
     std::string name, modality;
     int owes;
@@ -23,8 +24,10 @@ TEST_CASE("However messages are lost, repeated and reordered, every debt has one
     MatcherFixture f;
     std::mt19937 random(seed);
     const auto chance = [&](double p) { return std::uniform_real_distribution<>(0, 1)(random) < p; };
-    std::vector<Node> nodes = {{"haptic_node", "haptic", kBoth}, {"audio_node", "audio", kHit},
-                               {"wall_1", "visual", kBoth},      {"wall_2", "visual", kBoth},
+    std::vector<Node> nodes = {{"haptic_node", "haptic", kBoth},
+                               {"audio_node", "audio", kHit},
+                               {"wall_1", "visual", kBoth},
+                               {"wall_2", "visual", kBoth},
                                {"smell_node", "smell", node_health_t::OWES_BEGIN}};
 
     // Everything that is sent, with the time of its arrival.
@@ -53,7 +56,8 @@ TEST_CASE("However messages are lost, repeated and reordered, every debt has one
       }
       if (heard) ++(kind == contact_event_t::HIT ? hits : begins), begins -= kind == contact_event_t::END;
       for (const Node& n : nodes) {
-        const bool owed = kind == contact_event_t::BEGIN ? (n.owes & 1) != 0 : kind == contact_event_t::HIT && (n.owes & 2) != 0;
+        const bool owed =
+            kind == contact_event_t::BEGIN ? (n.owes & 1) != 0 : kind == contact_event_t::HIT && (n.owes & 2) != 0;
         const auto outcome = static_cast<std::int8_t>(random() % 5);
         const bool reports = chance(0.8);
         bool reported = false;
@@ -70,10 +74,14 @@ TEST_CASE("However messages are lost, repeated and reordered, every debt has one
         if (!owed || !heard) continue;
         DebtTally& t = expected[n.modality];
         ++t.owed;
-        if (!reported) ++t.lost;
-        else if (outcome == presentation_t::DROPPED_LATE) ++t.dropped_late;
-        else if (outcome == presentation_t::DROPPED_BY_PROFILE) ++t.dropped_by_profile;
-        else ++t.presented;
+        if (!reported)
+          ++t.lost;
+        else if (outcome == presentation_t::DROPPED_LATE)
+          ++t.dropped_late;
+        else if (outcome == presentation_t::DROPPED_BY_PROFILE)
+          ++t.dropped_by_profile;
+        else
+          ++t.presented;
       }
     }
     std::sort(sent.begin(), sent.end(), [](const Sent& a, const Sent& b) { return a.ms < b.ms; });

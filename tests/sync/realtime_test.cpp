@@ -39,6 +39,21 @@ TEST_CASE("One long tick between idle ones is forgiven, a standstill of 100 ms i
   CHECK(guard.tick(at(111), at(300)));
 }
 
+TEST_CASE("A loop is calm for as long as it has left time to others without a break") {
+  BusyGuard guard;
+  HostTime now = host_time(1'000'000'000);
+  const auto run = [&](int ms, std::int64_t busy_us) {
+    for (const HostTime end = now + Nanoseconds(ms * 1'000'000LL); now < end; now += Nanoseconds(1'000'000))
+      guard.tick(now, now + Nanoseconds(busy_us * 1000));
+  };
+  run(5000, 300);
+  CHECK(guard.calm() > Nanoseconds(4'500'000'000));
+  run(250, 950);
+  CHECK(guard.calm() == Nanoseconds(0));
+  run(10'200, 300);
+  CHECK(guard.calm() >= Nanoseconds(10'000'000'000 - 200'000'000));
+}
+
 TEST_CASE("Normal scheduling is what was asked for when it was") {
   CHECK(set_realtime(Realtime::kOff, 60) == "normal scheduling");
   CHECK(set_realtime(Realtime::kRequire, 0) == "normal scheduling");

@@ -165,7 +165,7 @@ TEST_CASE("Messages that are missing in their numbering are counted by channel")
   f.hear(kStart + Nanoseconds(2), 3);
   f.hear(kStart + Nanoseconds(3));
   CHECK(f.recorder.gaps() == 3);
-  CHECK_THAT(f.recorder.note(0), Catch::Contains("gaps: LIVE 3"));
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("gaps: LIVE 3"));
 }
 
 TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
@@ -175,7 +175,7 @@ TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
   f.hear(kStart);
   f.recorder.poll(kStart);
   CHECK(f.recorder.failing());
-  CHECK_THAT(f.recorder.note(0), Catch::Contains("No space left on device"));
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("No space left on device"));
   f.disk->trouble.clear();
   f.recorder.poll(kStart + Nanoseconds(500'000'000));
   CHECK(f.recorder.failing());
@@ -197,12 +197,22 @@ TEST_CASE("A message that is none of ours is recorded as it is") {
 
 TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") {
   TapBatch batch;
-  CHECK(batch.add(kStart, "A", some_bytes(50), 100));
-  CHECK_FALSE(batch.add(kStart, "A", some_bytes(60), 100));
-  CHECK(batch.add(kStart + Nanoseconds(1), "BB", some_bytes(47), 100));
+  CHECK(batch.add(kStart, "A", some_bytes(50), 100) == Tapped::kKept);
+  CHECK(batch.add(kStart, "A", some_bytes(60), 100) == Tapped::kNoRoom);
+  CHECK(batch.add(kStart + Nanoseconds(1), "BB", some_bytes(47), 100) == Tapped::kKept);
   REQUIRE(batch.size() == 2);
   CHECK(batch[1].channel == "BB");
   CHECK(batch[1].data.size() == 47);
   batch.clear();
   CHECK(batch.size() == 0);
+}
+
+TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
+  Fixture f;
+  TapBatch batch;
+  CHECK(batch.add(kStart, "A", some_bytes(channels::kMaxMessageBytes), 1 << 20) == Tapped::kKept);
+  CHECK(batch.add(kStart, "A", some_bytes(channels::kMaxMessageBytes + 1), 1 << 20) == Tapped::kOversized);
+  CHECK(batch.size() == 1);
+  CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
+  CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
 }

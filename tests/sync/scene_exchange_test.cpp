@@ -113,3 +113,121 @@ TEST_CASE("Another scene replaces the first, and what it does not name is forgot
   }
   CHECK(receiver.asset(old_mesh) == nullptr);
 }
+
+namespace {
+
+// A receiver on a bus in memory, and announcers of any incarnation.
+struct Exchange {
+  Bus bus{Identity::fresh("receiver", 1), in_memory()};
+  SceneReceiver receiver{bus};
+  HostTime now = host_time(1'000'000'000);
+
+  bool poll() {
+    bus.drain(now);
+    const bool complete = receiver.poll(now);
+    now += Nanoseconds(1'000'000);
+    return complete;
+  }
+  // A page that was never sent by our bus: its incarnation is another.
+  void forge(std::int64_t incarnation, const std::vector<asset_ref_t>& refs, int page = 0, int pages = 1) {
+    scene_manifest_t m{};
+    m.header.sim_time_ns = -1;
+    m.header.run_id = 1;
+    m.header.incarnation = incarnation;
+    m.page = page, m.pages = pages;
+    m.assets = refs;
+    m.count = static_cast<int>(refs.size());
+    const Bytes bytes = encode(m);
+    for (const auto& inbox : bus.inboxes())
+      if (inbox->count().channel == channels::kSceneManifest) inbox->accept(bytes.data(), bytes.size(), now);
+  }
+};
+
+asset_ref_t ref_of(std::int64_t hash, std::int32_t size) {
+  asset_ref_t r{};
+  r.hash = hash;
+  r.size = size;
+  r.kind = asset_ref_t::MESH;
+  r.name = std::string(1, 'x');
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("A manifest of more than any scene has takes no memory") {
+  Exchange x;
+  SECTION("too many bytes") {
+    std::vector<asset_ref_t> refs;
+    for (int i = 0; i < 10; ++i) refs.push_back(ref_of(i, 64 << 20));
+    x.forge(99, refs);
+  }
+  SECTION("one too large") { x.forge(99, {ref_of(1, (64 << 20) + 1)}); }
+  SECTION("too many assets") {
+    for (int page = 0; page < 100; ++page) {
+      std::vector<asset_ref_t> refs;
+      for (int i = 0; i < 12; ++i) refs.push_back(ref_of(page * 12 + i, 1));
+      x.forge(99, refs, page, 100);
+    }
+    for (int i = 0; i < 20; ++i) x.poll();
+  }
+  SECTION("too many pages") { x.forge(99, {ref_of(1, 1)}, 0, 2000); }
+  x.poll();
+  CHECK(x.receiver.refused() == 1);
+  CHECK(x.receiver.manifest().empty());
+  CHECK(x.receiver.bytes_held() == 0);
+}
+
+TEST_CASE("What is announced takes memory only as it arrives, and is given up when it does not") {
+  Exchange x;
+  x.forge(99, {ref_of(1, 64 << 20), ref_of(2, 64 << 20), ref_of(3, 64 << 20)});
+  asset_chunk_t m{};
+  m.header.sim_time_ns = -1;
+  m.hash = 2;
+  m.chunks = 65536;
+  m.size = 1024;
+  m.data.assign(1024, 0xee);
+  for (int i = 0; i < 2000; ++i) {
+    m.chunk = i % 2 == 0 ? i / 2 : 65535 - i;  // one as asked for, one far ahead
+    x.bus.publish(channels::kAssetChunk, m, Port::kBulk);
+    x.poll();
+  }
+  CHECK(x.receiver.bytes_held() == 1000 * 1024);
+  for (int i = 0; i < 3100; ++i) x.poll();
+  CHECK(x.receiver.bytes_held() == 0);
+  CHECK(x.receiver.manifest().empty());
+}
+
+TEST_CASE("Another announcer displaces no scene while the one in use still speaks") {
+  Exchange x;
+  SceneSender sender(x.bus, assets_of("room", 10'000));
+  const auto run = [&](int ms, bool announce) {
+    int complete = 0;
+    for (int i = 0; i < ms; ++i) {
+      if (announce) sender.poll(x.now);
+      if (i % 100 == 50) x.forge(99, {ref_of(1, 1 << 20)});
+      complete += x.poll();
+    }
+    return complete;
+  };
+  REQUIRE(run(3000, true) == 1);
+  CHECK(x.receiver.manifest().size() == 2);
+  SECTION("when it is silent the other is listened to, and the scene stays until that one's is complete") {
+    CHECK(run(4000, false) == 0);
+    CHECK(x.receiver.manifest().size() == 1);
+    CHECK(x.receiver.scene()->name == "room");
+    CHECK(x.receiver.asset(sender.manifest()[1].hash) != nullptr);
+  }
+}
+
+TEST_CASE("A large asset arrives whole, piece by piece") {
+  Exchange x;
+  SceneSender sender(x.bus, assets_of("room", 3'000'000));
+  bool done = false;
+  for (int ms = 0; ms < 5000 && !done; ++ms) {
+    sender.poll(x.now);
+    done = x.poll();
+  }
+  REQUIRE(done);
+  CHECK(x.receiver.asset(sender.manifest()[1].hash)->bytes == assets_of("room", 3'000'000)[1].bytes);
+  CHECK(x.receiver.bytes_held() >= 3'000'000);
+}

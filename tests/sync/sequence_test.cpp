@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <random>
 #include <set>
 #include <vector>
@@ -61,6 +62,49 @@ TEST_CASE("A clock that falls back by more than a second within an incarnation i
   CHECK(t.observe(message(3, 100)) == Arrival::kNewEpoch);
   CHECK(t.observe(message(4, 101)) == Arrival::kNew);
   CHECK(t.gaps() == 0);
+}
+
+TEST_CASE("One message with a number far ahead silences nobody") {
+  SequenceTracker t;
+  t.observe(message(10, 10));
+  SECTION("beyond the longest loss its followers are heard at once") {
+    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(11, 11)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(12, 12)) == Arrival::kNew);
+    CHECK(t.gaps() == 0);
+  }
+  SECTION("nearer they are heard when three of them contradict it") {
+    CHECK(t.observe(message(1'000'000, 11)) == Arrival::kNew);
+    CHECK(t.observe(message(11, 12)) == Arrival::kOld);
+    CHECK(t.observe(message(12, 13)) == Arrival::kOld);
+    CHECK(t.observe(message(13, 14)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(14, 15)) == Arrival::kNew);
+  }
+  SECTION("stamped ahead as well, within a second") {
+    CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
+    int old = 0;
+    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == Arrival::kOld;
+    CHECK(old <= 903);
+  }
+}
+
+TEST_CASE("A burst that the network repeats is old, however long it is") {
+  SequenceTracker t;
+  for (int i = 0; i < 500; ++i) t.observe(message(i, i));
+  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == Arrival::kOld);
+  CHECK(t.observe(message(500, 500)) == Arrival::kNew);
+}
+
+TEST_CASE("Of too many senders the one not heard for longest is forgotten, and counted") {
+  SequenceTracker t;
+  t.observe(message(1, 1, 7, -1));
+  for (std::int32_t source = 0; source < 300; ++source) {
+    t.observe(message(1, 1, 7, source));
+    if (source == 200) t.observe(message(2, 2, 7, -1));
+  }
+  CHECK(t.forgotten() == 45);
+  CHECK(t.observe(message(3, 3, 7, -1)) == Arrival::kNew);
+  CHECK(t.observe(message(2, 2, 7, 0)) == Arrival::kNewIncarnation);
 }
 
 TEST_CASE("Sources on one channel are numbered apart") {

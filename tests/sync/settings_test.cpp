@@ -16,13 +16,16 @@ struct Example {
   bool loud = false;
   std::string mode = "fast";
   std::string note;
+  double hottest_degC = 42, coldest_degC = 15;
 };
 const std::vector<SettingField<Example>> kTable{
     {{"delay", "s", "0.02", 0, 1, "Delay", "design"}, &Example::delay_s},
     {{"voices", "count", "8", 1, 64, "Voices", "design"}, &Example::voices},
     {{"loud", "bool", "false", 0, 0, "Loud", "design"}, &Example::loud},
     {{"mode", "fast|slow", "fast", 0, 0, "Mode", "design"}, &Example::mode},
-    {{"note", "text", "", 0, 0, "Note", "design"}, &Example::note}};
+    {{"note", "text", "", 0, 0, "Note", "design"}, &Example::note},
+    {{"hottest", "degC", "42", 34, 43, "Hottest", "design", "max"}, &Example::hottest_degC},
+    {{"coldest", "degC", "15", 10, 30, "Coldest", "design", "min"}, &Example::coldest_degC}};
 
 struct Entry {
   std::string node, name, value;
@@ -120,4 +123,35 @@ TEST_CASE(
   REQUIRE(refused.size() == 2);
   CHECK(refused[0].starts_with("me: setting \"voices\""));
   CHECK(refused[1].starts_with("me: setting \"loud\""));
+}
+
+TEST_CASE("A scene may tighten a safety limit, and only the command line may loosen it") {
+  Example e;
+  const auto apply = [&](const std::vector<Entry>& scene, const std::vector<std::string>& command_line) {
+    return apply_settings<Example>(e, kTable, "me", scene, command_line);
+  };
+  SECTION("tightened, or just as it is, by the scene") {
+    CHECK(apply({{"me", "hottest", "40"}, {"me", "coldest", "20"}}, {}).empty());
+    CHECK(e.hottest_degC == 40);
+    CHECK(e.coldest_degC == 20);
+    CHECK(apply({{"me", "hottest", "42"}, {"me", "coldest", "15"}}, {}).empty());
+    CHECK(e.hottest_degC == 42);
+    CHECK(e.coldest_degC == 15);
+  }
+  SECTION("loosened by the scene: refused in a sentence with the remedy, also after it was tightened") {
+    const auto refused = apply({{"me", "hottest", "40"}, {"me", "hottest", "42.5"}, {"me", "coldest", "14"}}, {});
+    CHECK(e.hottest_degC == 40);
+    CHECK(e.coldest_degC == 15);
+    REQUIRE(refused.size() == 2);
+    CHECK(refused[0] ==
+          "me: setting \"hottest\" = \"42.5\": a scene may only tighten this safety limit, to 42 degC or less; "
+          "loosen it with "
+          "--set on the node's own command line");
+    CHECK(refused[1].find("to 15 degC or more") != std::string::npos);
+  }
+  SECTION("loosened by the command line, within its range") {
+    CHECK(apply({{"me", "hottest", "43"}}, {"hottest=42.5", "coldest=12"}).size() == 1);
+    CHECK(e.hottest_degC == 42.5);
+    CHECK(e.coldest_degC == 12);
+  }
 }

@@ -45,8 +45,8 @@ struct RunLog {
   }
   void health(const std::string& node, const std::string& modality, double ms, double rate_Hz,
               std::int64_t incarnation = 1, std::int8_t state_ = node_health_t::RUNNING, std::int64_t missed = 0) {
-    node_health_t m = MatcherFixture::health_message(node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms,
-                                                     incarnation, state_);
+    node_health_t m = MatcherFixture::health_message(
+        node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms, incarnation, state_);
     m.nominal_rate_Hz = rate_Hz;
     m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
     m.missed_ticks = missed;
@@ -81,7 +81,8 @@ void ordinary_run(RunLog& log) {
     const int id = ms;
     log.send(channels::kContactEvents, MatcherFixture::event_message(id, ms - 1, contact_event_t::HIT, 100), ms);
     log.send(channels::kPresented, MatcherFixture::presented_message("audio_node", "audio", id, ms + 19), ms + 1);
-    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", id, ms + 12), ms + 2);
+    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", id, ms + 12),
+             ms + 2);
   }
 }
 
@@ -90,7 +91,13 @@ void ordinary_run(RunLog& log) {
 TEST_CASE("The summary of a run holds what the contract promises") {
   RunLog log;
   ordinary_run(log);
-  const RunSummary s = log.summary({.scene = {}, .git = {}, .seconds = {}, .seed = {}, .nodes = {"audio_node"}, .restarts = {}, .warnings = {}});
+  const RunSummary s = log.summary({.scene = {},
+                                    .git = {},
+                                    .seconds = {},
+                                    .seed = {},
+                                    .nodes = {"audio_node"},
+                                    .restarts = {},
+                                    .warnings = {}});
   CHECK(s.failure().empty());
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "room.sdf");
@@ -114,7 +121,8 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   for (const char* outcome : {"lost", "stalled", "dropped_by_profile"}) CHECK(j["contacts"][outcome] == 0);
   CHECK(j["asynchrony_ms"]["audio_visual"]["n"] == 80);
   CHECK(j["asynchrony_ms"]["audio_visual"]["p50"].get<double>() == Approx(-7).margin(0.1));
-  CHECK(j["asynchrony_ms"]["haptic_audio"] == Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}}));
+  CHECK(j["asynchrony_ms"]["haptic_audio"] ==
+        Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}}));
   CHECK(j["asynchrony_ms"].contains("haptic_visual"));
   CHECK(j["bus"]["WORLD_STATE"]["messages"] == 501);
   CHECK(j["bus"]["WORLD_STATE"]["gaps"] == 0);
@@ -125,8 +133,13 @@ TEST_CASE("The summary of a run holds what the contract promises") {
 TEST_CASE("What the caller knows better replaces what the log says") {
   RunLog log;
   ordinary_run(log);
-  const RunSummary s = log.summary(
-      {.scene = "other.sdf", .git = "def", .seconds = 20, .seed = 1, .nodes = {}, .restarts = {{"audio_node", 4}}, .warnings = {}});
+  const RunSummary s = log.summary({.scene = "other.sdf",
+                                    .git = "def",
+                                    .seconds = 20,
+                                    .seed = 1,
+                                    .nodes = {},
+                                    .restarts = {{"audio_node", 4}},
+                                    .warnings = {}});
   const Json j = Json::parse(to_json(s));
   CHECK(j["scene"] == "other.sdf");
   CHECK(j["git"] == "def");
@@ -157,8 +170,8 @@ TEST_CASE("What is presented late is counted as presented, and named") {
   RunLog log;
   ordinary_run(log);
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8101, contact_event_t::HIT, 100), 10001);
-  log.send(channels::kPresented, MatcherFixture::presented_message("audio_node", "audio", 1, 8400, presentation_t::LATE),
-           10002);
+  log.send(channels::kPresented,
+           MatcherFixture::presented_message("audio_node", "audio", 1, 8400, presentation_t::LATE), 10002);
   for (int ms = 10100; ms < 12000; ms += 100) log.health("audio_node", "audio", ms, 750);
   const Json contacts = Json::parse(to_json(log.summary()))["contacts"];
   CHECK(contacts["late"] == 1);
@@ -192,9 +205,11 @@ TEST_CASE("The text of a summary is no order to a terminal") {
 
 TEST_CASE("Incarnations of a node are added up") {
   RunLog log;
-  for (int ms = 0; ms <= 4000; ms += 100) log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
+  for (int ms = 0; ms <= 4000; ms += 100)
+    log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
   for (int ms = 4200; ms <= 5000; ms += 100) log.health("audio_node", "audio", ms, 100, 2, node_health_t::WAITING);
-  for (int ms = 5100; ms <= 9000; ms += 100) log.health("audio_node", "audio", ms, 1000, 2, node_health_t::RUNNING, 7);
+  for (int ms = 5100; ms <= 9000; ms += 100)
+    log.health("audio_node", "audio", ms, 1000, 2, node_health_t::RUNNING, 7);
   const auto nodes = log.summary().nodes();
   const NodeSummary& n = nodes.at("audio_node");
   CHECK(n.restarts == 1);
@@ -210,8 +225,13 @@ TEST_CASE("A run with a loss, or without a node that must be there, is a failure
   ordinary_run(log);
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8100, contact_event_t::HIT, 100), 10001);
   for (int ms = 10100; ms < 14000; ms += 100) log.health("visual_node", "visual", ms, 60);
-  const SummaryOptions options{.scene = {}, .git = {}, .seconds = {}, .seed = {},
-                               .nodes = {"audio_node", "visual_node", "haptic_node"}, .restarts = {}, .warnings = {}};
+  const SummaryOptions options{.scene = {},
+                               .git = {},
+                               .seconds = {},
+                               .seed = {},
+                               .nodes = {"audio_node", "visual_node", "haptic_node"},
+                               .restarts = {},
+                               .warnings = {}};
   const std::string why = log.summary(options).failure();
   CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
   CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));
@@ -302,7 +322,9 @@ TEST_CASE("The head of another log that crossed the bus in a replay does not cha
   CHECK(s.matcher().hits() == 80);
 }
 
-TEST_CASE("What was presented on another host is put on the recorder's clock by the maps in the log, and its uncertainty told") {
+TEST_CASE(
+    "What was presented on another host is put on the recorder's clock by the maps in the log, and its "
+    "uncertainty told") {
   constexpr std::int64_t kAhead = 3'600'000'000'000;
   const bool mapped = GENERATE(true, false);
   RunLog log;
@@ -318,12 +340,14 @@ TEST_CASE("What was presented on another host is put on the recorder's clock by 
     if (mapped && ms % 500 == 0) {
       clock_map_t map{};
       map.header = header_of("sync_node", 1, 0, to_ns(MatcherFixture::at(ms)));
-      map.of_clock = 2, map.at_ns = map.header.publish_time_ns, map.offset_ns = kAhead, map.uncertainty_ns = 120'000;
+      map.of_clock = 2, map.at_ns = map.header.publish_time_ns, map.offset_ns = kAhead,
+      map.uncertainty_ns = 120'000;
       log.send(channels::kClockMap, map, ms);
     }
     if (ms < 1000 || ms > 4000) continue;
     log.send(channels::kContactEvents, MatcherFixture::event_message(ms, ms - 1, contact_event_t::HIT, 100), ms);
-    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", ms, ms + 12), ms + 2);
+    log.send(channels::kPresented, MatcherFixture::presented_message("visual_node", "visual", ms, ms + 12),
+             ms + 2);
     presented_t heard = there(MatcherFixture::presented_message("audio_node", "audio", ms, ms + 19));
     heard.header.publish_time_ns = to_ns(MatcherFixture::at(ms)) + kAhead;
     heard.reports[0].presented_ns += kAhead;
@@ -342,4 +366,48 @@ TEST_CASE("What was presented on another host is put on the recorder's clock by 
     CHECK(pair["n"] == 0);
     CHECK(pair["uncertainty"].is_null());
   }
+}
+TEST_CASE("A recorder that was stopped leaves a hole, which is said and fails the run") {
+  RunLog log;
+  const auto speak = [&](int from_ms, int to_ms) {
+    for (int ms = from_ms; ms <= to_ms; ms += 100) log.health("audio_node", "audio", ms, 750);
+  };
+  speak(0, 2000);
+  SECTION("with a jump in the numbering") {
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(5000, 8000);
+    const RunSummary s = log.summary();
+    CHECK(s.holes_seconds() == Approx(3));
+    CHECK_THAT(s.failure(), Catch::Contains("the log has a hole of 3 s"));
+    CHECK_THAT(to_text(s), Catch::Contains("the log has a hole of 3.0 s"));
+    CHECK(Json::parse(to_json(s))["log_holes_seconds"] == Approx(3));
+  }
+  SECTION("also when the kernel had kept what came first") {
+    speak(5000, 6500);
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(6600, 8000);
+    CHECK(log.summary().holes_seconds() == Approx(3));
+  }
+  SECTION("a silence of the nodes themselves is none") {
+    speak(5000, 8000);
+    CHECK(log.summary().holes_seconds() == 0);
+    CHECK(log.summary().failure().empty());
+  }
+  SECTION("nor is a loss while the log goes on") {
+    for (auto& [sender, next] : log.seq) next += 30;
+    speak(2100, 5000);
+    CHECK(log.summary().holes_seconds() == 0);
+  }
+}
+
+TEST_CASE("A run with more events than can be matched is a failure that is named") {
+  RunLog log;
+  ordinary_run(log);
+  for (int i = 0; i < static_cast<int>(PresentationMatcher::kMaxEvents) + 10; ++i)
+    log.send(channels::kContactEvents,
+             MatcherFixture::event_message(1'000'000 + i, 9900, contact_event_t::END, 100), 9901);
+  log.health("audio_node", "audio", 10'100, 750);
+  const RunSummary s = log.summary();
+  CHECK_THAT(s.failure(), Catch::Contains("found no room"));
+  CHECK_THAT(to_text(s), Catch::Contains("found no room"));
 }

@@ -41,6 +41,24 @@ TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
   CHECK(other.problem.find("hand, foot") != std::string::npos);
 }
 
+TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element; the command line can") {
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
+           {"temperature_min", "10"}, {"temperature_max", "43"}, {"slew_max", "300"}}) {
+    INFO(name);
+    scene_t scene = scene_with({"hand"});
+    setting_t s{};
+    s.node = "thermal_node", s.name = name, s.value = value;
+    scene.settings = {s};
+    const auto choice = thermal::choose(scene, "", {});
+    REQUIRE(choice.refused.size() == 1);
+    CHECK(choice.refused[0].find("only tighten") != std::string::npos);
+    CHECK(choice.settings.temperature_min_degC == 15);
+    CHECK(choice.settings.temperature_max_degC == 42);
+    CHECK(choice.settings.slew_max_K_s == 20);
+    CHECK(thermal::choose(scene_with({"hand"}), "", {name + "=" + value}).refused.empty());
+  }
+}
+
 TEST_CASE("Settings are taken from the scene and the command line, and refused with a sentence") {
   scene_t scene = scene_with({"hand"});
   setting_t s{};

@@ -43,6 +43,18 @@ TEST_CASE("What is wrong with a motion file is said with its line") {
   CHECK_THROWS_WITH(read_motion("/no/such/file.csv"), Contains("/no/such/file.csv") && Contains("cannot be read"));
 }
 
+TEST_CASE("A motion is of a regular file, with an end and lines of a size") {
+  for (const char* path : {"/dev/zero", "/dev/null", "/"})
+    CHECK_THROWS_WITH(read_motion(path), Contains(path) && Contains("no regular file"));
+  CHECK_THROWS_WITH(read(std::string(1001, 't')), Contains("line 1") && Contains("longer than 1000"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,0" + std::string(1000, '0') + "\n"),
+                    Contains("line 2") && Contains("longer than 1000"));
+  CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,0\n" + std::string(std::size_t{64} << 20, '\n')),
+                    Contains("64 MiB"));
+  CHECK(read("time_s,x_m,y_m,z_m\n\n0,0,0,1\n\n1,0,0,2").times_s.size() == 2);
+  CHECK(read("time_s,x_m,y_m,z_m\n0,0,0,1." + std::string(900, '0') + "\n").positions_m[0].z() == 1);
+}
+
 TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, and rests at the last") {
   const Motion motion = read("time_s,x_m,y_m,z_m\n10,0,0,0\n10.1,0.1,0,0\n10.2,0.2,0,0\n10.4,0.2,0.3,0\n");
   Playback device(motion, Placement{2, {1, 0, 0}, 0.5});

@@ -72,9 +72,13 @@ TEST_CASE("A material that cannot be is refused with its line") {
 }
 
 TEST_CASE("A tool is a body after all others, at the first point of its path") {
-  const WorldDef w = load("<tactus:tool name='hand' radius='8mm' mass='120g' material='skin' device='playback:x.csv' loop='true'>"
-                          "<tactus:waypoint time='0s' position='1 2 3'/><tactus:waypoint time='500ms' position='1 2 2'/></tactus:tool>"
-                          "<model name='m'><link name='l'/></model>");
+  SceneFile file(world(
+      "<tactus:tool name='hand' radius='8mm' mass='120g' material='skin' device='playback:x.csv,rate=2' "
+      "loop='true'>"
+      "<tactus:waypoint time='0s' position='1 2 3'/><tactus:waypoint time='500ms' position='1 2 2'/></tactus:tool>"
+      "<model name='m'><link name='l'/></model>"));
+  file.write("x.csv", "time_s,x_m,y_m,z_m\n");
+  const WorldDef w = file.load();
   REQUIRE(w.bodies.size() == 2);
   REQUIRE(w.tools.size() == 1);
   const tool_def_t& t = w.tools[0];
@@ -85,7 +89,7 @@ TEST_CASE("A tool is a body after all others, at the first point of its path") {
   CHECK(t.radius_m == Approx(0.008));
   CHECK(t.mass_kg == Approx(0.12));
   CHECK(w.materials[static_cast<std::size_t>(t.material)].name == "skin");
-  CHECK(t.device == "playback:x.csv");
+  CHECK(t.device == "playback:" + (file.folder() / "x.csv").string() + ",rate=2");
   CHECK(t.loop == 1);
   REQUIRE(t.waypoint_count == 2);
   CHECK(t.waypoints[1].time_s == 0.5);
@@ -105,6 +109,31 @@ TEST_CASE("A tool that cannot be is refused with its line") {
   CHECK_THAT(refusal("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
 }
 
+TEST_CASE("A device that cannot be is refused with its line, before anything starts") {
+  const auto said = [](const std::string& device) {
+    SceneFile file(world("\n<tactus:tool name='h' device='" + device +
+                         "'><tactus:waypoint time='1' position='0 0 0'/></tactus:tool>"));
+    file.write("short.csv", "time_s,x_m,y_m,z_m\n");
+    file.write("long.csv", "");
+    std::filesystem::resize_file(file.folder() / "long.csv", (64 << 20) + 1);
+    std::filesystem::create_directory(file.folder() / "folder");
+    return file.refusal();
+  };
+  CHECK(said("playback:short.csv") == "");
+  CHECK(said("virtual_hand:short.csv") == "");
+  for (const char* device :
+       {"evil", "", "playback", "playback:short.csv,rate=0", "playback:short.csv,colour=red"}) {
+    INFO(device);
+    CHECK_THAT(said(device), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("device"));
+  }
+  for (const char* device :
+       {"playback:none.csv", "playback:/dev/zero", "virtual_hand:folder", "playback:long.csv"}) {
+    INFO(device);
+    CHECK_THAT(said(device), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("names \""));
+  }
+  CHECK_THAT(said("playback:long.csv"), Catch::Contains("64 MiB"));
+}
+
 TEST_CASE("Settings of nodes are passed on as written, after their check") {
   const WorldDef w = load("<tactus:audio_node presentation_delay='25ms' device='virtual'/>");
   REQUIRE(w.settings.size() == 2);
@@ -119,6 +148,10 @@ TEST_CASE("A setting that a node does not have, or out of range, is refused with
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(refusal("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
+                                                                      Catch::Contains("only tighten") &&
+                                                                      Catch::Contains("8 N or less"));
+  CHECK(refusal("<tactus:haptic_node force_limit='3 N'/>").empty());
 }
 
 TEST_CASE("A node that is not built here is warned of and passed on: a sixth sense may live elsewhere") {

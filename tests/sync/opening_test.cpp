@@ -1,10 +1,10 @@
-#include "audio_node/opening.h"
+#include "sync/opening.h"
 
 #include <catch2/catch.hpp>
 #include <future>
 #include <stdexcept>
 
-using tactus::audio::Opening;
+using tactus::sync::Opening;
 
 namespace {
 

@@ -1,5 +1,6 @@
-// Makes something in a thread of its own, because making it may block for ever: PortAudio 19.6 waits without limit
-// for the first callback of a card that opens but does not start. Whoever waits for it asks; nobody is held.
+// Makes something in a thread of its own, because making it may take long or block for ever: PortAudio 19.6 waits
+// without limit for the first callback of a card that opens but does not start, a file may lie on a network.
+// Whoever waits for it asks; no loop is held.
 #pragma once
 
 #include <atomic>
@@ -9,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-namespace tactus::audio {
+namespace tactus::sync {
 
 template <class T>
 class Opening {
@@ -43,4 +44,4 @@ class Opening {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace tactus::audio
+}  // namespace tactus::sync

@@ -1,0 +1,39 @@
+// What tool_def_t.device and haptic_node --device say:
+// virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R].
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace tactus {
+
+// How a recorded motion is played.
+struct Placement {
+  double scale = 1;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  // added after scaling
+  double rate = 1;                                     // speed of the playback
+};
+
+struct ToolDevice {
+  enum class Kind { kVirtualHand, kPlayback } kind = Kind::kVirtualHand;
+  std::string file;  // of the motion; empty: none
+  Placement placement;
+};
+
+// No motion file is larger: a quarter of an hour at 1 kHz with orientations.
+inline constexpr std::uintmax_t kMaxMotionFileBytes = 64 << 20;
+
+// What is said is no device; one sentence.
+struct BadDevice : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Looks at the form only, not at the file. Throws BadDevice.
+ToolDevice parse_tool_device(const std::string& text);
+
+// The same device with its motion in another file. Throws BadDevice.
+std::string with_motion_file(const std::string& text, const std::string& file);
+
+}  // namespace tactus
