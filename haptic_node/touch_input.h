@@ -17,7 +17,8 @@ class TouchInput {
   // own: messages of another clock are read through its map; those of another run by arrival.
   TouchInput(int tool, sync::OwnClock own) : tool_(tool), simulation_(own) {}
 
-  // Those of other tools, of a simulation that has been replaced, and older ones are ignored.
+  // Those of other tools, of a simulation that has been replaced, older ones, and those of a future that nobody
+  // can know are ignored.
   void push(const touch_model_t& model, sync::HostTime arrival);
   // The newest if it has not been taken yet, else null.
   const touch_model_t* take() { return std::exchange(fresh_, false) ? &*newest_ : nullptr; }

@@ -32,6 +32,7 @@ struct Asset {
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;
+  // Throws std::runtime_error with one sentence when that is more than any receiver takes.
   SceneSender(Bus& bus, std::vector<Asset> assets);
   // Once a tick: the manifest when due, then chunks that were asked for.
   void poll(HostTime now);
@@ -63,7 +64,7 @@ class SceneReceiver {
   // A scene is complete or it is not there. A manifest of more, or of larger ones, is refused.
   static constexpr std::size_t kMaxAssetBytes = 64 << 20;
   static constexpr std::size_t kMaxTotalBytes = 256 << 20;
-  static constexpr std::size_t kMaxAssets = 1024;
+  static constexpr std::size_t kMaxAssets = 512;
   // A sender of manifests is listened to, and no other, until it has been silent for two periods of its manifest
   // or has sent nothing of use for kGiveUp; then it is not listened to for as long.
   static constexpr Nanoseconds kSilence{2'500'000'000};

@@ -11,7 +11,7 @@ namespace {
 // Chunks wait here between two ticks of the slowest receiver (20 ms at 4 a millisecond).
 constexpr std::size_t kChunkQueue = 4096;
 constexpr std::size_t kManifestQueue = 128;
-constexpr int kMostPages = 128;  // of twelve assets as our sender fills them
+constexpr int kMostPages = 64;  // of twelve assets as our sender fills them
 constexpr Nanoseconds kAskAgainAfter{100'000'000};
 constexpr int kMostRequests = 16;  // per round of asking, and assets under way at a time
 constexpr int kLongestRun = 256;   // chunks per request: 64 ms of the sender's budget
@@ -21,8 +21,8 @@ constexpr std::size_t kWindow = 1024;
 // One poll does so much at the most: some 0.5 ms.
 constexpr int kPagesPerPoll = 8;
 constexpr int kChunksPerPoll = 256;
-constexpr std::size_t kHashedPerPoll = 128 << 10;
-constexpr int kFreedPerPoll = 512;
+constexpr std::size_t kHashedPerPoll = 96 << 10;
+constexpr int kFreedPerPoll = 256;
 
 bool same(const std::vector<asset_ref_t>& a, const std::vector<asset_ref_t>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const asset_ref_t& x, const asset_ref_t& y) {

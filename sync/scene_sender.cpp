@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "sync/scene_exchange.h"
 
@@ -16,6 +17,7 @@ std::size_t chunk_count(std::size_t bytes) { return (bytes + kChunkBytes - 1) / 
 
 SceneSender::SceneSender(Bus& bus, std::vector<Asset> assets)
     : bus_(bus), requests_(bus.queue<asset_request_t>(channels::kAssetRequest, kRequestQueue, Port::kBoth)) {
+  std::size_t total = 0;
   for (Asset& asset : assets) {
     if (asset.bytes.empty()) continue;
     asset_ref_t ref{};
@@ -24,8 +26,15 @@ SceneSender::SceneSender(Bus& bus, std::vector<Asset> assets)
     ref.kind = asset.kind;
     ref.name = asset.name.substr(0, kLongestName);
     const std::vector<bool> none(chunk_count(asset.bytes.size()), false);
-    if (assets_.try_emplace(ref.hash, Outgoing{std::move(asset), none}).second) refs_.push_back(ref);
+    if (!assets_.try_emplace(ref.hash, Outgoing{std::move(asset), none}).second) continue;
+    refs_.push_back(ref);
+    total += static_cast<std::size_t>(ref.size);
   }
+  if (refs_.size() > SceneReceiver::kMaxAssets || total > SceneReceiver::kMaxTotalBytes)
+    throw std::runtime_error("the scene has " + std::to_string(refs_.size()) + " meshes and images of " +
+                             std::to_string(total >> 20) + " MB together; no node takes more than " +
+                             std::to_string(SceneReceiver::kMaxAssets) + " and " +
+                             std::to_string(SceneReceiver::kMaxTotalBytes >> 20) + " MB: leave some out");
 }
 
 void SceneSender::announce() {
@@ -36,7 +45,8 @@ void SceneSender::announce() {
     m.page = static_cast<std::int32_t>(page);
     m.pages = static_cast<std::int32_t>(pages);
     const std::size_t begin = page * kRefsPerPage, end = std::min(refs_.size(), begin + kRefsPerPage);
-    m.assets.assign(refs_.begin() + static_cast<std::ptrdiff_t>(begin), refs_.begin() + static_cast<std::ptrdiff_t>(end));
+    m.assets.assign(refs_.begin() + static_cast<std::ptrdiff_t>(begin),
+                    refs_.begin() + static_cast<std::ptrdiff_t>(end));
     m.count = static_cast<std::int32_t>(m.assets.size());
     bus_.publish(channels::kSceneManifest, m, Port::kBulk);
   }
@@ -50,7 +60,8 @@ void SceneSender::send_chunk(std::int64_t hash, const Outgoing& outgoing, std::s
   m.hash = hash;
   m.chunk = static_cast<std::int32_t>(chunk);
   m.chunks = static_cast<std::int32_t>(outgoing.wanted.size());
-  m.data.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin), bytes.begin() + static_cast<std::ptrdiff_t>(end));
+  m.data.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                bytes.begin() + static_cast<std::ptrdiff_t>(end));
   m.size = static_cast<std::int32_t>(m.data.size());
   bus_.publish(channels::kAssetChunk, m, Port::kBulk);
 }

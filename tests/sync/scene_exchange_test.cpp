@@ -163,10 +163,10 @@ TEST_CASE("A manifest of more than any scene has takes no memory") {
   }
   SECTION("one too large") { x.forge(99, {ref_of(1, (64 << 20) + 1)}); }
   SECTION("too many assets") {
-    for (int page = 0; page < 100; ++page) {
+    for (int page = 0; page < 60; ++page) {
       std::vector<asset_ref_t> refs;
       for (int i = 0; i < 12; ++i) refs.push_back(ref_of(page * 12 + i, 1));
-      x.forge(99, refs, page, 100);
+      x.forge(99, refs, page, 60);
     }
     for (int i = 0; i < 20; ++i) x.poll();
   }
@@ -175,6 +175,14 @@ TEST_CASE("A manifest of more than any scene has takes no memory") {
   CHECK(x.receiver.refused() == 1);
   CHECK(x.receiver.manifest().empty());
   CHECK(x.receiver.bytes_held() == 0);
+}
+
+TEST_CASE("A scene of more than any receiver takes is refused where it is sent") {
+  Bus bus(Identity::fresh("test", 1), in_memory());
+  std::vector<Asset> assets;
+  for (std::size_t i = 0; i <= SceneReceiver::kMaxAssets; ++i)
+    assets.push_back({asset_ref_t::MESH, "m", Bytes(i + 1, 1)});
+  CHECK_THROWS_WITH(SceneSender(bus, assets), Catch::Contains("leave some out"));
 }
 
 TEST_CASE("What is announced takes memory only as it arrives, and is given up when it does not") {
