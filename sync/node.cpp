@@ -47,6 +47,8 @@ NodeOptions with_profile(NodeOptions o) {
   return o;
 }
 
+std::int32_t saturated(std::int64_t n) { return static_cast<std::int32_t>(std::min<std::int64_t>(n, INT32_MAX)); }
+
 constexpr Nanoseconds kReportPeriod{100'000'000};
 // A loop that was demoted gets its priority back after so long below 80 %.
 constexpr Nanoseconds kForgiven{10'000'000'000};
@@ -195,8 +197,8 @@ node_health_t Node::health_message(HostTime now) {
     in.age_ns = age.age.count();
     in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // ClockMaps::kMostUncertain at the most
     in.messages = c.sequence.messages();
-    in.gaps = c.sequence.gaps() + c.dropped;
-    in.bad = static_cast<std::int32_t>(std::min<std::int64_t>(c.bad, INT32_MAX));
+    in.gaps = saturated(c.sequence.gaps() + c.dropped);
+    in.bad = saturated(c.bad);
     m.inputs.push_back(in);
     forgotten += c.sequence.forgotten();
   }
