@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes planks.png: the relief of a floor of boards, 0.4 m by 0.4 m in one repetition, white 2 mm over black, 16 bits.
+"""Writes planks.png: the relief of four boards, drawn as 0.4 m by 0.4 m, white 2 mm over black, 16 bits; a scene may scale it.
 
   make_planks.py > planks.png
 

@@ -122,7 +122,9 @@ TEST_CASE("What is wrong is said in one sentence before anything starts") {
 TEST_CASE("A busy port is named, with the remedy, when the machine's network is used") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "30", "--network", "host", "--without", "visual_node", "--out", run.out("a")}, "first");
-  const auto up = [&] { return std::filesystem::exists(run.out("a") / "run.lcmlog"); };
+  const auto up = [&] {
+    return contents(run.out("a") / "logs/sim_node.log").find("the world begins") != std::string::npos;
+  };
   for (int i = 0; i < 600 && !up(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   REQUIRE(up());
   run.start({tapping_scene(), "--seconds", "1", "--network", "host", "--out", run.out("b")}, "second");
@@ -134,7 +136,9 @@ TEST_CASE("A busy port is named, with the remedy, when the machine's network is 
   CHECK_FALSE(std::filesystem::exists(run.out("b")));
   // Ctrl-C ends the first early, with its results.
   run.processes.signal("first", SIGINT);
-  CHECK(run.finish(60, "first") == 0);
+  const int status = run.finish(60, "first");
+  INFO(run.processes.said("first"));
+  CHECK(status == 0);
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
 
