@@ -194,11 +194,6 @@ bool valid(const playout_t& m) {
          sane_not_negative(m.lockstep_Hz) && all_sane(m.entries) &&
          std::none_of(m.entries.begin(), m.entries.end(), [](const playout_entry_t& e) { return e.delay_ns < 0; });
 }
-bool valid(const playout_request_t& m) {
-  return sane(m.header) && m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
-         between(m.aligner, playout_request_t::FIXED, playout_request_t::VIRTUAL_TIME) &&
-         between(m.base_ns, 0, kMaxDelay_ns) && between(m.budget_ns, 0, kMaxDelay_ns) && all_sane(m.entries);
-}
 bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0; }
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&

@@ -8,8 +8,9 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::size_t kMostDecisions = 8192;
-constexpr std::size_t kDecisionsPerMessage = 36;  // of 34 bytes each
-constexpr std::size_t kRememberedArrivals = 8192;  // as sync/contact_stream.cpp remembers ids
+constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
+constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
+constexpr std::size_t kRememberedArrivals = 8192;    // as sync/contact_stream.cpp remembers ids
 
 }  // namespace
 
@@ -45,8 +46,8 @@ void Sense::put_in_force(const ProfileInForce& profile) {
     profile_hash_ = profile.hash;
     node_.set_profile(profile.hash);
     if (profile.generation > 0 || !parsed.rules.empty())
-      std::cerr << d.node << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
-                << std::endl;
+      std::cerr << d.node << ": profile \"" << parsed.name << "\", "
+                << (stack_.empty() ? "nothing" : "degrades this sense") << std::endl;
   } catch (const std::invalid_argument& e) {
     std::cerr << d.node << ": refused: " << e.what() << std::endl;
   }
@@ -56,7 +57,8 @@ void Sense::take_control(HostTime) {
   const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
-      if (const auto whole = receiver_.take(m->message); whole && whole->hash != profile_hash_) put_in_force(*whole);
+      if (const auto whole = receiver_.take(m->message); whole && whole->hash != profile_hash_)
+        put_in_force(*whole);
   while (const auto m = playouts_.pop())
     if (ours(m->message.header)) playout_.take(m->message);
 }
@@ -123,6 +125,8 @@ void Sense::report(const presentation_t& report) {
 
 void Sense::publish(HostTime now) {
   reporter_.publish(node_.bus(), now);
+  if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
+  next_decisions_ = now + kDecisionPeriod;
   publish_decisions();
 }
 

@@ -139,6 +139,7 @@ class Sense {
   SceneNames names_;
   int tool_ = -1;
   Decisions decisions_;
+  HostTime next_decisions_{};
   std::vector<std::unique_ptr<AnyStream>> streams_;
   SimFollower simulation_;
   PlayoutFollower playout_;

@@ -206,11 +206,6 @@ class Samples {
     fill(m.header), m.policy = static_cast<std::int8_t>(whole(0, 4)), m.lockstep_Hz = real(0, 60);
     fill_list(m.count, m.entries, 0, 6);
   }
-  void fill(playout_request_t& m) {
-    fill(m.header), m.generation = whole(0, 99), m.policy = static_cast<std::int8_t>(whole(0, 4));
-    m.aligner = static_cast<std::int8_t>(whole(0, 3)), m.base_ns = whole(0, 99), m.budget_ns = whole(0, 99);
-    fill_list(m.count, m.entries, 0, 6);
-  }
   void fill(log_info_t& m) {
     fill(m.header), m.header.sim_time_ns = -1;
     m.version = name(), m.git = name(), m.scene = name(), m.seed = whole(0, 99), m.seconds = real(0, 99);

@@ -1,0 +1,58 @@
+#include "sync/playout/follower.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr Nanoseconds kMs{1'000'000};
+HostTime at(int ms) { return host_time(7'000'000'000 + std::int64_t{ms} * kMs.count()); }
+
+playout_t told(const std::string& modality, Nanoseconds delay, std::int8_t policy = playout_t::ALIGNED) {
+  playout_t m{};
+  m.policy = policy;
+  m.entries = {{modality, delay.count()}};
+  m.count = 1;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("A sense keeps its own delay until somebody says otherwise") {
+  PlayoutFollower follower("audio");
+  follower.set_own(20 * kMs);
+  CHECK(follower.step(at(0)) == 20 * kMs);
+  follower.take(told("visual", 50 * kMs));
+  for (int ms = 1; ms < 1000; ++ms) CHECK(follower.step(at(ms)) == 20 * kMs);
+}
+
+TEST_CASE("A delay that is told is slewed to, by a twentieth of the time at the most, and then kept") {
+  PlayoutFollower follower("audio");
+  follower.set_own(20 * kMs);
+  follower.step(at(0));
+  follower.take(told("audio", 45 * kMs));
+  Nanoseconds before = 20 * kMs;
+  for (int ms = 1; ms <= 600; ++ms) {
+    const Nanoseconds now = follower.step(at(ms));
+    CHECK(now >= before);
+    CHECK(now - before <= kMs / 20);
+    before = now;
+  }
+  CHECK(before == 45 * kMs);  // 25 ms take half a second
+  // A process that stood still for long steps by no more than one that ran for a second.
+  follower.take(told("audio", Nanoseconds(0)));
+  CHECK(follower.step(at(60'000)) == 0 * kMs);
+  follower.take(told("audio", 200 * kMs));
+  CHECK(follower.step(at(120'000)) == 50 * kMs);
+}
+
+TEST_CASE("As soon as possible is a policy of its own, and holds once it was told") {
+  PlayoutFollower follower("audio");
+  CHECK_FALSE(follower.as_soon_as_possible());
+  follower.take(told("audio", Nanoseconds(0), playout_t::ASAP));
+  CHECK(follower.as_soon_as_possible());
+  follower.take(told("audio", 30 * kMs));
+  CHECK_FALSE(follower.as_soon_as_possible());
+}
