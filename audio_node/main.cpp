@@ -22,8 +22,16 @@ using namespace tactus;
 namespace {
 
 // The loop only hands events on, below the simulation; the card's callback renders them at 70.
-const sync::Declaration kAudio{"audio_node", "audio", node_health_t::OWES_HIT,
-                               1000,         45,      "Sounds the hits of the scene through a sound card."};
+const sync::Declaration kAudio{.node = "audio_node",
+                               .modality = "audio",
+                               .owes = node_health_t::OWES_HIT,
+                               .rate_Hz = 1000,
+                               .fifo_priority = 45,
+                               .about = "Sounds the hits of the scene through a sound card.",
+                               .inputs = {channels::kContactEvents, channels::kContacts},
+                               .presents = "the DAC time of its first sample",
+                               .late = sync::Late::kPlayWithFade,
+                               .degradable = {"dropout"}};
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz

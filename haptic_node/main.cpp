@@ -28,7 +28,11 @@ int main(int argc, char** argv) try {
       .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
       .rate_Hz = haptic::Settings{}.rate_Hz,
       .fifo_priority = 60,
-      .about = "Renders the contact force on the hand."};
+      .about = "Renders the contact force on the hand.",
+      .inputs = {channels::kTouchModel, channels::kContactEvents},
+      .presents = "the tick whose force shows it",
+      .late = sync::Late::kDrop,
+      .degradable = {"force_step"}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);

@@ -19,6 +19,7 @@ inline constexpr const char* kClockProbe = "CLOCK_PROBE";        // clock_probe_
 inline constexpr const char* kClockMap = "CLOCK_MAP";            // clock_map_t
 inline constexpr const char* kMediaClock = "MEDIA_CLOCK";        // media_clock_t
 inline constexpr const char* kPlayout = "PLAYOUT";               // playout_t
+inline constexpr const char* kPlayoutRequest = "PLAYOUT_REQUEST";  // playout_request_t
 inline constexpr const char* kDegradation = "DEGRADATION";       // degradation_t
 inline constexpr const char* kDegraded = "DEGRADED";             // degraded_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs

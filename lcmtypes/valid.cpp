@@ -11,6 +11,7 @@ namespace {
 // Farther than any scene and faster than any body: beyond this a number is garbage, though finite.
 constexpr double kMaxMagnitude = 1e9;
 // A minute: what is presented later than that is another event.
+constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
 constexpr long kMaxDelay_ns = 60'000'000'000;
 // 31 years since a machine or a world began: differences of such times do not overflow.
 constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
@@ -94,7 +95,8 @@ bool sane(const tool_constraint_t& c) {
   return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
 }
 bool sane(const playout_entry_t& e) {
-  return name(e.modality) && between(e.delay_ns, -kMaxDelay_ns, kMaxDelay_ns);
+  return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) && between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) &&
+         between(e.needs_ns, -1, kMaxDelay_ns);
 }
 bool sane(const decision_t& d) {
   return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.why, 0, 5) && d.held_ns >= 0 &&
@@ -113,7 +115,9 @@ bool sane(const histogram_t& h) {
 bool sane(const input_health_t& i) {
   return i.age_ns >= -1 && i.uncertainty_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0;
 }
-bool sane(const pair_report_t& p) { return p.n >= 0 && p.uncertainty_ns >= 0; }
+bool sane(const pair_report_t& p) {
+  return p.n >= 0 && p.uncertainty_ns >= 0 && p.beyond_least >= -1 && p.beyond_all >= -1;
+}
 bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF); }
 bool sane_bump(const material_def_t& m) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
@@ -154,6 +158,12 @@ bool all_sane(const List& list) {
     if (!sane(item)) return false;
   return true;
 }
+// Of a request and of its answer.
+bool sane_policy(const auto& m) {
+  return m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
+         between(m.aligner, playout_t::FIXED, playout_t::VIRTUAL_TIME) && between(m.base_ns, 0, kMaxDelay_ns) &&
+         between(m.budget_ns, 0, kMaxDelay_ns) && all_sane(m.entries);
+}
 
 }  // namespace
 
@@ -182,7 +192,8 @@ bool valid(const node_health_t& m) {
          m.tool >= -1 && between(m.state, node_health_t::WAITING, node_health_t::READY) &&
          sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
          m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&
-         sane_not_negative(m.realtime_factor) && m.foreign_control >= 0 && all_sane(m.inputs);
+         sane_not_negative(m.realtime_factor) && m.foreign_control >= 0 && m.quality >= 0 &&
+         m.qualities >= m.quality && all_sane(m.inputs);
 }
 bool valid(const degradation_t& m) {
   return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
@@ -190,10 +201,9 @@ bool valid(const degradation_t& m) {
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
-  return sane(m.header) && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
-         sane_not_negative(m.lockstep_Hz) && all_sane(m.entries) &&
-         std::none_of(m.entries.begin(), m.entries.end(), [](const playout_entry_t& e) { return e.delay_ns < 0; });
+  return sane(m.header) && sane_policy(m) && sane_not_negative(m.lockstep_Hz);
 }
+bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
 bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0; }
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
@@ -253,7 +263,7 @@ bool valid(const scene_t& m) {
         !between(t.material, -1, m.material_count - 1) || !all_sane(t.waypoints))
       return false;
   return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) && sane(m.camera) &&
-         sane_not_negative(m.camera_fov_rad) && sane(m.ambient) && sane(m.background) && sane(m.listener);
+         sane_not_negative(m.camera_fov_rad) && m.profile.size() <= kMaxProfileBytes && sane(m.ambient) && sane(m.background) && sane(m.listener);
 }
 
 }  // namespace tactus

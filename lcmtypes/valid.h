@@ -14,6 +14,7 @@
 #include <tactus/media_clock_t.hpp>
 #include <tactus/mesh_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/playout_request_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
@@ -40,6 +41,7 @@ bool valid(const media_clock_t&);
 bool valid(const mesh_t&);
 bool valid(const node_health_t&);
 bool valid(const playout_t&);
+bool valid(const playout_request_t&);
 bool valid(const presented_t&);
 bool valid(const scene_manifest_t&);
 bool valid(const scene_t&);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "sync/bus.h"
+#include "sync/declaration.h"
 #include "sync/histogram.h"
 #include "sync/pacing.h"
 #include "sync/realtime.h"
@@ -25,16 +26,6 @@ class App;
 }
 
 namespace tactus::sync {
-
-// A modality is a declaration.
-struct Declaration {
-  std::string node;      // "audio_node"
-  std::string modality;  // "audio"; empty: renders nothing
-  int owes = node_health_t::OWES_NOTHING;
-  double rate_Hz = 100;
-  int fifo_priority = 0;  // 0: normal scheduling
-  std::string about;      // one sentence for --help
-};
 
 // The options that every node has. Bind them to a CLI11 app with add_options, add the node's own, then parse.
 struct NodeOptions {
@@ -84,6 +75,11 @@ class Node {
   void set_state(std::int8_t state, std::string note = "");
   void set_tool(int tool) { health_.tool = tool; }
   void count_rendered(std::int64_t events) { health_.contacts_rendered += events; }
+  // Step of its quality ladder, 0: full, of so many.
+  void set_quality(int step, int steps) {
+    health_.quality = static_cast<std::int8_t>(step);
+    health_.qualities = static_cast<std::int8_t>(steps);
+  }
   void set_profile(std::int64_t hash) { health_.profile = hash; }
   void set_realtime_factor(double factor) { health_.realtime_factor = factor; }
   // For nodes that tick elsewhere (the audio callback): totals instead of the loop's own.

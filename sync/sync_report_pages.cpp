@@ -57,7 +57,7 @@ std::vector<sync_report_t> report_pages(const PresentationMatcher& matcher) {
   for (const auto& [names, soa] : matcher.pairs())
     writer.add(&sync_report_t::pairs, &sync_report_t::pair_count,
                pair_report_t{names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
-                             soa.quantile(0.95).count(), soa.uncertainty().count()});
+                             soa.quantile(0.95).count(), soa.uncertainty().count(), -1, -1});
   return writer.finish();
 }
 

@@ -25,7 +25,11 @@ int main(int argc, char** argv) try {
       .modality = "thermal",
       .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
       .rate_Hz = thermal::Settings{}.rate_Hz,
-      .about = "Renders the temperature of what a tool touches."};
+      .about = "Renders the temperature of what a tool touches.",
+      .inputs = {channels::kContacts, channels::kContactEvents},
+      .presents = "the end of the tick whose heat holds it",
+      .late = sync::Late::kAlwaysApply,
+      .degradable = {"response"}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);

@@ -28,7 +28,11 @@ int main(int argc, char** argv) try {
                                       .modality = "visual",
                                       .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
                                       .rate_Hz = settings.rate_Hz,
-                                      .about = "Draws the scene, its tools and a flash for every contact."};
+                                      .about = "Draws the scene, its tools and a flash for every contact.",
+                                      .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
+                                      .presents = "the fence after the frame that first shows it",
+                                      .late = sync::Late::kShowNewest,
+                                      .degradable = {"frame_rate", "resolution"}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);

@@ -114,7 +114,10 @@ class Samples {
     i.bad = whole(0, 9);
   }
   void fill(modality_report_t& r) { r.modality = name(), r.owed = whole(0, 9), r.presented = whole(0, 9); }
-  void fill(pair_report_t& r) { r.a = name(), r.b = name(), r.n = whole(0, 9), r.p50_ns = whole(-1000, 1000); }
+  void fill(pair_report_t& r) {
+    r.a = name(), r.b = name(), r.n = whole(0, 9), r.p50_ns = whole(-1000, 1000);
+    r.beyond_least = whole(-1, 9), r.beyond_all = whole(-1, 9);
+  }
   void fill(asset_ref_t& a) {
     a.hash = whole(-9, 9), a.size = whole(1, 9999), a.kind = static_cast<std::int8_t>(whole(0, 3)),
     a.name = name();
@@ -160,6 +163,7 @@ class Samples {
     m.owes = whole(0, 7), m.tool = whole(-1, 3), m.state = static_cast<std::int8_t>(whole(0, 4));
     m.nominal_rate_Hz = real(0, 1000), m.rate_Hz = real(0, 1000), m.ticks = whole(0, 99),
     m.missed_ticks = whole(0, 99);
+    m.qualities = static_cast<std::int8_t>(whole(1, 4)), m.quality = static_cast<std::int8_t>(whole(0, 1));
     m.stale_ticks = whole(0, 99), m.profile = whole(0, 99);
     fill(m.tick), fill(m.wake);
     m.contacts_rendered = whole(0, 99), m.realtime_factor = real(0, 1), m.kernel_drops = whole(-1, 9);
@@ -201,11 +205,16 @@ class Samples {
   void fill(degraded_t& m) {
     fill(m.header), m.modality = name(), m.profile = whole(0, 99), fill_list(m.count, m.decisions, 0, 30);
   }
-  void fill(playout_entry_t& e) { e.modality = name(), e.delay_ns = whole(0, 99); }
-  void fill(playout_t& m) {
-    fill(m.header), m.policy = static_cast<std::int8_t>(whole(0, 4)), m.lockstep_Hz = real(0, 60);
+  void fill(playout_entry_t& e) {
+    e.modality = name(), e.delay_ns = whole(0, 99), e.soa_ns = whole(-99, 99), e.needs_ns = whole(-1, 99);
+  }
+  void fill_policy(auto& m) {
+    fill(m.header), m.generation = whole(0, 99), m.policy = static_cast<std::int8_t>(whole(0, 4));
+    m.aligner = static_cast<std::int8_t>(whole(0, 3)), m.base_ns = whole(0, 99), m.budget_ns = whole(0, 99);
     fill_list(m.count, m.entries, 0, 6);
   }
+  void fill(playout_t& m) { fill_policy(m), m.lockstep_Hz = real(0, 60); }
+  void fill(playout_request_t& m) { fill_policy(m); }
   void fill(log_info_t& m) {
     fill(m.header), m.header.sim_time_ns = -1;
     m.version = name(), m.git = name(), m.scene = name(), m.seed = whole(0, 99), m.seconds = real(0, 99);
@@ -266,7 +275,7 @@ class Samples {
     fill_list(m.shape_count, m.shapes, 0, 4), fill_list(m.visual_count, m.visuals, 0, 4);
     fill_list(m.material_count, m.materials, 0, 3), fill_list(m.light_count, m.lights, 0, 3);
     fill_list(m.tool_count, m.tools, 0, 2), fill_list(m.setting_count, m.settings, 0, 3);
-    fill(m.camera), m.camera_fov_rad = 1, fill(m.ambient), fill(m.background), fill(m.listener);
+    fill(m.camera), m.camera_fov_rad = 1, m.profile = name(), fill(m.ambient), fill(m.background), fill(m.listener);
   }
 
  private:
