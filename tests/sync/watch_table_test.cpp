@@ -58,7 +58,7 @@ TEST_CASE("The table fits the terminal") {
   sync_report_t report{};
   report.hits = 12;
   report.modalities = {{"audio", 12, 11, 1, 0, 0, 0, 0}};
-  report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3, 40'000}};
+  report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3, 40'000, -1, -1}};
   table.observe(report);
   for (std::size_t width : {40u, 80u, 110u}) {
     std::istringstream lines(table.to_text(kNow, width));

@@ -13,7 +13,7 @@ HostTime at(int ms) { return host_time(7'000'000'000 + std::int64_t{ms} * kMs.co
 playout_t told(const std::string& modality, Nanoseconds delay, std::int8_t policy = playout_t::ALIGNED) {
   playout_t m{};
   m.policy = policy;
-  m.entries = {{modality, delay.count()}};
+  m.entries = {{modality, delay.count(), 0, -1}};
   m.count = 1;
   return m;
 }
