@@ -4,6 +4,7 @@
 #include <set>
 
 #include "sync/summary.h"
+#include "sync/thresholds.h"
 
 namespace tactus::sync {
 namespace {
@@ -85,14 +86,20 @@ Json contacts(const PresentationMatcher& m) {
 }
 
 Json asynchrony(const PresentationMatcher& m) {
-  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}};
+  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr},
+                     {"beyond_least_threshold", nullptr}, {"beyond_all_thresholds", nullptr}};
   Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
-  for (const auto& [names, soa] : m.pairs())
+  for (const auto& [names, soa] : m.pairs()) {
+    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const auto count = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
     out[names.first + "_" + names.second] = {{"n", soa.count()},
                                              {"p05", ms(soa.quantile(0.05))},
                                              {"p50", ms(soa.quantile(0.5))},
                                              {"p95", ms(soa.quantile(0.95))},
-                                             {"uncertainty", ms_up(soa.uncertainty())}};
+                                             {"uncertainty", ms_up(soa.uncertainty())},
+                                             {"beyond_least_threshold", count(beyond.least)},
+                                             {"beyond_all_thresholds", count(beyond.all)}};
+  }
   return out;
 }
 
