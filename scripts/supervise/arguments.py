@@ -5,6 +5,7 @@ import dataclasses
 import os
 import pathlib
 import time
+import xml.etree.ElementTree
 
 from refusal import Refusal
 
@@ -14,8 +15,6 @@ SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
-
-
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -119,6 +118,17 @@ def profile(here, text):
     if not path.is_file() or not os.access(path, os.R_OK):
         raise Refusal(f"--degrade {text}: is not a file that can be read; give the path of a profile (XML)")
     return path.absolute()
+
+
+def strangers(plan):
+    """What the profile degrades that is none of this run's senses. One's own may join later; a misspelt one never will."""
+    if plan.degrade is None:
+        return []
+    try:
+        named = {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
+    except (xml.etree.ElementTree.ParseError, OSError):
+        return []  # the nodes say what is wrong with it, with the line
+    return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 
 def playout(a):
