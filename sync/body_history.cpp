@@ -31,6 +31,12 @@ BodyPose from_message(const body_state_t& b) {
           to_eigen(b.angular_velocity_rad_s)};
 }
 
+How past(Nanoseconds newest) {
+  return newest <= BodyHistory::kExtrapolateAtMost ? How::kExtrapolated
+         : newest <= BodyHistory::kStaleAfter      ? How::kHeld
+                                                   : How::kStale;
+}
+
 }  // namespace
 
 void BodyHistory::push(const world_state_t& page, HostTime arrival) {
@@ -80,9 +86,7 @@ void BodyHistory::forget_after(SimTime latest) {
 
 How BodyHistory::how(SimTime t) const {
   if (!newest_) return How::kNone;
-  if (t <= *newest_) return How::kInterpolated;
-  const Nanoseconds past = t - *newest_;
-  return past <= kExtrapolateAtMost ? How::kExtrapolated : past <= kStaleAfter ? How::kHeld : How::kStale;
+  return t <= *newest_ ? How::kInterpolated : past(t - *newest_);
 }
 
 Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
@@ -98,7 +102,10 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
     return {between(before.pose, after->pose, span_s, s), How::kInterpolated};
   }
   const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
-  return {moved_on(before.pose, dt_s), how(t)};
+  // At rest it is left out, and well known. One that was moving is missing: its page was lost.
+  const bool rests =
+      before.pose.velocity == Eigen::Vector3d::Zero() && before.pose.angular_velocity == Eigen::Vector3d::Zero();
+  return {moved_on(before.pose, dt_s), rests ? how(t) : past(t - before.time)};
 }
 
 }  // namespace tactus::sync

@@ -37,7 +37,8 @@ class BodyHistory {
   explicit BodyHistory(OwnClock own) : follower_(own) {}
 
   void push(const world_state_t& page, HostTime arrival);
-  // Hermite in position, SLERP in orientation. A body that a snapshot leaves out rests where it was.
+  // Hermite in position, SLERP in orientation. A body at rest that a snapshot leaves out rests where it
+  // was; one that moved was in a page that was lost, and moves on as past the newest sample.
   Sample<BodyPose> pose(int body, SimTime t) const;
   // How the newest snapshot as a whole relates to t.
   How how(SimTime t) const;

@@ -11,7 +11,10 @@ constexpr std::size_t kRememberedIds = 8192;
 constexpr std::size_t kRememberedLives = 8192;
 // 128 ms of the tool group; 2 s of the others.
 constexpr std::size_t kSnapshots = 128;
-constexpr std::size_t kPartialSnapshots = 8;
+// Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
+// kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
+constexpr std::size_t kPartialSnapshots = 64;
+constexpr std::size_t kPartialPages = 8 * ContactStream::kMaxPages;
 
 float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
 
@@ -113,14 +116,26 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   pages.pages = m.pages;
   pages.arrived[m.page] = m.contacts;
   if (static_cast<int>(pages.arrived.size()) < pages.pages) {
-    if (partial_[group].size() > kPartialSnapshots) partial_[group].erase(partial_[group].begin());
+    bound_partial(group);
     return;
   }
   Snapshot snapshot{time, {}};
   for (auto& [page, contacts] : pages.arrived)
     snapshot.contacts.insert(snapshot.contacts.end(), contacts.begin(), contacts.end());
-  partial_[group].erase(partial_[group].begin(), partial_[group].upper_bound(time));
+  partial_[group].erase(time);
+  // One that was overtaken may still become whole, unless it is too old to matter.
+  partial_[group].erase(partial_[group].begin(), partial_[group].lower_bound(time - kStaleAfter));
   insert(group, std::move(snapshot));
+}
+
+void ContactStream::bound_partial(std::size_t group) {
+  auto& partial = partial_[group];
+  std::size_t pages = 0;
+  for (const auto& [time, p] : partial) pages += p.arrived.size();
+  while (partial.size() > kPartialSnapshots || (pages > kPartialPages && partial.size() > 1)) {
+    pages -= partial.begin()->second.arrived.size();
+    partial.erase(partial.begin());
+  }
 }
 
 // One that was overtaken finds its place: the newest alone never decides that those after it are of no use.

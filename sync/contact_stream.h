@@ -89,6 +89,7 @@ class ContactStream {
   bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   void forget_after(SimTime latest);
   void insert(std::size_t group, Snapshot snapshot);
+  void bound_partial(std::size_t group);
   void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
   How how(const std::deque<Snapshot>& group, SimTime t) const;

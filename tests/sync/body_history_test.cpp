@@ -80,6 +80,17 @@ TEST_CASE("A body that newer snapshots leave out rests where it was") {
   CHECK(s.how == How::kInterpolated);
 }
 
+TEST_CASE("A moving body whose page was lost moves on, and is not called known because others are") {
+  BodyHistory history(1);
+  history.push(page(0, 0, {1, 2, 3}, {2, 0, 0}), at(0));
+  for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
+  const auto s = history.pose(0, sim_time(16 * kMs));
+  CHECK(s.value.position.x() == Approx(1.032));
+  CHECK(s.how == How::kExtrapolated);
+  CHECK(history.pose(0, sim_time(100 * kMs)).how == How::kHeld);
+  CHECK(history.pose(0, sim_time(300 * kMs)).how == How::kStale);
+}
+
 TEST_CASE("A restarted simulation leaves no pose of the old one") {
   BodyHistory history(1);
   history.push(page(900 * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(900 * kMs));

@@ -150,6 +150,18 @@ TEST_CASE("A snapshot counts only when all its pages have arrived, in any order"
   CHECK(now.value[0].contact_id == 2);
 }
 
+TEST_CASE("A snapshot that was overtaken on its way becomes whole all the same, and many may be on their way") {
+  ContactStream stream(kRun);
+  for (int ms = 0; ms < 40; ++ms) stream.push(frame(ms * kMs, {contact(1, static_cast<float>(ms * ms))}, 0, 2), at(ms * kMs));
+  for (int ms = 39; ms >= 0; --ms) stream.push(frame(ms * kMs, {}, 1, 2), at((80 - ms) * kMs));
+  for (int ms = 0; ms < 40; ++ms) {
+    const auto state = stream.state_at(sim_time(ms * kMs));
+    CHECK(state.how == How::kExact);
+    REQUIRE(state.value.size() == 1);
+    CHECK(state.value[0].normal_force_N == static_cast<float>(ms * ms));
+  }
+}
+
 TEST_CASE("No state reaches across a begin or an end") {
   ContactStream stream(kRun);
   stream.push(frame(10 * kMs, {}), at(10 * kMs));

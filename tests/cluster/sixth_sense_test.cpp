@@ -1,0 +1,109 @@
+// A sense that no folder but its own knows of, in a running cluster.
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cluster/profiles.h"
+#include "tests/cluster/run_script.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+using nlohmann::json;
+
+namespace {
+
+// Waits until each of these senses has presented so many events that it had not before.
+bool presents(Running& c, const std::vector<std::string>& modalities, const EventsHeard& before,
+              std::size_t events) {
+  return c.ear.wait_until(
+      [&] {
+        return std::all_of(modalities.begin(), modalities.end(),
+                           [&](const std::string& m) { return waits_ms(c.ear, m, before).size() >= events; });
+      },
+      kPatience_s);
+}
+
+const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
+
+}  // namespace
+
+TEST_CASE(
+    "A sixth sense joins a running cluster: it is in health, in the report and in the summary, with a debt and "
+    "asynchronies") {
+  Running c;
+  auto& reports = c.ear.bus().queue<sync_report_t>(channels::kSyncReport, 256);
+  c.processes.start("recorder");
+  c.start();
+  const auto before = c.rates(2);
+  c.processes.start("wind_node");
+  const bool joined = c.ear.wait_until([&] { return c.lives("wind_node"); }, kPatience_s);
+  INFO(c.processes.said("wind_node"));
+  REQUIRE(joined);
+  CHECK(c.ear.health("wind_node")->modality == "wind");
+  CHECK(c.ear.health("wind_node")->owes == node_health_t::OWES_HIT);
+
+  modality_report_t kept{};
+  std::set<std::string> paired_with;
+  const auto reported = [&] {
+    while (const auto m = reports.pop()) {
+      for (const modality_report_t& r : m->message.modalities)
+        if (r.modality == "wind") kept = r;
+      for (const pair_report_t& p : m->message.pairs)
+        if (p.b == "wind" && p.n > 0) paired_with.insert(p.a);
+    }
+    return kept.presented >= 5 && paired_with.size() == kOthers.size();
+  };
+  CHECK(c.ear.wait_until(reported, kPatience_s));
+  INFO("presented " << kept.presented << " of " << kept.owed << ", with " << paired_with.size() << " others");
+  CHECK(kept.lost == 0);
+
+  // Nobody else is disturbed by it.
+  for (const auto& [node, rate] : c.rates(2)) {
+    INFO(node);
+    CHECK(rate > before.at(node) / 2);
+    CHECK(c.lives(node));
+  }
+  for (const char* node : {"wind_node", "recorder"}) {
+    c.processes.signal(node, SIGTERM);
+    CHECK(c.processes.wait_for_exit(node, kPatience_s) == 0);
+  }
+  CHECK(std::filesystem::file_size(c.folder.path() / "wind.csv") > 1000);
+  c.processes.spawn("summarise", {programs() / "summarise", c.folder.path() / "run.lcmlog", "--out",
+                                  c.folder.path() / "summary.json"});
+  c.processes.wait_for_exit("summarise", kPatience_s);
+  const json summary = json::parse(contents(c.folder.path() / "summary.json"), nullptr, false);
+  REQUIRE_FALSE(summary.is_discarded());
+  CHECK(summary["contacts"]["by_modality"]["wind"]["presented"] > 0);
+  CHECK(summary["contacts"]["by_modality"]["wind"]["lost"] == 0);
+  for (const std::string& other : kOthers) {
+    INFO(other);
+    CHECK(summary["asynchrony_ms"][other + "_wind"]["n"] > 0);
+  }
+}
+
+TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sense") {
+  Running c;
+  c.start();
+  c.processes.start("wind_node");
+  REQUIRE(c.ear.wait_until([&] { return c.lives("wind_node"); }, kPatience_s));
+  std::vector<std::string> all = kOthers;
+  all.push_back("wind");
+  constexpr std::size_t kEvents = 12;
+  const EventsHeard none = heard_of(c.ear);
+  REQUIRE(presents(c, all, none, kEvents));
+  std::map<std::string, double> before;
+  for (const std::string& m : all) before[m] = median(waits_ms(c.ear, m, none));
+
+  CHECK(put_in_force(c, "<degrade modality=\"wind\" delay=\"50ms\"/>").find("wind_node") != std::string::npos);
+  c.ear.listen(0.5);  // what was on its way
+  const EventsHeard until = heard_of(c.ear);
+  REQUIRE(presents(c, all, until, kEvents));
+  REQUIRE(c.ear.health("wind_node"));
+  CHECK(c.ear.health("wind_node")->profile != 0);
+  for (const std::string& m : all) {
+    const double now = median(waits_ms(c.ear, m, until));
+    INFO(m << " waited " << before[m] << " ms before and " << now << " ms now");
+    // A busy machine moves a median by some ticks, not by half of the delay.
+    CHECK(std::abs(now - before[m] - (m == "wind" ? 50 : 0)) < 25);
+  }
+}
