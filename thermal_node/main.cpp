@@ -54,6 +54,7 @@ int main(int argc, char** argv) try {
   while (node.running()) {
     const sync::HostTime now = node.wait();
     sense.step(now);
+    stream.keep(sense.delay());
     while (const auto m = events.pop()) stream.push(m->message, m->arrival);
     while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
     if (scenes.poll(now)) {

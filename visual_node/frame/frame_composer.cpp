@@ -48,6 +48,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
 Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay,
                            sync::HostTime newest_arrival) {
   tick_ = now;
+  bodies_.keep(delay);
   const sync::HostTime t = now + render_time_.expected();
   const auto map = bodies_.map(now);
   const auto instant = map ? std::optional(map->to_sim(t - delay)) : std::nullopt;
