@@ -38,6 +38,7 @@ struct NodeOptions {
   std::vector<std::string> set;  // name=value
   std::string degrade;           // file of a degradation profile; empty: none
   std::string profile;           // its XML, once read
+  double load = 0;               // for measurements: so much of its period is wasted
   bool check = false;            // leave, with success, where the bus would be joined
 
   void add_to(CLI::App& app, const Declaration& declaration);

@@ -31,6 +31,10 @@ void RunSummary::observe(const node_health_t& m, HostTime now) {
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
   life.last = m;
   life.last_heard = now;
+  auto& ages = input_age_[m.node];
+  for (const input_health_t& input : m.inputs)
+    if (input.age_ns >= 0 && (ages.contains(input.channel) || ages.size() < kMaxInputs))
+      ages[input.channel].add(Nanoseconds(input.age_ns));
   if (!courses_.contains(m.header.incarnation)) return;
   for (auto& [name, lives] : lives_)
     for (auto& [incarnation, other] : lives) other.note = other.last.note;
@@ -151,6 +155,7 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;
     node.restarts = static_cast<std::int64_t>(lives.size()) - 1;
+    if (const auto ages = input_age_.find(name); ages != input_age_.end()) node.input_age = ages->second;
     node.alive_at_end = now_ - newest <= kAliveWithin;
   }
   for (const auto& [name, restarts] : options_.restarts)

@@ -28,15 +28,19 @@ Json quantiles(const Histogram& h) {
 
 Json nodes(const RunSummary& s) {
   Json out = Json::object();
-  for (const auto& [name, n] : s.nodes())
+  for (const auto& [name, n] : s.nodes()) {
+    Json ages = Json::object();
+    for (const auto& [channel, age] : n.input_age) ages[channel] = {{"p50", ms(age.quantile(0.5))}, {"p99", ms(age.quantile(0.99))}};
     out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
                  {"ticks", n.ticks},
                  {"missed_ticks", n.missed_ticks},
                  {"stale_ticks", n.stale_ticks},
                  {"tick_us", quantiles(n.tick)},
                  {"wake_us", quantiles(n.wake)},
+                 {"input_age_ms", ages},
                  {"restarts", n.restarts},
                  {"scheduling", n.scheduling}};
+  }
   return out;
 }
 
