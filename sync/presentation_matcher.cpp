@@ -129,7 +129,7 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
     }
     if (p.ready_ns >= 0 && event->known && needs_.size() < kMaxNeeds) {
       const SenderClock::Reading ready = clock.read(p.ready_ns, arrival);
-      if (ready.uncertainty >= Nanoseconds(0)) needs_.emplace_back(m.modality, ready.time - event->time);
+      if (ready.uncertainty >= Nanoseconds(0)) needs_.push_back({p.event_id, m.modality, ready.time - event->time});
     }
     event->reports.push_back(std::move(report));
     if (event->settled) ++late_reports_;

@@ -123,7 +123,7 @@ int main(int argc, char** argv) try {
     while (const auto m = playouts.pop())
       if (m->message.header.run_id == options.run_id) playout.take(m->message, now);
     for (const std::string& sense : matcher.senses()) playout.needs().know(sense);
-    for (const auto& [sense, needed] : matcher.take_needs()) playout.needs().add(sense, needed);
+    for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
     if (auto m = playout.due(now)) node.bus().publish(channels::kPlayout, *m);
     if (now < next_report) continue;
     next_report = std::max(next_report + kReportPeriod, now);
