@@ -3,9 +3,10 @@
 namespace tactus::sync {
 namespace {
 
-Item item_of(const contact_event_t& e, HostTime arrival) {
+Item item_of(const contact_event_t& e, std::int64_t incarnation, HostTime arrival) {
   return {.key = static_cast<std::uint64_t>(e.event_id),
           .is_event = true,
+          .incarnation = incarnation,
           .time = sim_time(e.time_ns),
           .arrival = arrival,
           .signals = {},
@@ -45,7 +46,7 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, Stack& st
   waiting_.push(arrival, newest_, arrival);
   for (const contact_event_t& heard : m.events) {
     if (!first_heard(heard.event_id)) continue;
-    const Verdict v = stack.decide(item_of(heard, arrival));
+    const Verdict v = stack.decide(item_of(heard, m.header.incarnation, arrival));
     if (decisions && v.touched)
       decisions->push_back(
           {static_cast<std::uint64_t>(heard.event_id), true, sim_time(heard.time_ns), v, arrival});

@@ -37,7 +37,8 @@ using Decisions = std::vector<Decision>;
 template <class Message>
 class Waiting {
  public:
-  static constexpr std::size_t kMost = 8192;
+  // The longest delay of a profile, a minute, of a stream of 1 kHz.
+  static constexpr std::size_t kMost = 1 << 16;
   void push(HostTime release, Message m, HostTime arrival) {
     waiting_.emplace(release, std::make_pair(std::move(m), arrival));
     if (waiting_.size() <= kMost) return;
@@ -101,7 +102,12 @@ class DegradedSnapshots {
     const std::uint64_t key = snapshot_key(m);
     if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
     const std::vector<Signal> signals = signals_of(m);
-    Item item{.key = key, .time = sim_time(m.header.sim_time_ns), .arrival = arrival, .signals = signals};
+    Item item{.key = key,
+              .stream = stream_of(m),
+              .incarnation = m.header.incarnation,
+              .time = sim_time(m.header.sim_time_ns),
+              .arrival = arrival,
+              .signals = signals};
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
     const Verdict v = stack.decide(item);

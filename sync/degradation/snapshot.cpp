@@ -47,16 +47,15 @@ class Changer {
 
 }  // namespace
 
-std::uint64_t snapshot_key(const contact_frame_t& m) {
-  return key(m.header, 0x10u + static_cast<std::uint64_t>(m.group));
-}
-std::uint64_t snapshot_key(const world_state_t& m) { return key(m.header, 0x20); }
-std::uint64_t snapshot_key(const touch_model_t& m) {
-  return key(m.header, 0x1000u + static_cast<std::uint64_t>(m.tool));
-}
-std::uint64_t snapshot_key(const tool_state_t& m) {
-  return key(m.header, 0x2000u + static_cast<std::uint64_t>(m.tool));
-}
+std::uint64_t stream_of(const contact_frame_t& m) { return 0x10u + static_cast<std::uint64_t>(m.group); }
+std::uint64_t stream_of(const world_state_t&) { return 0x20; }
+std::uint64_t stream_of(const touch_model_t& m) { return 0x1000u + static_cast<std::uint64_t>(m.tool); }
+std::uint64_t stream_of(const tool_state_t& m) { return 0x2000u + static_cast<std::uint64_t>(m.tool); }
+
+std::uint64_t snapshot_key(const contact_frame_t& m) { return key(m.header, stream_of(m)); }
+std::uint64_t snapshot_key(const world_state_t& m) { return key(m.header, stream_of(m)); }
+std::uint64_t snapshot_key(const touch_model_t& m) { return key(m.header, stream_of(m)); }
+std::uint64_t snapshot_key(const tool_state_t& m) { return key(m.header, stream_of(m)); }
 
 std::vector<Signal> signals_of(const contact_frame_t& m) {
   std::vector<Signal> signals;

@@ -20,6 +20,12 @@ std::uint64_t snapshot_key(const world_state_t&);
 std::uint64_t snapshot_key(const touch_model_t&);
 std::uint64_t snapshot_key(const tool_state_t&);
 
+// Whose sequence a snapshot belongs to: what takes turns on one channel is several.
+std::uint64_t stream_of(const contact_frame_t&);
+std::uint64_t stream_of(const world_state_t&);
+std::uint64_t stream_of(const touch_model_t&);
+std::uint64_t stream_of(const tool_state_t&);
+
 // Forces and velocities by contact, body or plane; of one page.
 std::vector<Signal> signals_of(const contact_frame_t&);
 std::vector<Signal> signals_of(const world_state_t&);

@@ -14,6 +14,9 @@ namespace {
 enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicateDraw, kWireDraw };
 
 constexpr std::size_t kRememberedValues = 4096;
+constexpr std::size_t kMostStreams = 256;  // more channels, groups and tools than a sense reads
+// Simulated time that falls back by more is a world that began anew, as in sync/sim_follower.h.
+constexpr Nanoseconds kAnew{1'000'000'000};
 
 double slot_s(const RateDef& rate, std::int64_t slot) {
   return static_cast<double>(slot) / rate.rate_Hz + rate.phase_s;
@@ -26,20 +29,34 @@ Stack::Stack(const Profile& profile, const std::string& modality, SimTime start)
     const Rule& rule = profile.rules[i];
     if (rule.modality != modality) continue;
     // Two senses, or two rules of one, draw different numbers for the same event.
-    Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}, {}};
-    for (Chain* chain : {&a.events, &a.snapshots}) {
-      if (rule.loss) chain->loss.emplace(*rule.loss);
-      if (rule.jitter) chain->jitter.emplace(*rule.jitter);
-      if (rule.deadband) chain->deadband.emplace(*rule.deadband);
-    }
+    Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}};
     changes_values_ |= rule.quantise || rule.gain || rule.bias || rule.lowpass;
     rules_.push_back(std::move(a));
   }
 }
 
+// Since the profile came into force; when the world began anew after that, since then.
+double Stack::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kAnew ? t - SimTime{} : t - start_); }
+
 bool Stack::in_time(const Rule& rule, SimTime t) const {
-  const double s = to_seconds(t - start_);
+  const double s = elapsed_s(t);
   return s >= rule.from_s && (!rule.until_s || s < *rule.until_s);
+}
+
+Stack::Chain& Stack::chain_of(Active& a, const Item& item) {
+  if (a.chains.size() > kMostStreams) a.chains.clear();
+  const auto [it, fresh] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
+  Chain& chain = it->second;
+  if (fresh || chain.incarnation != item.incarnation || chain.newest - item.time > kAnew) {
+    chain = {};
+    chain.incarnation = item.incarnation;
+    chain.newest = item.time;
+    if (a.rule.loss) chain.loss.emplace(*a.rule.loss);
+    if (a.rule.jitter) chain.jitter.emplace(*a.rule.jitter);
+    if (a.rule.deadband) chain.deadband.emplace(*a.rule.deadband);
+  }
+  chain.newest = std::max(chain.newest, item.time);
+  return chain;
 }
 
 bool Stack::concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
@@ -68,8 +85,8 @@ bool Stack::dropped(Active& a, Chain& chain, const Item& item, Verdict& v) {
   if (rule.off) return drop(Why::kOff, Conceal::kZero);
   if (rule.freeze) return drop(Why::kFreeze, *rule.freeze);
   if (rule.rate && !item.is_event) {
-    const auto slot = static_cast<std::int64_t>(
-        std::floor((to_seconds(item.time - start_) - rule.rate->phase_s) * rule.rate->rate_Hz));
+    const auto slot =
+        static_cast<std::int64_t>(std::floor((elapsed_s(item.time) - rule.rate->phase_s) * rule.rate->rate_Hz));
     if (slot <= chain.newest_slot) return drop(Why::kRate, Conceal::kHold);
     chain.newest_slot = slot;
   }
@@ -85,7 +102,7 @@ void Stack::held(Active& a, Chain& chain, const Item& item, Verdict& v) {
   Nanoseconds hold{0};
   if (rule.rate && item.is_event) {
     // The next instant at which news is let through.
-    const double t = to_seconds(item.time - start_);
+    const double t = elapsed_s(item.time);
     const auto slot = static_cast<std::int64_t>(std::ceil((t - rule.rate->phase_s) * rule.rate->rate_Hz));
     hold += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
   }
@@ -112,7 +129,7 @@ Verdict Stack::decide(const Item& item) {
     // A snapshot holds many things: only its values can be told apart by what they concern.
     if (!in_time(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
     if (item.is_event && !concerns(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
-    Chain& chain = item.is_event ? a.events : a.snapshots;
+    Chain& chain = chain_of(a, item);
     v.touched = true;
     if (dropped(a, chain, item, v)) return v;
     held(a, chain, item, v);
@@ -132,7 +149,7 @@ Nanoseconds Stack::presentation_delay(SimTime now) const {
   for (const Active& a : rules_) {
     if (!in_time(a.rule, now) || a.rule.filtered()) continue;
     if (a.rule.delay && a.rule.delay->kind == DelayKind::kPresentation) sum += from_seconds(a.rule.delay->delay_s);
-    if (a.rule.skew) sum += from_seconds(*a.rule.skew * (to_seconds(now - start_) - a.rule.from_s));
+    if (a.rule.skew) sum += from_seconds(*a.rule.skew * (elapsed_s(now) - a.rule.from_s));
   }
   return sum;
 }
@@ -163,6 +180,7 @@ double Stack::changed(Quantity quantity, std::int64_t id, int component, double 
     if (r.lowpass && r.lowpass->quantity == quantity) {
       if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
       const auto [it, fresh] = a.lowpass.try_emplace({id, component}, Filtered{value, t});
+      if (it->second.time - t > kAnew) it->second = {value, t};
       if (!fresh && t > it->second.time) {
         it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(t - it->second.time));
         it->second.time = t;

@@ -17,6 +17,10 @@ namespace tactus::sync {
 struct Item {
   std::uint64_t key = 0;  // an event's id, a snapshot's channel and instant: what its random numbers are drawn for
   bool is_event = false;
+  // Of a snapshot: whose sequence it belongs to, its channel and what that tells apart. And the life of the
+  // simulation.
+  std::uint64_t stream = 0;
+  std::int64_t incarnation = 0;
   SimTime time{};
   HostTime arrival{};
   std::span<const Signal> signals;  // of a snapshot, for a deadband
@@ -65,9 +69,11 @@ class Stack {
   bool changes_values() const { return changes_values_; }
 
  private:
-  // The memory of the operators of one rule, of events and of snapshots apart: neither disturbs the other's
-  // sequence.
+  // The memory of the operators of one rule, of events and of each stream of snapshots apart: none disturbs
+  // another's sequence. It begins anew with the world.
   struct Chain {
+    std::int64_t incarnation = 0;
+    SimTime newest{};
     std::optional<Loss> loss;
     std::optional<Jitter> jitter;
     std::optional<Deadband> deadband;
@@ -81,11 +87,13 @@ class Stack {
   struct Active {
     Rule rule;
     std::uint64_t seed;
-    Chain events, snapshots;
+    std::map<std::uint64_t, Chain> chains;  // by stream; of events 0
     std::map<std::pair<std::int64_t, int>, Filtered> lowpass;
   };
 
+  double elapsed_s(SimTime t) const;
   bool in_time(const Rule& rule, SimTime t) const;
+  static Chain& chain_of(Active& a, const Item& item);
   bool concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                 std::int32_t body_b) const;
   bool dropped(Active& a, Chain& chain, const Item& item, Verdict& v);

@@ -1,0 +1,221 @@
+// Every operator of chance against its definition, as a sense meets it: through a profile, on events and on
+// snapshots. A count of what has probability p is binomial; 4.5 standard deviations are exceeded once in 150,000.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "sync/contact_stream.h"
+#include "sync/degradation/chance.h"
+#include "sync/degradation/degraded_stream.h"
+#include "sync/identity.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr int kN = 20'000;
+constexpr double kSigmas = 4.5;
+
+Stack stack_of(const std::string& attributes, int seed = 1) {
+  return Stack(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"a\" " +
+                                 attributes + "/></profile>",
+                             "p"),
+               "a", SimTime{});
+}
+
+// The i-th of a millisecond clock: an event with an id as sim_node gives them, or a snapshot.
+Item item(int i, bool is_event) {
+  const std::uint64_t key =
+      is_event ? (0xabcdefull << 40) + static_cast<std::uint64_t>(i) : mixed(7, static_cast<std::uint64_t>(i));
+  return {.key = key,
+          .is_event = is_event,
+          .time = sim_time(i * 1'000'000ll),
+          .arrival = host_time(i * 1'000'000ll + 300'000),
+          .signals = {}};
+}
+
+std::vector<Verdict> verdicts(const std::string& attributes, bool is_event, int seed = 1, int n = kN) {
+  Stack stack = stack_of(attributes, seed);
+  std::vector<Verdict> out;
+  for (int i = 0; i < n; ++i) out.push_back(stack.decide(item(i, is_event)));
+  return out;
+}
+
+std::vector<double> held_s(const std::vector<Verdict>& all, bool is_event) {
+  std::vector<double> out;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i)
+    out.push_back(to_seconds(all[static_cast<std::size_t>(i)].release - item(i, is_event).arrival));
+  return out;
+}
+
+void check_share(double count, double p, double n = kN) {
+  CHECK(std::abs(count - p * n) <= kSigmas * std::sqrt(p * (1 - p) * n));
+}
+
+std::uint64_t fingerprint(const std::vector<Verdict>& all) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const Verdict& v : all)
+    for (const std::int64_t word :
+         {std::int64_t{static_cast<std::int8_t>(v.why)}, to_ns(v.release), v.shift.count(), std::int64_t{v.twice}})
+      hash = fnv1a_64(hash, &word, sizeof word);
+  return hash;
+}
+
+}  // namespace
+
+TEST_CASE("The quantiles of a jittered delay are those of its distribution, of events and of snapshots") {
+  struct Shape {
+    std::string words;
+    std::function<double(double)> quantile_s;  // of what is added
+  };
+  const Shape shape = GENERATE(
+      values<Shape>({{"8ms uniform", [](double p) { return 0.008 * (2 * p - 1); }},
+                     {"3ms normal", [](double p) { return 0.003 * normal_quantile(p); }},
+                     // Lomax with index 2.5 and mean 4 ms.
+                     {"4ms pareto", [](double p) { return 0.004 * 1.5 * (std::pow(1 - p, -1 / 2.5) - 1); }}}));
+  const bool is_event = GENERATE(true, false);
+  INFO(shape.words << (is_event ? ", events" : ", snapshots"));
+  // So long a delay that nothing is cut off at 0: six standard deviations.
+  const auto held =
+      held_s(verdicts("delay=\"20ms network\" jitter=\"" + shape.words + " order=free\"", is_event), is_event);
+  for (const double p : {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99}) {
+    INFO(p);
+    const double edge = 0.020 + shape.quantile_s(p);
+    check_share(static_cast<double>(std::count_if(held.begin(), held.end(), [&](double h) { return h <= edge; })),
+                p);
+  }
+}
+
+TEST_CASE("A constant delay is its value to the nanosecond, and jitter without one never makes news early") {
+  for (const double h : held_s(verdicts("delay=\"40ms network\"", true), true)) REQUIRE(h == 0.040);
+  const auto held = held_s(verdicts("jitter=\"5ms normal order=free\"", true), true);
+  CHECK(*std::min_element(held.begin(), held.end()) == 0);
+  check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.0)),
+              0.5);  // that half would have been early
+}
+
+TEST_CASE("Correlated jitter of a sense follows itself as asked for") {
+  const double rho = GENERATE(0.0, 0.5, 0.9);
+  std::ostringstream words;
+  words << "delay=\"30ms network\" jitter=\"3ms normal order=free correlation=" << rho << "\"";
+  const auto x = held_s(verdicts(words.str(), true), true);
+  double square = 0, product = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    square += (x[i] - 0.030) * (x[i] - 0.030);
+    product += (x[i] - 0.030) * (x[i - 1] - 0.030);
+  }
+  // Of a first-order process the standard error is sqrt((1 - rho^2) / n) (Bartlett 1946).
+  CHECK(std::abs(product / square - rho) < kSigmas * std::sqrt((1 - rho * rho) / kN));
+}
+
+TEST_CASE("What keeps its order leaves when the last before it has left, as in a queue") {
+  const std::string jitter = "jitter=\"20ms pareto";
+  const auto free = verdicts(jitter + " order=free\"", false), kept = verdicts(jitter + "\"", false);
+  HostTime last{};
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    last = std::max(last, free[i].release);
+    REQUIRE(kept[i].release == last);
+  }
+}
+
+TEST_CASE("Independent and bursty loss have their share and their mean burst, of events and of snapshots") {
+  const bool is_event = GENERATE(true, false);
+  const double burst = GENERATE(0.0, 4.0, 20.0), share = GENERATE(0.01, 0.05, 0.4);
+  std::ostringstream words;
+  words << "loss=\"" << share;
+  if (burst > 0) words << " burst=" << burst;
+  const int n = 10 * kN;
+  const auto all = verdicts(words.str() + "\"", is_event, 3, n);
+  int lost = 0, bursts = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    lost += all[i].dropped();
+    bursts += all[i].dropped() && (i == 0 || !all[i - 1].dropped());
+  }
+  INFO(words.str() << " lost " << lost << " in " << bursts);
+  // Runs are geometric, mean b and variance b (b - 1); those of independent losses are 1 / (1 - share) long.
+  const double b = burst > 0 ? burst : 1 / (1 - share);
+  CHECK(std::abs(static_cast<double>(lost) / bursts - b) <= kSigmas * std::sqrt(b * (b - 1) / bursts));
+  // Of a two-state chain the variance is enlarged by (1 + r) / (1 - r), r: its second eigenvalue.
+  const double r = burst > 0 ? 1 - share / (burst * (1 - share)) - 1 / burst : 0;
+  CHECK(std::abs(lost - share * n) <= kSigmas * std::sqrt(share * (1 - share) * n * (1 + r) / (1 - r)));
+}
+
+TEST_CASE("Reordering holds its share back by just its time, and duplication doubles its share") {
+  const auto all = verdicts("reorder=\"5% by=10ms\" duplicate=\"3%\"", true);
+  const auto held = held_s(all, true);
+  check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.010)), 0.05);
+  CHECK(std::count(held.begin(), held.end(), 0.010) + std::count(held.begin(), held.end(), 0.0) == kN);
+  check_share(static_cast<double>(std::count_if(all.begin(), all.end(), [](const Verdict& v) { return v.twice; })),
+              0.03);
+}
+
+TEST_CASE("One seed decides the same to the byte, another seed otherwise") {
+  const std::string everything =
+      "loss=\"5% burst=3\" delay=\"20ms network\" jitter=\"3ms pareto correlation=0.5\" reorder=\"5% by=10ms\" "
+      "duplicate=\"1%\"";
+  for (const bool is_event : {true, false}) {
+    CHECK(fingerprint(verdicts(everything, is_event, 7)) == fingerprint(verdicts(everything, is_event, 7)));
+    CHECK(fingerprint(verdicts(everything, is_event, 7)) != fingerprint(verdicts(everything, is_event, 8)));
+  }
+  // Without logarithms and powers, which differ between C libraries, it is the same on every machine.
+  CHECK(fingerprint(verdicts("loss=\"20%\" reorder=\"10% by=10ms\" duplicate=\"5%\"", true, 7)) == 0xeb7f74d09e8e226eull);
+}
+
+TEST_CASE("Repetitions change no decision: told once or fifty times, the same is lost, late and doubled") {
+  const std::string everything =
+      "loss=\"20% burst=3\" delay=\"5ms network\" jitter=\"3ms normal correlation=0.5 order=free\" "
+      "duplicate=\"10%\"";
+  const auto decided = [&](int repetitions) {
+    Stack stack = stack_of(everything, 5);
+    DegradedEvents events;
+    Decisions decisions;
+    for (int ms = 0; ms < 4000; ++ms) {
+      contact_events_t m{};
+      m.header.incarnation = 1, m.header.seq = ms;
+      m.header.sim_time_ns = m.header.publish_time_ns = ms * 1'000'000ll;
+      for (int i = std::max(0, ms - repetitions + 1); i <= ms; ++i) {
+        contact_event_t e{};
+        e.event_id = 1000 + i;
+        e.time_ns = i * 1'000'000ll;
+        m.events.push_back(e);
+      }
+      m.count = static_cast<std::int32_t>(m.events.size());
+      events.push(m, host_time(ms * 1'000'000ll), stack, &decisions);
+    }
+    std::vector<Verdict> all;
+    for (const Decision& d : decisions) all.push_back(d.verdict);
+    return all;
+  };
+  const auto once = decided(1), often = decided(50);
+  REQUIRE(once.size() == 4000);
+  CHECK(often.size() == 4000);
+  CHECK(fingerprint(once) == fingerprint(often));
+}
+
+TEST_CASE("Frozen at the last a touch goes on until it is stale; frozen to nothing it ends at once") {
+  const bool zero = GENERATE(true, false);
+  Stack stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  ContactStream stream(1);
+  for (int ms = 0; ms < 200; ++ms) {
+    contact_frame_t m{};
+    m.header.run_id = m.header.incarnation = 1;
+    m.header.sim_time_ns = m.header.publish_time_ns = ms * 1'000'000ll;
+    m.clock = {m.header.sim_time_ns, m.header.publish_time_ns, 1};
+    m.pages = m.count = 1;
+    m.contacts.resize(1);
+    m.contacts[0].contact_id = 5;
+    m.contacts[0].normal_force_N = static_cast<float>(ms);
+    frames.push(m, host_time(m.header.publish_time_ns), stack, nullptr);
+    while (const auto let = frames.pop(host_time(m.header.publish_time_ns))) stream.push(let->first, let->second);
+    const auto state = stream.state_at(sim_time(m.header.sim_time_ns));
+    INFO(ms << " ms");
+    CHECK(state.value.size() == (zero && ms >= 100 ? 0 : 1));
+    if (!zero && ms >= 100) {
+      CHECK(state.value.at(0).normal_force_N == 99);
+      CHECK(state.how == (ms <= 149 ? How::kHeld : How::kStale));
+    }
+  }
+}
