@@ -24,15 +24,16 @@ using namespace tactus;
 
 int main(int argc, char** argv) try {
   visual::Settings settings;
-  const sync::Declaration declaration{.node = "visual_node",
-                                      .modality = "visual",
-                                      .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
-                                      .rate_Hz = settings.rate_Hz,
-                                      .about = "Draws the scene, its tools and a flash for every contact.",
-                                      .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
-                                      .presents = "the fence after the frame that first shows it",
-                                      .late = sync::Late::kShowNewest,
-                                      .degradable = {"frame_rate", "resolution"}};
+  const sync::Declaration declaration{
+      .node = "visual_node",
+      .modality = "visual",
+      .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
+      .rate_Hz = settings.rate_Hz,
+      .about = "Draws the scene, its tools and a flash for every contact.",
+      .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
+      .presents = "the fence after the frame that first shows it",
+      .late = sync::Late::kShowNewest,
+      .degradable = {"frame_rate", "resolution"}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);
@@ -68,14 +69,17 @@ int main(int argc, char** argv) try {
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
   visual::FrameComposer composer(node.bus().clocks(), settings);
   visual::Recording recording(keep);
-  std::string said;
-
-  while (node.running() && !display->closed()) {
-    const sync::HostTime now = node.wait();
+  const auto receive = [&](sync::HostTime now) {
     sense.step(now);
     while (const auto m = world.pop()) composer.push(m->message, m->arrival);
     while (const auto m = events.pop()) composer.push(m->message, m->arrival);
     while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
+  };
+  std::string said;
+
+  while (node.running() && !display->closed()) {
+    const sync::HostTime now = node.wait();
+    receive(now);
     if (scenes.poll(now)) {
       settings = {};
       for (const std::string& refused : sync::apply_settings(settings, visual::setting_fields(), declaration.node,
@@ -92,9 +96,15 @@ int main(int argc, char** argv) try {
       sense.set_scene(*scenes.scene());
     }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
-    const visual::Frame frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
+    visual::Frame frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
     const visual::PictureTarget& picture = renderer->picture();
-    renderer->draw(frame.list);
+    renderer->draw_scene(frame.list);
+    renderer->wait();
+    // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
+    const sync::HostTime latched = node.poll();
+    receive(latched);
+    composer.latch(frame, latched, sense.delay());
+    renderer->draw_over(frame.list);
     display->show(picture.framebuffer(), picture.width(), picture.height());
     renderer->wait();
     const sync::HostTime fence = sync::host_now();
@@ -104,7 +114,8 @@ int main(int argc, char** argv) try {
       rendered += report.outcome != presentation_t::DROPPED_LATE;
     }
     node.count_rendered(rendered);
-    sense.set_output_latency(fence - now + sync::from_seconds(1 / settings.rate_Hz));
+    // An event that arrives just after the latch waits for that of the next frame.
+    sense.set_output_latency(fence - latched + sync::from_seconds(1 / settings.rate_Hz));
     sense.publish(fence);
     if (auto pair = recording.add(tick, fence, [&](std::span<std::uint8_t> rgba) { picture.read(rgba); }))
       node.bus().publish(channels::kMediaClock, *pair);

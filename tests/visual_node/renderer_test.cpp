@@ -49,7 +49,9 @@ Image render(const scene_t& scene, const Settings& settings = {}, std::vector<Re
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   DrawList list = view.draw(poses, {});
   list.overlay = std::move(overlay);
-  renderer.draw(list);
+  renderer.draw_scene(list);
+  renderer.wait();
+  renderer.draw_over(list);
   renderer.wait();
   Image image;
   renderer.picture().read(image.rgba);

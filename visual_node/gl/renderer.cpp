@@ -71,16 +71,22 @@ void Renderer::warm_up(const Lighting& lighting) {
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
-  draw(list);
+  draw_scene(list);
+  draw_over(list);
   wait();
 }
 
-void Renderer::draw(const DrawList& list) {
+void Renderer::draw_scene(const DrawList& list) {
   instances_.write(list.instances.data(), list.instances.size() * sizeof(Instance));
   if (shadow_) draw_shadow(list);
   draw_surfaces(list);
+}
 
+void Renderer::draw_over(const DrawList& list) {
+  picture_.bind();
   glDisable(GL_DEPTH_TEST);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glow_.use();
   glow_.set("clip_from_world", list.camera.clip_from_world());

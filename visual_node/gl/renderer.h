@@ -16,13 +16,15 @@ class Renderer {
   // Throws std::runtime_error when a shader does not compile.
   Renderer(int width, int height, int shadow_size);
 
-  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are. Takes a tenth of a
-  // second on a software renderer; the first picture after it takes no longer than others.
+  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are. Takes a
+  // tenth of a second on a software renderer; the first picture after it takes no longer than others.
   void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
             const std::vector<Relief>& reliefs = {});
-  // Gives the work to the device and returns.
-  void draw(const DrawList& list);
-  // Waits until the device has finished the picture.
+  // A picture is drawn in two parts, so that what has just become known can still be in it: the surfaces, which
+  // take nearly all of the time, and then flashes and overlay. Each gives the work to the device and returns.
+  void draw_scene(const DrawList& list);
+  void draw_over(const DrawList& list);
+  // Waits until the device has finished what it was given.
   void wait() const;
   const PictureTarget& picture() const { return picture_; }
 
