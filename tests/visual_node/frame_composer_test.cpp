@@ -68,7 +68,7 @@ struct Fixture {
   FrameComposer composer{kRun, Settings{}};
   std::map<std::int64_t, int> outcomes;
   std::map<std::int64_t, presentation_t> reports;
-  sync::Nanoseconds delay{0};
+  sync::Nanoseconds delay{0}, held{0};
   std::int64_t number = 0;
 
   void load() {
@@ -83,7 +83,7 @@ struct Fixture {
     const sync::HostTime now = sync::host_time(sim_ns + kBegan_ns);
     Frame f = composer.frame(now, number++, delay);
     meanwhile();
-    composer.latch(f, now + milliseconds(3), delay);
+    composer.latch(f, now + milliseconds(3), delay, held);
     for (const presentation_t& r : composer.presented(now + milliseconds(4))) {
       CHECK(reports.count(r.event_id) == 0);
       outcomes[r.event_id] = r.outcome;
@@ -207,6 +207,50 @@ TEST_CASE_METHOD(Fixture,
   REQUIRE(reports.size() == static_cast<std::size_t>(id - 100));
   for (const auto& [event_id, r] : reports)
     CHECK(std::abs(r.presented_ns - r.scheduled_ns) <= kFrame.count() / 2 + 1);
+}
+
+TEST_CASE_METHOD(
+    Fixture,
+    "With few pictures a second an event is shown in the first one at or after its instant, and none is dropped") {
+  load();
+  const int every = GENERATE(6, 30);  // ticks: 10 and 2 pictures a second
+  delay = milliseconds(GENERATE(0, 40));
+  held = every * kFrame;
+  std::mt19937 random(7);
+  std::int64_t id = 100;
+  std::map<std::int64_t, std::int64_t> due;
+  std::vector<std::int64_t> fences;
+  for (int i = 0; i < 600; ++i) {
+    const std::int64_t t = i * kFrame.count();
+    hear(t);
+    if (i > 60 && i < 500) {
+      due[++id] = t - static_cast<std::int64_t>(random() % 1'000'000) + delay.count() + kBegan_ns;
+      composer.push(event_at(due[id] - delay.count() - kBegan_ns, id), sync::host_time(t + kBegan_ns));
+    }
+    if (i % every == 0) frame(t), fences.push_back(t + 4'000'000 + kBegan_ns);
+  }
+  REQUIRE(reports.size() == due.size());
+  for (const auto& [event_id, r] : reports) {
+    CHECK(r.scheduled_ns == due[event_id]);
+    CHECK(r.presented_ns == *std::lower_bound(fences.begin(), fences.end(), due[event_id]));
+    CHECK(r.outcome ==
+          (r.presented_ns - r.scheduled_ns > 50'000'000 ? presentation_t::LATE : presentation_t::PRESENTED));
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "A scene's settings of what is late hold for its events") {
+  load();
+  scene_t scene = test::empty_scene();
+  Settings settings;
+  settings.late_after_s = 0.01, settings.drop_after_s = 0.1;
+  composer.load(scene, {}, settings);
+  hear(0);
+  frame(0);
+  hear(1'000'000'000);
+  composer.push(event_at(1'000'000'000 - 20'000'000, 1), sync::host_time(1'000'000'000 + kBegan_ns));
+  composer.push(event_at(1'000'000'000 - 120'000'000, 2), sync::host_time(1'000'000'000 + kBegan_ns));
+  frame(1'000'000'000);
+  CHECK(outcomes == std::map<std::int64_t, int>{{1, presentation_t::LATE}, {2, presentation_t::DROPPED_LATE}});
 }
 
 TEST_CASE_METHOD(Fixture, "Events of a stall are shown late or dropped, each reported") {

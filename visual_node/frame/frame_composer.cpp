@@ -33,8 +33,8 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings)
-    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings) {}
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late)
+    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                                      const HeightMaps& height_maps) {
@@ -42,6 +42,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
   scene_ = scene;
   view_.emplace(scene, meshes, settings, height_maps);
   flashes_ = Flashes(settings);
+  ledger_.set(settings);
   return *view_;
 }
 
@@ -62,10 +63,10 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   return frame;
 }
 
-void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay) {
+void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, sync::Nanoseconds held) {
   latched_ = now;
   const sync::HostTime t = now + latch_time_.expected();
-  flash_due(t, delay);
+  flash_due(t, delay, held);
   if (view_) frame.list.glows = flashes_.frame(t, frame.list.camera);
   if (settings_.event_marker == "strip")
     append_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), flashes_.shown(),
@@ -103,15 +104,16 @@ sync::HostTime FrameComposer::presented_next(sync::HostTime t) const {
 }
 
 // An event is shown in the frame that is nearest to its instant; one that is to be shown at once, in the next.
-void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay) {
+void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
   const auto map = contacts_.map(latched_);
   if (!map) return;
   // Without a scene there is nothing to show an event in: it waits until it is too late.
-  const sync::Nanoseconds early =
-      std::clamp((presented_next(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
+  sync::Nanoseconds early{0};
+  if (held == sync::Nanoseconds(0))
+    early = std::clamp((presented_next(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
   const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
-  for (const contact_event_t& event : ledger_.take(due, *map, t, delay)) flashes_.add(event, t);
+  for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
 std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {

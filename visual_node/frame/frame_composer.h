@@ -31,7 +31,8 @@ struct Frame {
 class FrameComposer {
  public:
   // own: messages of another clock are read through its map; those of another run by arrival.
-  FrameComposer(sync::OwnClock own, const Settings& settings);
+  // late: what becomes of an event that could not be shown in time.
+  FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
 
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
@@ -45,7 +46,10 @@ class FrameComposer {
   Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
               sync::HostTime newest_arrival = sync::HostTime{});
   // The surfaces of that frame are drawn, now: adds what lies over them, with the events that arrived until now.
-  void latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay = sync::Nanoseconds(0));
+  // held: each picture stays for so long because a profile wants few; it shows the events up to its instant. 0: a
+  // picture in every tick.
+  void latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay = sync::Nanoseconds(0),
+             sync::Nanoseconds held = sync::Nanoseconds(0));
   // That frame was presented at `fence`: reports of the events that it showed first or dropped.
   std::vector<presentation_t> presented(sync::HostTime fence);
 
@@ -56,7 +60,7 @@ class FrameComposer {
     tool_state_t state;
     sync::HostTime arrival;
   };
-  void flash_due(sync::HostTime t, sync::Nanoseconds delay);
+  void flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);
   sync::HostTime presented_next(sync::HostTime t) const;
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
