@@ -171,6 +171,12 @@ HostTime Node::wait() {
   return now;
 }
 
+HostTime Node::poll() {
+  const HostTime now = host_now();
+  bus_.drain(now);
+  return now;
+}
+
 HostTime Node::wait_for_event() {
   const HostTime end = host_now();
   end_tick(end);

@@ -62,7 +62,9 @@ class Node {
 
   // Ends the tick before, reports health when due, sleeps until the next tick, drains the bus. Returns the clock.
   HostTime wait();
-  // The same for a process that is driven by events: wakes when something arrives, after a period at the latest.
+  // In the middle of a tick: drains the bus once more, without waiting. Returns the clock.
+  HostTime poll();
+  // Like wait() for a process that is driven by events: wakes when something arrives, after a period at the latest.
   HostTime wait_for_event();
 
   Bus& bus() { return bus_; }

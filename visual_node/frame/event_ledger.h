@@ -6,6 +6,7 @@
 #include <tactus/presentation_t.hpp>
 #include <vector>
 
+#include "sync/late.h"
 #include "sync/time.h"
 #include "visual_node/settings.gen.h"
 
@@ -16,17 +17,25 @@ bool owed(const contact_event_t& event);
 
 class EventLedger {
  public:
-  explicit EventLedger(const Settings& settings);
+  // rule: what becomes of an event that could not be shown in time.
+  explicit EventLedger(const Settings& settings, sync::Late rule = sync::Late::kShowNewest)
+      : policy_{.rule = rule} {
+    set(settings);
+  }
+  // Other settings from now on; what is booked stays.
+  void set(const Settings& settings);
 
   // Of the events due for the frame that is expected to be presented at t: those to flash. An event that would be
-  // shown too late is dropped and reported so.
+  // shown too late is dropped and reported so. held: no frame before could have shown it for so long, on purpose.
   std::vector<contact_event_t> take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
-                                    sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0));
+                                    sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0),
+                                    sync::Nanoseconds held = sync::Nanoseconds(0));
   // The frame was presented at t: reports of the events that it showed first, and of those dropped since.
   std::vector<presentation_t> presented(sync::HostTime t);
 
  private:
-  sync::Nanoseconds late_after_, drop_after_, uncertainty_;
+  sync::LatePolicy policy_;
+  sync::Nanoseconds uncertainty_{0};
   std::vector<presentation_t> in_frame_;
   std::vector<presentation_t> dropped_;
 };
