@@ -70,6 +70,7 @@ int main(int argc, char** argv) try {
   auto& events = sense.events();
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
   visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
+  composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::Recording recording(keep);
   visual::PictureRate rate;
   visual::QualityControl quality(settings);

@@ -20,7 +20,8 @@ std::vector<contact_event_t> EventLedger::take(const std::vector<contact_event_t
   std::vector<contact_event_t> to_flash;
   for (const contact_event_t& event : due) {
     if (!owed(event)) continue;
-    const sync::HostTime scheduled = map.to_host(sync::sim_time(event.time_ns)) + delay;
+    const sync::HostTime happened = map.to_host(sync::sim_time(event.time_ns));
+    const sync::HostTime scheduled = schedule_ ? schedule_(event.event_id, happened) : happened + delay;
     presentation_t r{};
     r.event_id = event.event_id;
     r.part = presentation_t::WHOLE;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/presentation_t.hpp>
+#include <utility>
 #include <vector>
 
 #include "sync/late.h"
@@ -15,6 +17,9 @@ namespace tactus::visual {
 // Vision owes every begin and every hit.
 bool owed(const contact_event_t& event);
 
+// When an event that happened then is to be presented.
+using Schedule = std::function<sync::HostTime(std::int64_t event_id, sync::HostTime happened)>;
+
 class EventLedger {
  public:
   // rule: what becomes of an event that could not be shown in time.
@@ -22,6 +27,8 @@ class EventLedger {
       : policy_{.rule = rule} {
     set(settings);
   }
+  // Without one: the delay of the frame after the event.
+  void set_schedule(Schedule schedule) { schedule_ = std::move(schedule); }
   // Other settings from now on; what is booked stays.
   void set(const Settings& settings);
 
@@ -35,6 +42,7 @@ class EventLedger {
 
  private:
   sync::LatePolicy policy_;
+  Schedule schedule_;
   sync::Nanoseconds uncertainty_{0};
   std::vector<presentation_t> in_frame_;
   std::vector<presentation_t> dropped_;

@@ -34,6 +34,7 @@ class FrameComposer {
   // late: what becomes of an event that could not be shown in time.
   FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
 
+  void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) { tools_[m.tool] = {m, arrival}; }
