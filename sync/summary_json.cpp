@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "sync/summary.h"
@@ -31,6 +32,12 @@ Json nodes(const RunSummary& s) {
   for (const auto& [name, n] : s.nodes()) {
     Json ages = Json::object();
     for (const auto& [channel, age] : n.input_age) ages[channel] = {{"p50", ms(age.quantile(0.5))}, {"p99", ms(age.quantile(0.99))}};
+    Json quality = nullptr;
+    if (!n.quality.empty()) {
+      const auto reports = static_cast<double>(std::accumulate(n.quality.begin(), n.quality.end(), std::int64_t{0}));
+      quality = Json::array();
+      for (const std::int64_t at : n.quality) quality.push_back(rounded(static_cast<double>(at) / reports, 1000));
+    }
     out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
                  {"ticks", n.ticks},
                  {"missed_ticks", n.missed_ticks},
@@ -38,6 +45,7 @@ Json nodes(const RunSummary& s) {
                  {"tick_us", quantiles(n.tick)},
                  {"wake_us", quantiles(n.wake)},
                  {"input_age_ms", ages},
+                 {"quality", quality},
                  {"restarts", n.restarts},
                  {"scheduling", n.scheduling}};
   }
