@@ -30,6 +30,9 @@ constexpr double kSlack_samples = 2.5;
 // Share of the time of a block that its rendering may take: the rest is for a wake-up that comes late, and for the
 // card's own work. Design.
 constexpr double kBudget = 0.5;
+// The ladder is told of so many means a second. Design, as pictures: at the rate of blocks it would heed every
+// moment in which another process has the processor, to which fewer modes are no answer.
+constexpr double kMeans_Hz = 60;
 constexpr double kCalm_s = 2;  // design: no better step without so much spare time
 
 // The onset of a sound is lost when a drop-out takes more than half of its amplitude.
@@ -50,7 +53,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
-              static_cast<int>(kCalm_s * def.rate_Hz / def.period_frames)) {}
+              static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
 void Renderer::take_orders() {
   Orders orders;
@@ -62,9 +65,12 @@ void Renderer::take_orders() {
 
 // The ladder is told what a second of sound would take, since blocks may differ in length.
 void Renderer::adapt(int frames, sync::Nanoseconds used) {
-  if (pinned_ < 0 && used > sync::Nanoseconds(0) && last_frames_ > 0)
-    ladder_.add(sync::from_seconds(sync::to_seconds(used) * rate_Hz_ / last_frames_));
+  if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
   last_frames_ = frames;
+  if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
+    ladder_.add(sync::from_seconds(sync::to_seconds(used_) * rate_Hz_ / frames_));
+    frames_ = 0, used_ = {};
+  }
   const int step = pinned_ < 0 ? ladder_.step() : pinned_;
   voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
   crossing_.quality.store(step, std::memory_order_relaxed);

@@ -19,15 +19,16 @@ class Quality {
   explicit Quality(const Settings& settings);
 
   // Once a tick: what it took.
-  void add(sync::Nanoseconds used) {
-    if (held_ < 0) ladder_.add(used);
-  }
+  void add(sync::Nanoseconds used);
   int step() const { return held_ < 0 ? ladder_.step() : held_; }
   static constexpr int steps() { return static_cast<int>(kPlanes.size()); }
   std::size_t planes() const { return kPlanes[static_cast<std::size_t>(step())]; }
 
  private:
   sync::QualityLadder ladder_;
+  int together_;  // ticks, of which the ladder is told the mean
+  int ticks_ = 0;
+  sync::Nanoseconds used_{0};
   int held_;  // by the setting; -1: by the time that ticks take
 };
 

@@ -5,8 +5,8 @@
 namespace tactus::thermal {
 namespace {
 
-constexpr double kBudget =
-    0.5;                       // share of a tick; design: the rest is for a wake-up that comes late and for others
+// Share of a tick; the rest is for a wake-up that comes late and for others (design).
+constexpr double kBudget = 0.5;
 constexpr double kCalm_s = 2;  // design: no better step without so much spare time
 
 }  // namespace

@@ -62,8 +62,8 @@ constexpr int kTwoSeconds = static_cast<int>(2 * kRate) / kPeriod;
 TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full again when they long do not") {
   auto bench = std::make_unique<Bench>();
   CHECK(run(*bench, 0.4, kTwoSeconds) == 0);
-  CHECK(run(*bench, 0.7, 64) == 1);
-  CHECK(run(*bench, 1.5, 64) == 2);
+  CHECK(run(*bench, 0.7, kTwoSeconds / 2) == 1);
+  CHECK(run(*bench, 1.5, kTwoSeconds / 2) == 2);
   CHECK(run(*bench, 0.3, kTwoSeconds / 2) == 2);
   CHECK(run(*bench, 0.3, 10 * kTwoSeconds) == 0);
 }
