@@ -22,8 +22,8 @@ scene_t ball_over_floor() {
 
 // In the middle of the picture, of half its height.
 Glow flash() {
-  Glow glow{};
-  glow.centre.w() = 0.5f;
+  Glow glow;
+  glow.centre << 0, 0, 0, 0.5f;
   glow.u << 0.5f, 0, 0, 0;
   glow.v << 0, 0.5f, 0, 0;
   glow.colour << 1, 0.6f, 0.2f, 0;
