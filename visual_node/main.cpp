@@ -101,6 +101,7 @@ int main(int argc, char** argv) try {
     recording.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
+    sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
     quality = visual::QualityControl(settings);
     rate.restart();
   };
@@ -133,7 +134,10 @@ int main(int argc, char** argv) try {
   while (node.running() && !display->closed()) {
     const sync::HostTime now = node.wait();
     receive(now);
-    if (scenes.poll(now)) load(now);
+    if (scenes.poll(now)) {
+      load(now);
+      continue;  // that took several ticks
+    }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
     const bool fresh = rate.due(now, sense.output().frame_rate_Hz, settings.rate_Hz);
     if (fresh) draw(now, tick);

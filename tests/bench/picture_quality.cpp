@@ -99,9 +99,9 @@ int main(int argc, char** argv) try {
     }
   std::printf("%s, %d x %d pixels, %d pictures each\n", display->description().c_str(), view.width(),
               view.height(), pictures);
-  std::printf("| | surfaces p50 | picture p50 | p95 | first | ms |\n|---|---|---|---|---|---|\n");
+  std::printf("| ms | surfaces p50 | picture p50 | p95 | first |\n|---|---|---|---|---|\n");
   for (const Row& row : rows)
-    std::printf("| %s | %.1f | %.1f | %.1f | %.1f | |\n", row.name.c_str(), quantile(row.surfaces_ms, 0.5),
+    std::printf("| %s | %.1f | %.1f | %.1f | %.1f |\n", row.name.c_str(), quantile(row.surfaces_ms, 0.5),
                 quantile(row.picture_ms, 0.5), quantile(row.picture_ms, 0.95), row.picture_ms.front());
   return 0;
 } catch (const std::exception& e) {

@@ -22,8 +22,8 @@ scene_t ball_over_floor() {
 
 // In the middle of the picture, of half its height.
 Glow flash() {
-  Glow glow{};
-  glow.centre.w() = 0.5f;
+  Glow glow;
+  glow.centre << 0, 0, 0, 0.5f;
   glow.u << 0.5f, 0, 0, 0;
   glow.v << 0, 0.5f, 0, 0;
   glow.colour << 1, 0.6f, 0.2f, 0;
@@ -93,17 +93,21 @@ TEST_CASE("A flash is as sharp in every step, and as coarse as the picture where
   }
 }
 
-TEST_CASE("Nothing of a picture of another step is left at the edges of the next") {
+TEST_CASE("Scaled up, a picture has its own light up to its last pixel, whatever lay beside it before") {
   display();
+  scene_t scene = floor_from_above(2);  // fills the picture, on a dark background
+  scene.ambient = grey(1);
+  const SceneView view(scene, {}, {});
   Renderer renderer(kWidth, kHeight, 64);
-  DrawList bright, dark;
-  bright.lighting.background = {1, 1, 1};
-  for (const Quality& q : {step(2), degraded(step(0), 0.3), degraded(step(0), 0.005), step(1)}) {
-    draw(renderer, bright, step(1));
-    draw(renderer, bright, degraded(step(0), 0.9));
-    const Image image = draw(renderer, dark, q);
-    for (std::size_t k = 0; k < image.rgba.size(); ++k)
-      if (k % 4 != 3) REQUIRE(image.rgba[k] == 0);
+  renderer.load(view.geometries(), view.lighting(), view.reliefs());
+  const std::vector<Eigen::Isometry3d> poses{Eigen::Isometry3d::Identity()};
+  const DrawList list = view.draw(poses, {});
+  DrawList dark;
+  for (const Quality& q : {step(1), step(2), step(3), degraded(step(0), 0.3), degraded(step(0), 0.005)}) {
+    draw(renderer, dark, degraded(step(0), 0.9));
+    const Image image = draw(renderer, list, q);
+    REQUIRE(image.rgba[0] > 100);
+    for (std::size_t k = 4; k < image.rgba.size(); ++k) REQUIRE(image.rgba[k] == image.rgba[k % 4]);
   }
 }
 

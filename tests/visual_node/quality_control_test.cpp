@@ -7,7 +7,7 @@ using namespace tactus::visual;
 using std::chrono::milliseconds;
 
 TEST_CASE("Drawing that needs more than its share of the frame gets cheaper, and says so once") {
-  QualityControl control{Settings{}};  // 12.5 ms of 16.7 ms
+  QualityControl control{Settings{}};  // steps are left at 12.75 ms of 16.7 ms
   CHECK(control.take_change().empty());
   for (int i = 0; i < 100; ++i) control.add(milliseconds(10));
   CHECK(control.step() == 0);

@@ -30,6 +30,9 @@ struct Frame {
 
 class FrameComposer {
  public:
+  // From latch to fence, before the first frame: a software renderer's typical time.
+  static constexpr sync::Nanoseconds kFlashesTake{1'000'000};
+
   // own: messages of another clock are read through its map; those of another run by arrival.
   // late: what becomes of an event that could not be shown in time.
   FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
@@ -55,8 +58,6 @@ class FrameComposer {
   std::vector<presentation_t> presented(sync::HostTime fence);
 
  private:
-  static constexpr sync::Nanoseconds kFlashesTake{
-      1'000'000};  // before the first frame: a software renderer's typical time
   struct ToolArrival {
     tool_state_t state;
     sync::HostTime arrival;

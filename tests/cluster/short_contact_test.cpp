@@ -1,0 +1,148 @@
+// A contact of 3 ms, over before the next picture and the next tick of heat: whatever one sense suffers, no other
+// misses it.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "tests/cluster/run_script.h"
+
+using namespace tactus::cluster;
+
+namespace {
+
+// Policies of presentation to hold under, as scripts/run takes them; "": its default.
+const std::vector<std::string> kPolicies{""};
+
+const std::map<std::string, std::vector<std::string>> kOwes{
+    {"haptic", {"begin", "hit"}}, {"audio", {"hit"}}, {"visual", {"begin", "hit"}}, {"thermal", {"begin", "hit"}}};
+
+// The tool dips 0.6 mm into the floor and out of it at 0.5 m/s: 3 ms from touch to where the surfaces are told to
+// have parted, 0.3 mm apart. 257 ms between two dips, which is no multiple of any sense's period.
+std::filesystem::path write_motion(const std::filesystem::path& file) {
+  constexpr double kRadius_m = 0.008, kDip_m = 0.0006, kSpeed_m_s = 0.5, kAbove_m = 0.03;
+  std::ofstream out(file);
+  out << "time_s,x_m,y_m,z_m\n0,0,0," << kAbove_m << "\n";
+  for (double dip_s = 1; dip_s < 60; dip_s += 0.257) {
+    out << dip_s - 0.03 << ",0,0," << kAbove_m << "\n";
+    for (int ms = -12; ms <= 12; ++ms)
+      out << dip_s + ms * 0.001 << ",0,0," << kRadius_m - kDip_m + std::abs(ms) * 0.001 * kSpeed_m_s << "\n";
+    out << dip_s + 0.03 << ",0,0," << kAbove_m << "\n";
+  }
+  return file;
+}
+
+std::vector<std::map<std::string, std::string>> table(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::map<std::string, std::string>> rows;
+  std::vector<std::string> names;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream cells(line);
+    std::map<std::string, std::string> row;
+    std::size_t i = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++i) {
+      if (rows.empty() && row.empty() && names.size() == i)
+        names.push_back(cell);
+      else if (i < names.size())
+        row[names[i]] = cell;
+    }
+    if (!row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+struct Result {
+  std::map<std::string, std::string> kind;                            // of each settled event, by id
+  std::map<std::string, std::map<std::string, std::string>> outcome;  // by sense and event
+  std::map<std::string, double> soonest_ms;                           // after the event, by sense
+  std::vector<double> lasted_ms;                                      // the contacts
+};
+
+Result read(const std::filesystem::path& out) {
+  Result r;
+  const auto events = table(out / "events.csv");
+  REQUIRE_FALSE(events.empty());
+  const auto ns = [](const auto& row, const char* name) { return std::stoll(row.at(name)); };
+  std::map<std::string, std::int64_t> began, happened_ns;
+  // The last 1.2 s may not have been reported when the run ended.
+  const std::int64_t settled = ns(events.back(), "host_ns") - 1'200'000'000;
+  for (const auto& row : events) {
+    happened_ns[row.at("event_id")] = ns(row, "host_ns");
+    if (row.at("kind") == "begin") began[row.at("contact_id")] = ns(row, "sim_ns");
+    if (row.at("kind") == "end" && began.contains(row.at("contact_id")))
+      r.lasted_ms.push_back(static_cast<double>(ns(row, "sim_ns") - began.at(row.at("contact_id"))) * 1e-6);
+    if (ns(row, "host_ns") < settled) r.kind[row.at("event_id")] = row.at("kind");
+  }
+  for (const auto& row : table(out / "presented.csv")) {
+    r.outcome[row.at("modality")][row.at("event_id")] = row.at("outcome");
+    if (ns(row, "presented_ns") < 0 || !happened_ns.contains(row.at("event_id"))) continue;
+    const double after_ms =
+        static_cast<double>(ns(row, "presented_ns") - happened_ns.at(row.at("event_id"))) * 1e-6;
+    const auto [soonest, fresh] = r.soonest_ms.try_emplace(row.at("modality"), after_ms);
+    soonest->second = std::min(soonest->second, after_ms);
+  }
+  return r;
+}
+
+void check_all_but(const std::string& degraded) {
+  for (const std::string& policy : kPolicies) {
+    RunScript run;
+    const std::filesystem::path profile = run.folder.path() / "profile.xml";
+    std::ofstream(profile) << "<profile name=\"slow\"><degrade modality=\"" << degraded
+                           << "\" rate=\"5Hz\" delay=\"30ms\"/></profile>";
+    std::vector<std::string> options{
+        (repository() / "tests/cluster/short_contacts.sdf").string(),          "--seconds", "7",      "--device",
+        "playback:" + write_motion(run.folder.path() / "motion.csv").string(), "--out",     run.out()};
+    if (!degraded.empty()) options.insert(options.end(), {"--degrade", profile});
+    if (!policy.empty()) options.insert(options.end(), {"--policy", policy});
+    run.start(options);
+    const int status = run.finish(150);
+    INFO("policy \"" << policy << "\": " << run.processes.said("run"));
+    REQUIRE(status == 0);
+
+    Result r = read(run.out());
+    REQUIRE(r.lasted_ms.size() >= 10);
+    std::sort(r.lasted_ms.begin(), r.lasted_ms.end());
+    CHECK(r.lasted_ms[r.lasted_ms.size() / 2] == Approx(3).margin(1));
+    for (const auto& [sense, kinds] : kOwes) {
+      int owed = 0, presented = 0, refused = 0;
+      std::map<std::string, int> outcomes;
+      for (const auto& [id, kind] : r.kind) {
+        if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) continue;
+        ++owed;
+        const auto& reports = r.outcome[sense];
+        const std::string outcome = reports.contains(id) ? reports.at(id) : "nothing";
+        ++outcomes[outcome];
+        presented += outcome == "presented" || outcome == "late";
+        refused += outcome == "dropped_by_profile" || outcome == "dropped_late";
+      }
+      std::ostringstream said;
+      for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
+      INFO(sense << " of " << owed << ": " << said.str());
+      CHECK(owed >= 10);
+      // The profile did what it says, to the sense that it names: 30 ms, less one tick of rounding.
+      if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 29);
+      // Held back by its rate the degraded sense may be too late to make sense, and says so.
+      CHECK(presented + (sense == degraded ? refused : 0) == owed);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, when no sense is degraded") {
+  check_all_but("");
+}
+TEST_CASE("A 3 ms contact between two video frames flashes and warms and is felt, with sound degraded") {
+  check_all_but("audio");
+}
+TEST_CASE("A 3 ms contact between two video frames sounds and warms and is felt, with vision degraded") {
+  check_all_but("visual");
+}
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with touch degraded") {
+  check_all_but("haptic");
+}
+TEST_CASE("A 3 ms contact between two video frames flashes and sounds and is felt, with warmth degraded") {
+  check_all_but("thermal");
+}
