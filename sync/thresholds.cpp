@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "thresholds.gen.h"
+#include "sync/thresholds.gen.h"
 
 namespace tactus::sync {
 namespace {

@@ -14,9 +14,10 @@ namespace {
 
 // What comes only when something happens may be old without harm.
 bool flows(const std::string& channel) {
-  static constexpr std::array<const char*, 7> sporadic = {
+  static constexpr std::array<const char*, 10> sporadic = {
       channels::kContactEvents, channels::kPresented,  channels::kSceneManifest, channels::kAssetRequest,
-      channels::kAssetChunk,    channels::kMediaClock, channels::kLogInfo};
+      channels::kAssetChunk,    channels::kMediaClock, channels::kLogInfo,
+      channels::kClockMap,      channels::kPlayout,    channels::kDegradation};
   return std::find(sporadic.begin(), sporadic.end(), channel) == sporadic.end();
 }
 

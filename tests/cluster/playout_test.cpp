@@ -8,19 +8,6 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Asks for a policy through the program that people use. Returns what it said.
-std::string playout(Running& c, std::vector<std::string> words) {
-  static int number = 0;
-  const std::string name = "playout" + std::to_string(++number);
-  std::vector<std::string> command{programs() / "playout", "--run-id", std::to_string(Running::kRunId)};
-  command.insert(command.end(), words.begin(), words.end());
-  c.processes.spawn(name, command);
-  const int status = c.processes.wait_for_exit(name, kPatience_s);
-  INFO(c.processes.said(name));
-  CHECK(status == 0);
-  return c.processes.said(name);
-}
-
 // Presented in a after b, ms, of hits of the tool that neither had reported before; touch by its transient.
 std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b, const EventsHeard& before) {
   std::vector<double> out;
@@ -50,11 +37,11 @@ TEST_CASE("Sound and picture are as far apart as an experiment asks, changed whi
   Running c;
   c.start();
   // 100 ms of a base of 200 ms come at 5 % of the time: within 4 s and a half of it.
-  CHECK(playout(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") != std::string::npos);
+  CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") != std::string::npos);
   const double apart = settled_asynchrony_ms(c, "visual", "audio", 6);
   CHECK(apart > 60);
   CHECK(apart < 240);
-  playout(c, {"experiment", "--base", "200ms"});
+  ask_for(c, {"experiment", "--base", "200ms"});
   const double together = settled_asynchrony_ms(c, "visual", "audio", 4);
   CHECK(std::abs(together) < 60);
   CHECK(c.all_live(kNodes));
@@ -63,7 +50,7 @@ TEST_CASE("Sound and picture are as far apart as an experiment asks, changed whi
 TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for") {
   Running c;
   c.start();
-  playout(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
+  ask_for(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
   const double before = settled_asynchrony_ms(c, "visual", "audio", 6);
   c.processes.kill("sync_node");
   const double alone = settled_asynchrony_ms(c, "visual", "audio", 1);
@@ -74,13 +61,13 @@ TEST_CASE("Who decides when the senses present may die: they keep it, and it com
   const double again = settled_asynchrony_ms(c, "visual", "audio", 2);
   CHECK(again > before / 2);
   CHECK(again < before * 2);
-  CHECK(playout(c, {}).find("experiment") != std::string::npos);
+  CHECK(ask_for(c, {}).find("experiment") != std::string::npos);
 }
 
 TEST_CASE("In the serial loop of 2005 all senses go on, one after the other") {
   Running c;
   c.start();
-  CHECK(playout(c, {"itouch2005"}).find("one loop") != std::string::npos);
+  CHECK(ask_for(c, {"itouch2005"}).find("one loop") != std::string::npos);
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
   CHECK(c.all_live(kNodes));
 }
