@@ -158,7 +158,8 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled) c
       settings_.reference_level * std::min(kMostAboveReference, std::pow(relative, settings_.loudness_exponent));
   const double scale = settings_.gain * level / pressure;
   const StereoGain gain = stereo_gain(listener_, to_eigen(event.point_m), settings_.nearest_m);
-  strike.inaudible = settings_.gain * level * std::max(gain.left, gain.right) < settings_.inaudible_level;
+  const double peak_level = settings_.gain * level * std::max(gain.left, gain.right);
+  strike.heard_from = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
   // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
   const double n = strike.pulse_samples;
   const double steepest = strike.pulse_samples > 1 ? 2 / n * std::sin(pi / n) : 1;

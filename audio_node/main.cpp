@@ -30,7 +30,7 @@ const sync::Declaration kAudio{.node = "audio_node",
                                .about = "Sounds the hits of the scene through a sound card.",
                                .inputs = {channels::kContactEvents, channels::kContacts},
                                .presents = "the DAC time of its first sample",
-                               .late = sync::Late::kPlayWithFade,
+                               .late = audio::kLate,
                                .degradable = {"dropout"}};
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
@@ -100,6 +100,7 @@ int main(int argc, char** argv) try {
                                                  output.settings().sample_rate_Hz, ++scenes);
     }
     const bool plays = (impacts || now - started > kOpenAnyway) && output.keep_open(now);
+    output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
 
@@ -125,6 +126,7 @@ int main(int argc, char** argv) try {
                    : now - sense.newest_arrival() > kInputLost  ? node_health_t::INPUT_LOST
                                                                 : node_health_t::RUNNING,
                    output.note());
+    node.set_quality(output.quality(), static_cast<int>(audio::kQualities.size()));
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());
   }
   return 0;

@@ -50,8 +50,10 @@ bool Output::keep_open(sync::HostTime now) {
 void Output::begin_to_open(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  renderer_ = std::make_shared<Renderer>(*crossing_, settings_.sample_rate_Hz, settings_.limiter_ceiling,
-                                         sync::from_seconds(settings_.late_limit_s));
+  const RendererDef def{settings_.sample_rate_Hz, settings_.period_frames, settings_.limiter_ceiling,
+                        late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s))};
+  renderer_ = std::make_shared<Renderer>(*crossing_, def);
+  ordered_.reset();
   const StreamOptions options{settings_.device,
                               static_cast<int>(settings_.sample_rate_Hz),
                               settings_.period_frames,
@@ -90,6 +92,11 @@ void Output::close() {
   stream_.reset();
   renderer_->abandon();
   past_callbacks_ += callbacks, past_underflows_ += underflows;
+}
+
+void Output::degrade(const DropoutDef& dropout) {
+  const Orders orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
+  if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
 }
 
 void Output::submit(const Strike& strike) {

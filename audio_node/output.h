@@ -23,6 +23,9 @@ class Output {
   // dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
+  // Once a tick: what is wrong with the output on purpose.
+  void degrade(const DropoutDef& dropout);
+
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
   void submit(const Strike& strike);
   std::optional<presentation_t> next_report();
@@ -36,11 +39,13 @@ class Output {
   // Since the start, over all streams.
   std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
   std::int64_t underflows() const { return past_underflows_ + (stream_ ? stream_->underflows() : 0); }
-  // From the arrival of an event to the sample that it may start on, at the most: the callback's turn, what the card holds,
-  // and the limiter.
+  // From the arrival of an event to the sample that it may start on, at the most: the callback's turn, what the
+  // card holds, and the limiter.
   sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
+  // Step of the quality ladder in use.
+  int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
 
  private:
   void begin_to_open(sync::HostTime now);
@@ -56,6 +61,7 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
+  std::optional<Orders> ordered_;  // what the renderer has been told; nothing: it is new
   std::optional<sync::Opening<Stream>> opening_;
   std::unique_ptr<Stream> stream_;
   std::deque<presentation_t> unsounded_;

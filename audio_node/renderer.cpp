@@ -24,13 +24,57 @@ class FlushToZero {
 };
 
 // Blocks are placed anew by the device's clock; a strike on their border may so miss its sample by one without
-// being late.
-constexpr long kSlack = 2;
+// being late. Two samples, and the half by which every onset is rounded.
+constexpr double kSlack_samples = 2.5;
+
+// Share of the time of a block that its rendering may take: the rest is for a wake-up that comes late, and for the
+// card's own work. Design.
+constexpr double kBudget = 0.5;
+// The ladder is told of so many means a second. Design, as pictures: at the rate of blocks it would heed every
+// moment in which another process has the processor, to which fewer modes are no answer.
+constexpr double kMeans_Hz = 60;
+constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+
+// The onset of a sound is lost when a drop-out takes more than half of its amplitude.
+constexpr float kSilenced = 0.5f;
 
 }  // namespace
 
-Renderer::Renderer(Crossing& crossing, double rate_Hz, double ceiling, sync::Nanoseconds late_limit)
-    : crossing_(crossing), rate_Hz_(rate_Hz), late_limit_(late_limit), limiter_(ceiling, rate_Hz) {}
+sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
+  const sync::Nanoseconds slack = sync::from_seconds(kSlack_samples / rate_Hz);
+  return {kLate, slack, std::max(slack, limit)};
+}
+
+Renderer::Renderer(Crossing& crossing, const RendererDef& def)
+    : crossing_(crossing),
+      rate_Hz_(def.rate_Hz),
+      late_(def.late),
+      voices_(kQualities[0].voices, def.rate_Hz),
+      dropout_(def.rate_Hz),
+      limiter_(def.ceiling, def.rate_Hz),
+      ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
+              static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
+
+void Renderer::take_orders() {
+  Orders orders;
+  while (crossing_.orders.pop(orders)) {
+    dropout_.set(orders.dropout);
+    pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
+  }
+}
+
+// The ladder is told what a second of sound would take, since blocks may differ in length.
+void Renderer::adapt(int frames, sync::Nanoseconds used) {
+  if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
+  last_frames_ = frames;
+  if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
+    ladder_.add(sync::from_seconds(sync::to_seconds(used_) * rate_Hz_ / frames_));
+    frames_ = 0, used_ = {};
+  }
+  const int step = pinned_ < 0 ? ladder_.step() : pinned_;
+  voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
+  crossing_.quality.store(step, std::memory_order_relaxed);
+}
 
 sync::Nanoseconds Renderer::samples(int count) const {
   return sync::Nanoseconds(std::llround(count * 1e9 / rate_Hz_));
@@ -50,12 +94,14 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
 
 void Renderer::render(float* stereo, int frames, const BlockTime& time) {
   const FlushToZero guard;
+  take_orders();
+  adapt(frames, time.used);
   Strike strike;
   while (crossing_.strikes.pop(strike))
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
   for (int done = 0; done < frames; done += kMaxBlock)
     render_some(stereo + 2 * done, std::min(kMaxBlock, frames - done),
-                {time.first_sample + samples(done), time.uncertainty});
+                {time.first_sample + samples(done), time.uncertainty, {}});
 }
 
 void Renderer::abandon() {
@@ -66,26 +112,32 @@ void Renderer::abandon() {
 
 // The block's frames are rendered now and leave the limiter kDelay frames later.
 void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
-  const BlockTime leaving{time.first_sample + samples(Limiter::kDelay), time.uncertainty};
+  const BlockTime leaving{time.first_sample + samples(Limiter::kDelay), time.uncertainty, {}};
   const sync::HostTime end =
       leaving.first_sample + sync::Nanoseconds(std::llround((frames - 0.5) * 1e9 / rate_Hz_));
+  dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(stereo, stereo + 2 * frames, 0.f);
   voices_.render(stereo, frames);
+  for (int n = 0; n < 2 * frames; ++n) stereo[n] *= open_[static_cast<std::size_t>(n / 2)];
   limiter_.process(stereo, frames);
 }
 
 void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {
   const sync::Nanoseconds lateness = leaving.first_sample - strike.scheduled;
-  if (lateness > late_limit_) return report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
+  const std::int8_t outcome = late_.outcome(lateness);
+  if (outcome == presentation_t::DROPPED_LATE) return report(strike, outcome, -1, sync::Nanoseconds(0));
+  const auto gain = static_cast<float>(late_.gain(lateness));
   const auto nearest = static_cast<long>(std::floor(-sync::to_seconds(lateness) * rate_Hz_ + 0.5));
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
-  for (const StrikeSide& side : strike.sides) voices_.strike(side, strike.pulse_samples, offset);
-  const std::int8_t outcome = strike.inaudible    ? presentation_t::INAUDIBLE
-                              : nearest < -kSlack ? presentation_t::LATE
-                                                  : presentation_t::PRESENTED;
+  for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse_samples, offset);
+  // The bodies ring on below the silence.
+  if (open_[static_cast<std::size_t>(offset)] < kSilenced)
+    return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
   const sync::Nanoseconds half_sample = samples(1) / 2;
-  report(strike, outcome, sync::to_ns(leaving.first_sample + samples(offset)), leaving.uncertainty + half_sample);
+  const bool heard = gain >= strike.heard_from;
+  report(strike, heard ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
+         leaving.uncertainty + half_sample);
 }
 
 }  // namespace tactus::audio

@@ -1,12 +1,18 @@
 // Renders strikes into samples: the pure heart of the audio callback, usable without a sound card.
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <span>
 #include <tactus/presentation_t.hpp>
 
+#include "audio_node/dropout.h"
 #include "audio_node/limiter.h"
 #include "audio_node/scheduler.h"
 #include "audio_node/spsc.h"
 #include "audio_node/voices.h"
+#include "sync/late.h"
+#include "sync/quality.h"
 
 namespace tactus::audio {
 
@@ -14,22 +20,49 @@ namespace tactus::audio {
 struct BlockTime {
   sync::HostTime first_sample{};
   sync::Nanoseconds uncertainty{0};
+  sync::Nanoseconds used{0};  // what rendering the block before took; 0: not known
 };
 
-// The two queues between the node's loop and the callback.
+// The quality ladder of sound: of 64 bodies with 16 modes the steps take 0.7 and 0.35 of the time of the first.
+inline constexpr std::array<VoiceLimits, 3> kQualities{{{64, 1}, {64, 2}, {32, 4}}};
+
+// What the node's loop wants of the callback; the newest counts.
+struct Orders {
+  DropoutDef dropout;
+  int quality = -1;  // step of the ladder to hold; -1: by the time that blocks take
+
+  bool operator==(const Orders&) const = default;
+};
+
+// What crosses between the node's loop and the callback.
 struct Crossing {
   Spsc<Strike> strikes{512};
+  Spsc<Orders> orders{16};
   Spsc<presentation_t> reports{4096};
+  std::atomic<int> quality{0};  // step in use
+  static_assert(std::atomic<int>::is_always_lock_free);
+};
+
+// A sound that comes late is weaker, to nothing at the limit: the ear would take its full strength for another
+// impact.
+inline constexpr sync::Late kLate = sync::Late::kPlayWithFade;
+sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit);
+
+struct RendererDef {
+  double rate_Hz = 48000;
+  int period_frames = 128;  // of one call, usually
+  double ceiling = 0.9;
+  sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
 };
 
 // Same strikes, same blocks, same times: the same samples to the bit.
 class Renderer {
  public:
-  Renderer(Crossing& crossing, double rate_Hz, double ceiling, sync::Nanoseconds late_limit);
+  Renderer(Crossing& crossing, const RendererDef& def);
 
   // Fills `frames` stereo frames and reports what became of each strike. A strike that is due before what can
-  // still be changed is played at once and called late, or dropped when it is later than the limit. Realtime-safe:
-  // yes.
+  // still be changed is played at once, as weak as the policy says, and called late, or dropped; one whose onset a
+  // drop-out silences was dropped by the profile. Realtime-safe: yes.
   void render(float* stereo, int frames, const BlockTime& time);
 
   // What waits will never sound: reports all of it as dropped. Of the loop's thread, once the callback has ended.
@@ -38,6 +71,8 @@ class Renderer {
   int sounding() const { return voices_.active(); }
 
  private:
+  void take_orders();
+  void adapt(int frames, sync::Nanoseconds used);
   void render_some(float* stereo, int frames, const BlockTime& time);
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
@@ -45,10 +80,17 @@ class Renderer {
 
   Crossing& crossing_;
   double rate_Hz_;
-  sync::Nanoseconds late_limit_;
+  sync::LatePolicy late_;
   Scheduler scheduler_{512};
-  Voices voices_{64};
+  Voices voices_;
+  Dropout dropout_;
+  std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the samples that are being rendered
   Limiter limiter_;
+  sync::QualityLadder ladder_;
+  int pinned_ = -1;
+  int last_frames_ = 0;        // of the block before
+  int frames_ = 0;             // that the ladder has not been told of,
+  sync::Nanoseconds used_{0};  // and what they took
 };
 
 }  // namespace tactus::audio

@@ -30,8 +30,8 @@ struct StrikeSide {
 struct Strike {
   std::int64_t event_id = 0;
   sync::HostTime scheduled{};
-  int pulse_samples = 1;   // length of the raised-cosine force pulse
-  bool inaudible = false;  // too weak to be heard, by prediction
+  int pulse_samples = 1;  // length of the raised-cosine force pulse
+  float heard_from = 0;   // factor on its strength below which it is too weak to be heard, by prediction
   std::array<StrikeSide, 2> sides;
 };
 

@@ -13,9 +13,11 @@
 #include <memory>
 #include <optional>
 
+#include "haptic_node/quality.h"
 #include "haptic_node/session.h"
 #include "sync/node.h"
 #include "sync/opening.h"
+#include "sync/pacing.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 
@@ -31,7 +33,7 @@ int main(int argc, char** argv) try {
       .about = "Renders the contact force on the hand.",
       .inputs = {channels::kTouchModel, channels::kContactEvents},
       .presents = "the tick whose force shows it",
-      .late = sync::Late::kDrop,
+      .late = haptic::kLate,
       .degradable = {"force_step"}};
   CLI::App app;
   sync::NodeOptions options;
@@ -56,6 +58,7 @@ int main(int argc, char** argv) try {
   auto& events = sense.events();
   haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
   haptic::Choice choice;
+  haptic::Quality quality(given.settings);
   std::optional<sync::Opening<haptic::Device>> device;
   std::optional<haptic::Session> session;
   node.set_state(node_health_t::WAITING, "waits for the scene");
@@ -79,6 +82,7 @@ int main(int argc, char** argv) try {
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
+      quality = haptic::Quality(choice.settings);
       node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for its device" : choice.problem);
     }
     if (device && device->done()) {
@@ -96,14 +100,18 @@ int main(int argc, char** argv) try {
     while (const auto m = events.pop())
       if (session) session->push(m->message, m->arrival);
     if (!session) continue;
-    haptic::TickOutput& out = session->step(now, {.delay = sense.delay(),
-                                                  .touch_delay = sense.profile_delay(),
-                                                  .force_step_N = sense.output().force_step_N,
-                                                  .touch_arrival = touch.count().newest_arrival});
+    haptic::TickOutput& out = session->step(now,
+                                            {.delay = sense.delay(),
+                                             .touch_delay = sense.profile_delay(),
+                                             .force_step_N = sense.output().force_step_N,
+                                             .touch_arrival = touch.count().newest_arrival},
+                                            quality.planes());
     if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);
+    quality.add(sync::host_now() - now);
+    node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");

@@ -28,8 +28,8 @@ TransientShape transient_shape(const Settings& s) {
           s.transient_soft_frequency_Hz,
           s.transient_hard_frequency_Hz,
           s.transient_decay_1_s,
-          s.late_tolerance_s,
-          s.drop_after_s};
+          {kLate, sync::from_seconds(s.late_tolerance_s),
+           sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   if (in.fresh && in.map) loop_delay_.observe(sync::to_seconds(in.map->to_sim(in.now) - *model_time_));
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
-  surfaces_.step(in.fresh, sim_now, proxy_.position(), dt);
+  surfaces_.step(in.fresh, sim_now, proxy_.position(), dt, in.planes);
 }
 
 Eigen::Vector3d Renderer::constraint_force(double dt) {

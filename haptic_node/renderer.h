@@ -34,11 +34,13 @@ struct TickInput {
   std::optional<sync::HostTime> touch_arrival;
   // Between simulated time and the host clock; nothing: not known.
   std::optional<sync::TimeMap> map;
-  // Of hit transients, on top of the setting; and by which touch models were held back on purpose: they are felt as if it
-  // were so long ago.
+  // Of hit transients, on top of the setting; and by which touch models were held back on purpose: they are felt
+  // as if it were so long ago.
   sync::Nanoseconds transient_delay{0}, touch_delay{0};
   // The force is commanded in steps of this size; 0: none.
   double force_step_N = 0;
+  // So many of the planes of a touch model are considered.
+  std::size_t planes = Surfaces::kMaxPresent;
   // Contact events that have become due, each exactly once.
   std::span<const contact_event_t> events;
 };

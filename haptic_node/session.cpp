@@ -42,7 +42,7 @@ void Session::begin_path(sync::HostTime now, const touch_model_t* fresh, const D
   device_->begin(std::clamp(at, now - kLongestWay, now));
 }
 
-TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
+TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::size_t planes) {
   TickInput in;
   in.now = now;
   if (!over_) {
@@ -58,6 +58,7 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded) {
   in.transient_delay = degraded.delay;
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;
+  in.planes = planes;
   // Events are published when their time is reached, so all that have come are due.
   std::vector<contact_event_t> due;
   if (in.map) due = events_.take_events(sync::SimTime::max());

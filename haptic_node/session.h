@@ -41,9 +41,9 @@ class Session {
     if (!over_) events_.push(events, arrival);
   }
 
-  // Once a tick: reads the device, renders, commands the device. The output is valid, and may be stamped, until
-  // the next.
-  TickOutput& step(sync::HostTime now, const Degraded& degraded = {});
+  // Once a tick: reads the device, renders, commands the device. planes: so many are considered. The output is
+  // valid, and may be stamped, until the next.
+  TickOutput& step(sync::HostTime now, const Degraded& degraded = {}, std::size_t planes = Surfaces::kMaxPresent);
 
   // Its scene is over: from now on what comes is ignored, and the force goes to zero as fast as the limits
   // allow.

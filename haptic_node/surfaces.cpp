@@ -74,7 +74,9 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   if (is_new) s.normal = told.normal;
   // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
   const double height = true_height(told, proxy);
-  s.lag_m_ = s.depth_m > 0 ? rendered - height : std::max(0.0, -height);
+  // What yields already goes on yielding, also in front of the hand, between walls that leave it no room.
+  const double pushes = std::max(0.0, -height);
+  s.lag_m_ = s.depth_m > 0 ? rendered - height : is_new ? pushes : std::clamp(rendered - height, 0.0, pushes);
   s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
   if (s.depth_m <= 0) s.normal = told.normal;
   s.turn_rad_s_ =
@@ -85,14 +87,42 @@ void Surfaces::leave(Surface& s) {
   if (s.leaves_in_s_ < 0) s.leaves_in_s_ = limits_.recovery_time_s;
 }
 
-void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy) {
-  const std::size_t count = std::min(model.planes.size(), kMaxPresent);
+std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
+                                                    std::size_t at_most) const {
+  const std::size_t offered = std::min(model.planes.size(), kMaxOffered);
+  // One that is pressed goes before all others, so that where too many press none takes turns.
+  struct Rank {
+    bool free;
+    double height_m;  // of the device under a surface that is pressed, else of the proxy over it
+    std::size_t index;
+    auto operator<=>(const Rank&) const = default;
+  };
+  std::array<Rank, kMaxOffered> ranks;
+  for (std::size_t i = 0; i < offered; ++i) {
+    const touch_plane_t& p = model.planes[i];
+    const Surface* known = find(p.contact_id);
+    const bool pressed = known && known->depth_m > 0;
+    ranks[i] = {
+        !pressed,
+        pressed ? -known->depth_m : true_height({to_eigen(p.point_m), to_eigen(p.normal).normalized()}, proxy), i};
+  }
+  const std::size_t count = std::min({offered, at_most, kMaxPresent});
+  std::partial_sort(ranks.begin(), ranks.begin() + count, ranks.begin() + offered);
+  std::bitset<kMaxOffered> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.set(ranks[i].index);
+  return chosen;
+}
+
+void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
+  const auto chosen = choose(model, proxy, at_most);
   for (Surface& s : list_) {
-    const bool told = std::any_of(model.planes.begin(), model.planes.begin() + static_cast<std::ptrdiff_t>(count),
-                                  [&](const touch_plane_t& p) { return p.contact_id == s.contact_id; });
+    bool told = false;
+    for (std::size_t i = 0; i < kMaxOffered && !told; ++i)
+      told = chosen[i] && model.planes[i].contact_id == s.contact_id;
     if (!told) leave(s);
   }
-  for (std::size_t i = 0; i < count; ++i) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy);
+  for (std::size_t i = 0; i < kMaxOffered; ++i)
+    if (chosen[i]) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy);
 }
 
 void Surfaces::forget_the_gone() {
@@ -123,10 +153,10 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
 }
 
 void Surfaces::step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
-                    double dt) {
+                    double dt, std::size_t at_most) {
   now_ = now;
   forget_the_gone();
-  if (fresh) take(*fresh, proxy);
+  if (fresh) take(*fresh, proxy, at_most);
   forget_the_gone();
   for (Surface& s : list_) render(s, proxy, dt);
 }

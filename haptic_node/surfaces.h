@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -61,14 +62,17 @@ struct Surface {
 class Surfaces {
  public:
   static constexpr std::size_t kMaxPresent = 8;
+  static constexpr std::size_t kMaxOffered = 32;  // of a touch model, the first; it has 8
 
   Surfaces(double tool_radius_m, const SurfaceLimits& limits) : radius_m_(tool_radius_m), limits_(limits) {
     list_.reserve(kMaxHalfSpaces + kMaxPresent);
   }
 
   // One tick. fresh: a touch model that has just arrived, or null. now: the simulated instant, nothing when the
-  // map is not known. proxy: where the tool's centre is. Realtime-safe: yes.
-  void step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt);
+  // map is not known. proxy: where the tool's centre is. at_most: so many planes are taken, those under pressure,
+  // deepest first, then the nearest; the others count as left out. Realtime-safe: yes.
+  void step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
+            std::size_t at_most = kMaxPresent);
   void clear() { list_.clear(); }
 
   // At most kMaxHalfSpaces.
@@ -82,7 +86,9 @@ class Surfaces {
   };
   Told predict(const Surface& s) const;
   double true_height(const Told& told, const Eigen::Vector3d& proxy) const;
-  void take(const touch_model_t& model, const Eigen::Vector3d& proxy);
+  std::bitset<kMaxOffered> choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
+                                  std::size_t at_most) const;
+  void take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most);
   void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy);
   void leave(Surface& s);
   void forget_the_gone();

@@ -56,15 +56,13 @@ Eigen::Vector3d Transients::step(sync::HostTime now, double dt, bool felt, sync:
                                  std::vector<presentation_t>& reports) {
   std::erase_if(waiting_, [&](const Hit& hit) {
     if (hit.scheduled > now) return false;
-    const double late_s = sync::to_seconds(now - hit.scheduled);
-    if (!felt || late_s > shape_.drop_after_s) {
+    const std::int8_t outcome = shape_.late.outcome(now - hit.scheduled);
+    if (!felt || outcome == presentation_t::DROPPED_LATE) {
       reports.push_back(report_of(hit, -1, uncertainty, presentation_t::DROPPED_LATE));
       return true;
     }
     begin(hit, now);
-    reports.push_back(
-        report_of(hit, sync::to_ns(now), uncertainty,
-                  late_s > shape_.late_tolerance_s ? presentation_t::LATE : presentation_t::PRESENTED));
+    reports.push_back(report_of(hit, sync::to_ns(now), uncertainty, outcome));
     return true;
   });
   Eigen::Vector3d force = Eigen::Vector3d::Zero();

@@ -8,9 +8,13 @@
 #include <tactus/presentation_t.hpp>
 #include <vector>
 
+#include "sync/late.h"
 #include "sync/time.h"
 
 namespace tactus::haptic {
+
+// A tap is felt as it should be, or not at all: a weaker one would be a hit of another material.
+inline constexpr sync::Late kLate = sync::Late::kDrop;
 
 struct TransientShape {
   double gain = 1;
@@ -18,8 +22,7 @@ struct TransientShape {
   double soft_frequency_Hz = 30;
   double hard_frequency_Hz = 300;
   double decay_1_s = 80;
-  double late_tolerance_s = 0.0075;
-  double drop_after_s = 0.015;
+  sync::LatePolicy late{kLate, sync::Nanoseconds(7'500'000), sync::Nanoseconds(15'000'000)};
 };
 
 struct Hit {

@@ -69,7 +69,8 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
     samples.insert(at, {time, from_message(b)});
     ++samples_kept_;
     if (samples.size() <= 2) continue;
-    if (samples.size() <= kSamplesPerBody && samples_kept_ <= kMaxSamples) continue;
+    const bool young = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
+    if (young && samples_kept_ <= kMaxSamples) continue;
     samples.pop_front();
     --samples_kept_;
   }

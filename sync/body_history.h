@@ -28,7 +28,9 @@ class BodyHistory {
   // snapshots at 60 Hz may be missed before it stops.
   static constexpr Nanoseconds kExtrapolateAtMost{50'000'000};
   static constexpr Nanoseconds kStaleAfter{200'000'000};
+  // At the least, however old; and so much of the past, as far as kMaxSamples reaches, so that a sense may present that late.
   static constexpr std::size_t kSamplesPerBody = 64;
+  static constexpr Nanoseconds kSpan{1'000'000'000};
   // More bodies cannot be told of once a second: 2,000 pages of 18.
   static constexpr int kMaxBodies = 36'000;
   // Of all bodies together, some 64 MB: when there are more, each keeps fewer.
@@ -36,6 +38,8 @@ class BodyHistory {
 
   explicit BodyHistory(OwnClock own) : follower_(own) {}
 
+  // A sense asks for what is so long ago: so much more than kSpan is kept.
+  void keep(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const world_state_t& page, HostTime arrival);
   // Hermite in position, SLERP in orientation. A body at rest that a snapshot leaves out rests where it
   // was; one that moved was in a page that was lost, and moves on as past the newest sample.
@@ -56,6 +60,7 @@ class BodyHistory {
   SimFollower follower_;
   std::map<int, std::deque<Stamped>> bodies_;
   std::size_t samples_kept_ = 0;
+  Nanoseconds span_ = kSpan;
   std::optional<SimTime> newest_;
   std::int64_t refused_ = 0;
 };

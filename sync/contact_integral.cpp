@@ -61,7 +61,10 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     std::tie(sum.body, sum.material) = other_side(c, tool_body);
   };
 
-  for (std::size_t i = 0; i < group.size(); ++i) {
+  // From the last snapshot before the interval on; those after it cannot reach into it.
+  const auto first = std::upper_bound(group.begin(), group.end(), t0, [](SimTime t, const auto& s) { return t < s.time; });
+  for (std::size_t i = first == group.begin() ? 0 : static_cast<std::size_t>(first - group.begin()) - 1;
+       i < group.size() && group[i].time < t1; ++i) {
     const bool last = i + 1 == group.size();
     const SimTime until = last ? group[i].time + kStaleAfter : group[i + 1].time;
     for (const contact_t& c : group[i].contacts) add(c, group[i].time, until);

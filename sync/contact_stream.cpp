@@ -9,7 +9,7 @@ namespace {
 // Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
 constexpr std::size_t kRememberedIds = 8192;
 constexpr std::size_t kRememberedLives = 8192;
-// 128 ms of the tool group; 2 s of the others.
+// At the least, however old.
 constexpr std::size_t kSnapshots = 128;
 // Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
 // kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
@@ -111,7 +111,8 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   const auto& snapshots = snapshots_[group];
   // Repeated, or older than all that is kept.
   if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
-  if (std::any_of(snapshots.rbegin(), snapshots.rend(), [&](const Snapshot& s) { return s.time == time; })) return;
+  const auto at = std::lower_bound(snapshots.begin(), snapshots.end(), time, [](const Snapshot& s, SimTime t) { return s.time < t; });
+  if (at != snapshots.end() && at->time == time) return;
   Pages& pages = partial_[group][time];
   pages.pages = m.pages;
   pages.arrived[m.page] = m.contacts;
@@ -144,7 +145,8 @@ void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   contacts_kept_[group] += snapshot.contacts.size();
   const auto newer = [&](const Snapshot& s) { return s.time > snapshot.time; };
   snapshots.insert(std::find_if_not(snapshots.rbegin(), snapshots.rend(), newer).base(), std::move(snapshot));
-  while (snapshots.size() > kSnapshots || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
+  const auto too_old = [&] { return snapshots.size() > kSnapshots && snapshots.back().time - snapshots.front().time > span_; };
+  while (too_old() || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
     contacts_kept_[group] -= snapshots.front().contacts.size();
     snapshots.pop_front();
   }

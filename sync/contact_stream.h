@@ -40,9 +40,14 @@ class ContactStream {
   // Of all snapshots of a group together: half a second of 2,000 contacts at 60 Hz.
   static constexpr std::size_t kMaxContacts = 1 << 16;
 
+  // So much of the past is kept at the least, as far as kMaxContacts reaches, so that a sense may present that late.
+  static constexpr Nanoseconds kSpan{1'000'000'000};
+
   // own: messages of another clock are read through its map; those of another run by arrival.
   explicit ContactStream(OwnClock own) : follower_(own) {}
 
+  // A sense asks for what is so long ago: so much more than kSpan is kept.
+  void keep(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const contact_events_t&, HostTime arrival);
   void push(const contact_frame_t&, HostTime arrival);
 
@@ -110,6 +115,7 @@ class ContactStream {
   std::map<SimTime, Pages> partial_[2];  // per group
   std::deque<Snapshot> snapshots_[2];    // in order of time
   std::size_t contacts_kept_[2] = {0, 0};
+  Nanoseconds span_ = kSpan;
 };
 
 }  // namespace tactus::sync

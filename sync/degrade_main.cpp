@@ -18,7 +18,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kListen{500'000'000};      // the clock of the simulation comes every millisecond
+constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100 ms, the clock of the simulation every ms
 constexpr sync::Nanoseconds kPatience{2'000'000'000};  // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
@@ -59,17 +59,25 @@ int main(int argc, char** argv) try {
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
   sync::SimFollower simulation(bus.clocks());
+  std::map<std::string, bool> senses;  // whether each has taken it
+  std::set<std::string> modalities;    // that are there
   const sync::HostTime begin = sync::host_now();
   while (sync::host_now() < begin + kListen) {
     bus.wait(kRepeat);
     bus.drain(sync::host_now());
     while (const auto m = frames.pop()) simulation.follow(m->message.header, m->message.clock, m->arrival);
-    if (simulation.map(sync::host_now())) break;
+    while (const auto m = healths.pop())
+      if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
   }
+  if (modalities.empty()) throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+  for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
+    if (!modalities.contains(rule.modality))
+      throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
+                               sync::printable(rule.modality) + "\" is heard in this cluster, only " + joined(modalities) +
+                               "; nothing was changed");
   const auto map = simulation.map(sync::host_now());
   if (map) profile.start = std::max(sync::SimTime{}, map->to_sim(sync::host_now()));
 
-  std::map<std::string, bool> senses;  // whether each has taken it
   const sync::HostTime sent = sync::host_now();
   for (sync::HostTime next = sent; sync::host_now() < sent + kPatience;) {
     if (sync::host_now() >= next) {

@@ -84,6 +84,8 @@ void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.node == "sync_node")
     app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
+  // For measurements only, hence not in --help: a renderer that eats its core.
+  app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.node)->check(CLI::Range(0.0, 100.0))->group("");
   app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
 }
 
@@ -163,6 +165,14 @@ HostTime Node::wait() {
   const HostTime now = loop_.wait();
   wake_.add(loop_.wake_lateness());
   tick_begin_ = now;
+  bus_.drain(now);
+  if (options_.load > 0)
+    for (const auto wasted = from_seconds(options_.load / loop_.deadlines().rate_Hz()); host_now() - now < wasted;) continue;
+  return now;
+}
+
+HostTime Node::poll() {
+  const HostTime now = host_now();
   bus_.drain(now);
   return now;
 }

@@ -38,6 +38,7 @@ struct NodeOptions {
   std::vector<std::string> set;  // name=value
   std::string degrade;           // file of a degradation profile; empty: none
   std::string profile;           // its XML, once read
+  double load = 0;               // for measurements: so much of its period is wasted
   bool check = false;            // leave, with success, where the bus would be joined
 
   void add_to(CLI::App& app, const Declaration& declaration);
@@ -61,7 +62,9 @@ class Node {
 
   // Ends the tick before, reports health when due, sleeps until the next tick, drains the bus. Returns the clock.
   HostTime wait();
-  // The same for a process that is driven by events: wakes when something arrives, after a period at the latest.
+  // In the middle of a tick: drains the bus once more, without waiting. Returns the clock.
+  HostTime poll();
+  // Like wait() for a process that is driven by events: wakes when something arrives, after a period at the latest.
   HostTime wait_for_event();
 
   Bus& bus() { return bus_; }

@@ -127,9 +127,19 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
         ++unmapped_reports_;
       }
     }
+    if (p.ready_ns >= 0 && event->known && needs_.size() < kMaxNeeds) {
+      const SenderClock::Reading ready = clock.read(p.ready_ns, arrival);
+      if (ready.uncertainty >= Nanoseconds(0)) needs_.push_back({p.event_id, m.modality, ready.time - event->time});
+    }
     event->reports.push_back(std::move(report));
     if (event->settled) ++late_reports_;
   }
+}
+
+std::vector<std::string> PresentationMatcher::senses() const {
+  std::vector<std::string> names;
+  for (const auto& [name, tally] : tallies_) names.push_back(name);
+  return names;
 }
 
 void PresentationMatcher::advance(HostTime now) {

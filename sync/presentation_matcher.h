@@ -49,6 +49,11 @@ bool named_before(const std::string& a, const std::string& b);
 
 class PresentationMatcher {
  public:
+  struct Need {
+    std::int64_t event_id;
+    std::string modality;
+    Nanoseconds needed;
+  };
   static constexpr Nanoseconds kSettleAfter{1'000'000'000};
   // A node that ends or stalls within this of an event may have had no time to report it: the output is at most
   // some 50 ms behind the event, and health comes every 100 ms.
@@ -61,6 +66,8 @@ class PresentationMatcher {
   // Repetitions and late reports are recognised for so long after an event was settled.
   static constexpr Nanoseconds kRemember{5'000'000'000};
   static constexpr std::size_t kMaxEvents = 1 << 16;
+  // Those that nobody takes are forgotten.
+  static constexpr std::size_t kMaxNeeds = 4096;
   // Nodes, senses, and simulations of other runs.
   static constexpr std::size_t kMaxSenses = 64;
   // Each keeps a histogram of 160 kB.
@@ -73,12 +80,17 @@ class PresentationMatcher {
   void observe(const contact_events_t&, HostTime arrival);
   void observe(const node_health_t&, HostTime arrival);
   void observe(const presented_t&, HostTime arrival);
+  // How long senses needed, from an event to its earliest possible presentation with nothing degraded, by what was observed since
+  // the last call.
+  std::vector<Need> take_needs() { return std::exchange(needs_, {}); }
   // Settles what is due.
   void advance(HostTime now);
   // Nothing more will come: settles all that can be decided, and drops the debts that cannot: of a node that was
   // not heard of again until now.
   void finish(HostTime now);
 
+  // The senses whose nodes were heard of.
+  std::vector<std::string> senses() const;
   std::int64_t begins() const { return begins_; }
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }
@@ -143,6 +155,7 @@ class PresentationMatcher {
   std::multimap<HostTime, std::int64_t> due_;
   std::multimap<HostTime, std::int64_t> forget_;
   std::vector<LastDebt> last_debts_;
+  std::vector<Need> needs_;
   std::map<std::string, DebtTally> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;

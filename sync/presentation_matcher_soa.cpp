@@ -27,4 +27,13 @@ Nanoseconds SoaHistogram::quantile(double q) const {
   return bin * kBin - kRange + Nanoseconds(std::llround(within * static_cast<double>(kBin.count())));
 }
 
+std::int64_t SoaHistogram::beyond(Nanoseconds before, Nanoseconds after) const {
+  std::int64_t count = 0;
+  for (std::int64_t bin = 0; bin < kBins; ++bin) {
+    const Nanoseconds middle = bin * kBin - kRange + kBin / 2;
+    if (middle < -before || middle > after) count += bins_[static_cast<std::size_t>(bin)];
+  }
+  return count;
+}
+
 }  // namespace tactus::sync

@@ -18,6 +18,8 @@ class SoaHistogram {
   std::int64_t count() const { return count_; }
   // The largest half width of an interval that surely holds one of them.
   Nanoseconds uncertainty() const { return uncertainty_; }
+  // How many are less than -before or more than after, both >= 0, to half a bin.
+  std::int64_t beyond(Nanoseconds before, Nanoseconds after) const;
   // Interpolated within its bin; 0 when empty. 0 <= q <= 1.
   Nanoseconds quantile(double q) const;
 

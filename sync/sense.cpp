@@ -12,6 +12,17 @@ constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
 constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
 constexpr std::size_t kRememberedArrivals = 8192;    // as sync/contact_stream.cpp remembers ids
 
+// Operators on the output that the profile asks of this sense and that it does not have.
+std::vector<std::string> not_declared(const Profile& profile, const Declaration& d) {
+  std::vector<std::string> missing;
+  for (const Rule& rule : profile.rules) {
+    if (rule.modality != d.modality) continue;
+    for (const std::string& name : output_operators(rule.output))
+      if (std::find(d.degradable.begin(), d.degradable.end(), name) == d.degradable.end()) missing.push_back(name);
+  }
+  return missing;
+}
+
 }  // namespace
 
 Sense::Sense(Node& node)
@@ -35,6 +46,10 @@ void Sense::set_scene(const scene_t& scene, int tool) {
   for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
   stack_.set_scene(names_);
   tool_ = tool;
+  // What was said on the command line or since then holds.
+  if (scene.profile.empty() || !node_.options().profile.empty() || receiver_.generation() > 0) return;
+  const std::int64_t hash = fnv1a_64(scene.profile.data(), scene.profile.size());
+  if (hash != profile_hash_) put_in_force({scene.profile, hash, 0, SimTime{}});
 }
 
 void Sense::put_in_force(const ProfileInForce& profile) {
@@ -48,6 +63,9 @@ void Sense::put_in_force(const ProfileInForce& profile) {
     if (profile.generation > 0 || !parsed.rules.empty())
       std::cerr << d.node << ": profile \"" << parsed.name << "\", "
                 << (stack_.empty() ? "nothing" : "degrades this sense") << std::endl;
+    for (const std::string& name : not_declared(parsed, d))
+      std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
+                << std::endl;
   } catch (const std::invalid_argument& e) {
     std::cerr << d.node << ": refused: " << e.what() << std::endl;
   }
@@ -65,16 +83,20 @@ void Sense::take_control(HostTime) {
 
 void Sense::step(HostTime now) {
   take_control(now);
-  for (const auto& stream : streams_) stream->step(*this, now);
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
   profile_delay_ = stack_.presentation_delay(sim_now);
-  delay_ = playout_.step(now) + profile_delay_;
   output_ = stack_.output(sim_now);
+  lockstep_ = map && playout_.lockstep_Hz() > 0 ? std::optional(Lockstep{*map, playout_.lockstep_Hz()}) : std::nullopt;
+  serial_delay_ = playout_.step(now) + profile_delay_;
+  delay_ = lockstep_ ? now - lockstep_->begin_of_turn(now - serial_delay_) : serial_delay_;
+  const HostTime lets = lockstep_ ? lockstep_->begin_of_turn(now) : now;
+  for (const auto& stream : streams_) stream->step(*this, now, lets);
 }
 
 HostTime Sense::schedule(std::int64_t event_id, HostTime happened) const {
-  if (!playout_.as_soon_as_possible()) return happened + delay_;
+  if (lockstep_) return lockstep_->next_turn(happened) + serial_delay_;
+  if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
   const auto arrived = arrivals_.find(event_id);
   const HostTime ready = arrived == arrivals_.end() ? happened : arrived->second + output_latency_;
   return std::max(happened, ready) + profile_delay_;

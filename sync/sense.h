@@ -24,6 +24,7 @@
 #include "sync/degradation/profile_exchange.h"
 #include "sync/node.h"
 #include "sync/playout/follower.h"
+#include "sync/playout/lockstep.h"
 #include "sync/presentation_reporter.h"
 #include "sync/sim_follower.h"
 
@@ -86,7 +87,7 @@ class Sense {
   // Once a tick.
   void step(HostTime now);
 
-  // An event is presented so long after it happened: by policy and by profile.
+  // What is presented now happened so long ago: by policy and by profile. In lock-step it grows until the next turn.
   Nanoseconds delay() const { return delay_; }
   // Of that, what the profile adds.
   Nanoseconds profile_delay() const { return profile_delay_; }
@@ -105,13 +106,13 @@ class Sense {
  private:
   struct AnyStream {
     virtual ~AnyStream() = default;
-    virtual void step(Sense& sense, HostTime now) = 0;
+    virtual void step(Sense& sense, HostTime now, HostTime lets) = 0;
     virtual HostTime newest_arrival() const = 0;
   };
   template <class Message>
   struct Held : AnyStream {
     explicit Held(Queue<Message>& inbox) : stream(inbox) {}
-    void step(Sense& sense, HostTime now) override;
+    void step(Sense& sense, HostTime now, HostTime lets) override;
     HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
     Stream<Message> stream;
   };
@@ -143,7 +144,8 @@ class Sense {
   std::vector<std::unique_ptr<AnyStream>> streams_;
   SimFollower simulation_;
   PlayoutFollower playout_;
-  Nanoseconds delay_{0}, profile_delay_{0}, output_latency_{0};
+  std::optional<Lockstep> lockstep_;
+  Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
   OutputDef output_;
   PresentationReporter reporter_;
   std::map<std::int64_t, HostTime> arrivals_;  // of events, raw
@@ -151,7 +153,7 @@ class Sense {
 };
 
 template <class Message>
-void Sense::Held<Message>::step(Sense& sense, HostTime now) {
+void Sense::Held<Message>::step(Sense& sense, HostTime now, HostTime lets) {
   while (auto m = stream.inbox_.pop()) {
     if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
     if constexpr (std::is_same_v<Message, contact_events_t>) {
@@ -162,7 +164,9 @@ void Sense::Held<Message>::step(Sense& sense, HostTime now) {
     }
   }
   if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
-  stream.now_ = now - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+  // In lock-step the state of the world is that of the turn; events say themselves when they are due.
+  const bool is_state = !std::is_same_v<Message, contact_events_t>;
+  stream.now_ = (is_state ? lets : now) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
 }
 
 }  // namespace tactus::sync

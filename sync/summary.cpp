@@ -31,6 +31,15 @@ void RunSummary::observe(const node_health_t& m, HostTime now) {
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
   life.last = m;
   life.last_heard = now;
+  if (m.qualities > 0) {
+    auto& steps = quality_[m.node];
+    steps.resize(std::max(steps.size(), static_cast<std::size_t>(std::max<int>(m.qualities, m.quality + 1))));
+    ++steps[static_cast<std::size_t>(m.quality)];
+  }
+  auto& ages = input_age_[m.node];
+  for (const input_health_t& input : m.inputs)
+    if (input.age_ns >= 0 && (ages.contains(input.channel) || ages.size() < kMaxInputs))
+      ages[input.channel].add(Nanoseconds(input.age_ns));
   if (!courses_.contains(m.header.incarnation)) return;
   for (auto& [name, lives] : lives_)
     for (auto& [incarnation, other] : lives) other.note = other.last.note;
@@ -151,6 +160,8 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;
     node.restarts = static_cast<std::int64_t>(lives.size()) - 1;
+    if (const auto ages = input_age_.find(name); ages != input_age_.end()) node.input_age = ages->second;
+    if (const auto steps = quality_.find(name); steps != quality_.end()) node.quality = steps->second;
     node.alive_at_end = now_ - newest <= kAliveWithin;
   }
   for (const auto& [name, restarts] : options_.restarts)

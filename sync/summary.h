@@ -36,6 +36,8 @@ struct NodeSummary {
   std::int64_t missed_ticks = 0;
   std::int64_t stale_ticks = 0;
   Histogram tick, wake;
+  std::map<std::string, Histogram> input_age;  // by channel, ten times a second
+  std::vector<std::int64_t> quality;  // health reports at each step of its ladder, 0: full; empty: it has none
   std::int64_t restarts = 0;
   // What the node said last of its priority and its troubles, while there was a simulation: a run ends without one.
   std::string scheduling;
@@ -96,6 +98,7 @@ class RunSummary {
     std::string note;
     HostTime last_heard{};
   };
+  static constexpr std::size_t kMaxInputs = 64;  // of one node
   struct Channel {
     ChannelSummary summary;
     SequenceTracker sequence;
@@ -121,6 +124,8 @@ class RunSummary {
   std::unique_ptr<ClockMaps> maps_ = std::make_unique<ClockMaps>(0);
   PresentationMatcher matcher_{OwnClock(0, 0, maps_.get())};
   std::map<std::string, std::map<std::int64_t, Life>> lives_;  // by node, by incarnation
+  std::map<std::string, std::map<std::string, Histogram>> input_age_;  // by node, by channel
+  std::map<std::string, std::vector<std::int64_t>> quality_;           // by node
   std::map<std::string, Channel, std::less<>> channels_;
   std::map<std::int64_t, Course> courses_;
   std::optional<HostTime> begin_;

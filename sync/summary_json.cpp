@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "sync/summary.h"
+#include "sync/thresholds.h"
 
 namespace tactus::sync {
 namespace {
@@ -27,15 +29,26 @@ Json quantiles(const Histogram& h) {
 
 Json nodes(const RunSummary& s) {
   Json out = Json::object();
-  for (const auto& [name, n] : s.nodes())
+  for (const auto& [name, n] : s.nodes()) {
+    Json ages = Json::object();
+    for (const auto& [channel, age] : n.input_age) ages[channel] = {{"p50", ms(age.quantile(0.5))}, {"p99", ms(age.quantile(0.99))}};
+    Json quality = nullptr;
+    if (!n.quality.empty()) {
+      const auto reports = static_cast<double>(std::accumulate(n.quality.begin(), n.quality.end(), std::int64_t{0}));
+      quality = Json::array();
+      for (const std::int64_t at : n.quality) quality.push_back(rounded(static_cast<double>(at) / reports, 1000));
+    }
     out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
                  {"ticks", n.ticks},
                  {"missed_ticks", n.missed_ticks},
                  {"stale_ticks", n.stale_ticks},
                  {"tick_us", quantiles(n.tick)},
                  {"wake_us", quantiles(n.wake)},
+                 {"input_age_ms", ages},
+                 {"quality", quality},
                  {"restarts", n.restarts},
                  {"scheduling", n.scheduling}};
+  }
   return out;
 }
 
@@ -85,14 +98,20 @@ Json contacts(const PresentationMatcher& m) {
 }
 
 Json asynchrony(const PresentationMatcher& m) {
-  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}};
+  const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr},
+                     {"beyond_least_threshold", nullptr}, {"beyond_all_thresholds", nullptr}};
   Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
-  for (const auto& [names, soa] : m.pairs())
+  for (const auto& [names, soa] : m.pairs()) {
+    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const auto count = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
     out[names.first + "_" + names.second] = {{"n", soa.count()},
                                              {"p05", ms(soa.quantile(0.05))},
                                              {"p50", ms(soa.quantile(0.5))},
                                              {"p95", ms(soa.quantile(0.95))},
-                                             {"uncertainty", ms_up(soa.uncertainty())}};
+                                             {"uncertainty", ms_up(soa.uncertainty())},
+                                             {"beyond_least_threshold", count(beyond.least)},
+                                             {"beyond_all_thresholds", count(beyond.all)}};
+  }
   return out;
 }
 

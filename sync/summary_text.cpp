@@ -3,6 +3,7 @@
 
 #include "sync/printable.h"
 #include "sync/summary.h"
+#include "sync/thresholds.h"
 
 namespace tactus::sync {
 namespace {
@@ -56,11 +57,15 @@ std::string absent(const RunSummary& s) {
 }
 
 std::string asynchrony(const PresentationMatcher& m) {
-  std::string out = line("%-22s %7s %8s %8s %8s %8s", "asynchrony/ms", "n", "p05", "p50", "p95", "+-");
-  for (const auto& [names, soa] : m.pairs())
-    out += line("%-22s %7lld %8.2f %8.2f %8.2f %8.3f", (names.first + " to " + names.second).c_str(),
+  std::string out = line("%-22s %7s %8s %8s %8s %8s  %s", "asynchrony/ms", "n", "p05", "p50", "p95", "+-",
+                         "beyond thresholds: least, all");
+  for (const auto& [names, soa] : m.pairs()) {
+    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const auto count = [](std::int64_t n) { return n < 0 ? std::string("-") : std::to_string(n); };
+    out += line("%-22s %7lld %8.2f %8.2f %8.2f %8.3f  %24s, %3s", (names.first + " to " + names.second).c_str(),
                 static_cast<long long>(soa.count()), ms(soa.quantile(0.05)), ms(soa.quantile(0.5)),
-                ms(soa.quantile(0.95)), ms(soa.uncertainty()));
+                ms(soa.quantile(0.95)), ms(soa.uncertainty()), count(beyond.least).c_str(), count(beyond.all).c_str());
+  }
   return m.pairs().empty() ? "" : out;
 }
 

@@ -3,11 +3,13 @@
 //
 //   in   CLOCK_PROBE                              requests and replies, in a thread of its own
 //        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
-//        DEGRADATION                              the profile that somebody puts in force
+//        DEGRADATION, PLAYOUT_REQUEST             the profile and the policy that somebody puts in force
+//        PLAYOUT                                  of another host's sync_node: one speaks, the others listen
 //   out  CLOCK_PROBE                              eight requests every 2 s or less; a reply to each request
 //        CLOCK_MAP                                twice a second, one per clock of another host
 //        SYNC_REPORT                              once a second
 //        DEGRADATION                              again once a second, for who comes late
+//        PLAYOUT                                  ten times a second: when each sense presents an event
 //
 // Losing the probes' replies, its maps grow less certain and say so. Losing CONTACT_EVENTS or PRESENTED only leaves it less to
 // report; a sense that falls silent is named in the report.
@@ -20,6 +22,9 @@
 #include "sync/degradation/profile_exchange.h"
 #include "sync/identity.h"
 #include "sync/node.h"
+#include "sync/playout/coordinator.h"
+#include "sync/playout/exchange.h"
+#include "sync/playout/options.h"
 #include "sync/presentation_matcher.h"
 #include "sync/probe_thread.h"
 #include "sync/sync_report_pages.h"
@@ -66,6 +71,10 @@ int main(int argc, char** argv) try {
   app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
   app.add_option("--emulate-jump", jump_ms)->group("");
   app.add_option("--emulate-jump-after", jump_after_s)->group("");
+  sync::PlayoutOptions playout_options;
+  playout_options.add_to(app, true);
+  sync::PlayoutPlan plan;
+  app.callback([&] { plan = playout_options.plan(); });  // also where only the arguments are checked
   sync::parse_or_exit(app, declaration.node, argc, argv);
 
   sync::Node node(declaration, options);
@@ -79,6 +88,10 @@ int main(int argc, char** argv) try {
   sync::ProbeThread probes(options.bus, node.bus().identity(), clock);
   sync::ClockAgreement agreement(node.bus().identity().clock);
   sync::PresentationMatcher matcher(node.bus().clocks());
+  auto& playouts = node.bus().queue<playout_t>(channels::kPlayout, kHealthQueue);
+  auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
+  sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
+  if (const auto kept = sync::kept_request(options.out, options.run_id)) playout.take(*kept);
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile;
@@ -105,6 +118,13 @@ int main(int argc, char** argv) try {
       if (m->message.header.run_id == options.run_id)
         if (auto newer = profiles.take(m->message)) profile = std::move(newer);
     matcher.advance(now);
+    while (const auto m = requests.pop())
+      if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);
+    while (const auto m = playouts.pop())
+      if (m->message.header.run_id == options.run_id) playout.take(m->message, now);
+    for (const std::string& sense : matcher.senses()) playout.needs().know(sense);
+    for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
+    if (auto m = playout.due(now)) node.bus().publish(channels::kPlayout, *m);
     if (now < next_report) continue;
     next_report = std::max(next_report + kReportPeriod, now);
     for (sync_report_t& page : sync::report_pages(matcher)) node.bus().publish(channels::kSyncReport, page);

@@ -1,6 +1,7 @@
 #include "sync/sync_report_pages.h"
 
 #include "lcmtypes/channels.h"
+#include "sync/thresholds.h"
 
 namespace tactus::sync {
 namespace {
@@ -54,10 +55,12 @@ std::vector<sync_report_t> report_pages(const PresentationMatcher& matcher) {
   for (const auto& [name, t] : matcher.modalities())
     writer.add(&sync_report_t::modalities, &sync_report_t::modality_count,
                modality_report_t{name, t.owed, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
-  for (const auto& [names, soa] : matcher.pairs())
+  for (const auto& [names, soa] : matcher.pairs()) {
+    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
     writer.add(&sync_report_t::pairs, &sync_report_t::pair_count,
                pair_report_t{names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
-                             soa.quantile(0.95).count(), soa.uncertainty().count(), -1, -1});
+                             soa.quantile(0.95).count(), soa.uncertainty().count(), beyond.least, beyond.all});
+  }
   return writer.finish();
 }
 

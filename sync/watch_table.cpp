@@ -14,9 +14,10 @@ namespace {
 
 // What comes only when something happens may be old without harm.
 bool flows(const std::string& channel) {
-  static constexpr std::array<const char*, 7> sporadic = {
+  static constexpr std::array<const char*, 10> sporadic = {
       channels::kContactEvents, channels::kPresented,  channels::kSceneManifest, channels::kAssetRequest,
-      channels::kAssetChunk,    channels::kMediaClock, channels::kLogInfo};
+      channels::kAssetChunk,    channels::kMediaClock, channels::kLogInfo,
+      channels::kClockMap,      channels::kPlayout,    channels::kDegradation};
   return std::find(sporadic.begin(), sporadic.end(), channel) == sporadic.end();
 }
 
@@ -55,6 +56,11 @@ std::string cut(const std::string& raw, std::size_t width) {
   return text + "\n";
 }
 
+// A sense that renders cheaper than it could.
+std::string quality_note(const node_health_t& h) {
+  return h.quality > 0 ? "quality step " + std::to_string(h.quality) + " of " + std::to_string(h.qualities - 1) + "; " : "";
+}
+
 }  // namespace
 
 void WatchTable::observe(const node_health_t& m, HostTime arrival) {
@@ -68,7 +74,7 @@ std::vector<WatchTable::Row> WatchTable::rows(HostTime now) const {
     const Nanoseconds silence = now - node.arrival;
     const bool lost = silence > kLostAfter;
     Row row{name, lost ? "LOST" : state_name(h.state), lost ? 0 : h.rate_Hz, h.missed_ticks, Nanoseconds(-1), "",
-            h.contacts_rendered, lost ? "silent for " + duration(silence) : h.note};
+            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_note(h) + h.note};
     for (const input_health_t& in : h.inputs) {
       if (!flows(in.channel) || Nanoseconds(in.age_ns) <= row.input_age) continue;
       row.input_age = Nanoseconds(in.age_ns);

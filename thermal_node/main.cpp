@@ -12,9 +12,11 @@
 #include <optional>
 
 #include "sync/node.h"
+#include "sync/pacing.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 #include "thermal_node/choice.h"
+#include "thermal_node/quality.h"
 #include "thermal_node/renderer.h"
 
 using namespace tactus;
@@ -28,7 +30,7 @@ int main(int argc, char** argv) try {
       .about = "Renders the temperature of what a tool touches.",
       .inputs = {channels::kContacts, channels::kContactEvents},
       .presents = "the end of the tick whose heat holds it",
-      .late = sync::Late::kAlwaysApply,
+      .late = thermal::kLate,
       .degradable = {"response"}};
   CLI::App app;
   sync::NodeOptions options;
@@ -47,6 +49,7 @@ int main(int argc, char** argv) try {
   sync::ContactStream stream(node.bus().clocks());
   thermal::Choice choice;
   thermal::Ticks ticks;
+  thermal::Quality quality(choice.settings);
   std::optional<thermal::Renderer> renderer;
   std::optional<double> element_degC;  // as commanded last, whatever the scene
   node.set_state(node_health_t::WAITING, "waits for the scene");
@@ -54,12 +57,14 @@ int main(int argc, char** argv) try {
   while (node.running()) {
     const sync::HostTime now = node.wait();
     sense.step(now);
+    stream.keep(sense.delay());
     while (const auto m = events.pop()) stream.push(m->message, m->arrival);
     while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
     if (scenes.poll(now)) {
       choice = thermal::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       node.set_rate(choice.settings.rate_Hz);
+      quality = thermal::Quality(choice.settings);
       node.set_tool(choice.tool);
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz) + thermal::Ticks::kSettle);
@@ -71,11 +76,14 @@ int main(int argc, char** argv) try {
     if (!renderer) continue;
     const thermal::Tick tick =
         ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
-    thermal_state_t state = renderer->step(tick);
+    thermal_state_t state = renderer->step(
+        tick, {.response_s = sense.output().response_s, .longest_substep_s = quality.longest_substep_s()});
     element_degC = state.commanded_degC;
     node.bus().publish(channels::kThermalState, state);
     for (const presentation_t& report : renderer->reports()) sense.report(report);
     sense.publish(now);
+    quality.add(sync::host_now() - now);
+    node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(renderer->reports().size()));
     if (sense.newest_arrival() == sync::HostTime{})
       node.set_state(node_health_t::READY, "waits for contacts");

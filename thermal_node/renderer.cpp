@@ -34,7 +34,9 @@ Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materia
       materials_(std::move(materials)),
       tool_(tool),
       tool_body_(tool_body),
+      late_{kLate, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
       skin_(skin_properties(settings)),
+      lag_(element_degC.value_or(settings.skin_rest_degC)),
       controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)) {}
 
 // Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
@@ -91,12 +93,11 @@ void Renderer::report(const contact_event_t& event, const Tick& tick) {
   r.scheduled_ns = std::max<std::int64_t>(0, sync::to_ns(due));
   r.presented_ns = sync::to_ns(tick.end);
   r.uncertainty_ns = (sync::from_seconds(1 / settings_.rate_Hz) / 2).count();
-  const bool late = tick.end - due > sync::from_seconds(settings_.late_after_s);
-  r.outcome = late ? presentation_t::LATE : presentation_t::PRESENTED;
+  r.outcome = late_.outcome(tick.end - due);
   reports_.push_back(r);
 }
 
-thermal_state_t Renderer::step(const Tick& tick) {
+thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   reports_.clear();
   for (const contact_event_t& event : tick.events) report(event, tick);
 
@@ -109,9 +110,11 @@ thermal_state_t Renderer::step(const Tick& tick) {
     e.conductance_W_m2K += now.conductance_W_m2K;
     e.touched_share += now.touched_share;
   }
-  skin_.step(interval_s, e.conductance_W_m2K, e.touched_share);
-  const double wanted = lost ? settings_.skin_rest_degC : skin_.surface_degC();
+  skin_.step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
+  const double wanted =
+      lost ? settings_.skin_rest_degC : lag_.step(skin_.surface_degC(), interval_s, rendering.response_s);
   const Command command = controller_.step(wanted, interval_s);
+  if (lost) lag_.set(command.command_degC);
 
   thermal_state_t out{};
   out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));

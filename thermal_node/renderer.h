@@ -9,13 +9,24 @@
 #include <tactus/thermal_state_t.hpp>
 #include <vector>
 
+#include "sync/late.h"
 #include "thermal_node/contact_model.h"
 #include "thermal_node/controller.h"
+#include "thermal_node/lag.h"
 #include "thermal_node/settings.gen.h"
 #include "thermal_node/skin_model.h"
 #include "thermal_node/ticks.h"
 
 namespace tactus::thermal {
+
+// Heat is a slow state: what comes late still warms.
+inline constexpr sync::Late kLate = sync::Late::kAlwaysApply;
+
+// How well a tick is rendered.
+struct Rendering {
+  double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
+  double longest_substep_s = SkinModel::kLongestSubstep_s;
+};
 
 class Renderer {
  public:
@@ -26,8 +37,8 @@ class Renderer {
 
   // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
   // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
-  // model says.
-  thermal_state_t step(const Tick& tick);
+  // model and the rendering say.
+  thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
 
   // Whether the last step had no input that could be relied on.
   bool input_lost() const { return input_lost_; }
@@ -49,7 +60,9 @@ class Renderer {
   std::vector<material_def_t> materials_;
   int tool_;
   int tool_body_;
+  sync::LatePolicy late_;
   SkinModel skin_;
+  Lag lag_;
   Controller controller_;
   int material_ = -1;  // the one that is under the skin in the model
   int body_ = -1;

@@ -10,8 +10,6 @@ namespace {
 // s^0.5, which heat passes in about (95/2)^2 s = 2000 s, so the far end is never felt.
 constexpr double kFirstCell = 0.02;
 constexpr double kGrowth = 1.12;
-// Second-order accuracy needs substeps well below the time constant of a contact, 0.1 s and more.
-constexpr double kLongestSubstep_s = 0.005;
 constexpr double kMostSubsteps = 2000;
 // Alexander 1977, two stages: gamma = 1 - 1/sqrt(2).
 constexpr double kGamma = 0.29289321881345254;
@@ -101,11 +99,11 @@ void SkinModel::substep(double dt_s, const Equations& e, const Surface& s) {
   flux_ = (1 - kGamma) * to_object(first) + kGamma * to_object(u_);
 }
 
-void SkinModel::step(double dt_s, double conductance_W_m2K, double touched_share) {
+void SkinModel::step(double dt_s, double conductance_W_m2K, double touched_share, double longest_substep_s) {
   const Surface s = surface(conductance_W_m2K, std::clamp(touched_share, 0.0, 1.0));
   if (dt_s > 0) {
     const Equations e = equations(s);
-    const double count = std::clamp(std::ceil(dt_s / kLongestSubstep_s), 1.0, kMostSubsteps);
+    const double count = std::clamp(std::ceil(dt_s / longest_substep_s), 1.0, kMostSubsteps);
     for (int i = 0; i < static_cast<int>(count); ++i) substep(dt_s / count, e, s);
   }
   surface_K_ = s.weight_skin * u_[kSide - 1] + s.weight_object * u_[kSide];

@@ -32,6 +32,9 @@ struct ObjectProperties {
 // Realtime-safe: yes (no allocation). Not thread-safe.
 class SkinModel {
  public:
+  // Second-order accuracy needs substeps well below the time constant of a contact, 0.1 s and more.
+  static constexpr double kLongestSubstep_s = 0.005;
+
   explicit SkinModel(const SkinProperties& skin) : skin_(skin) {}
 
   // Everything back to rest.
@@ -40,8 +43,10 @@ class SkinModel {
   void set_object(const ObjectProperties& object);
 
   // Advances by dt seconds, during which the skin exchanges heat with the object through `conductance` (W/(m^2 K),
-  // the mean over dt) and, for the share of dt and area that it does not touch, with the room.
-  void step(double dt_s, double conductance_W_m2K, double touched_share);
+  // the mean over dt) and, for the share of dt and area that it does not touch, with the room. Longer substeps are
+  // cheaper and less exact; they may change from step to step.
+  void step(double dt_s, double conductance_W_m2K, double touched_share,
+            double longest_substep_s = kLongestSubstep_s);
 
   double surface_degC() const { return skin_.rest_degC + surface_K_; }
   // Mean over the last substep, out of the skin into the object, W/m^2.

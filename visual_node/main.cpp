@@ -16,6 +16,8 @@
 #include "sync/sense.h"
 #include "visual_node/egl/display.h"
 #include "visual_node/frame/frame_composer.h"
+#include "visual_node/frame/picture_rate.h"
+#include "visual_node/frame/quality_control.h"
 #include "visual_node/gl/renderer.h"
 #include "visual_node/scene_view/meshes.h"
 #include "visual_node/video/recording.h"
@@ -24,15 +26,16 @@ using namespace tactus;
 
 int main(int argc, char** argv) try {
   visual::Settings settings;
-  const sync::Declaration declaration{.node = "visual_node",
-                                      .modality = "visual",
-                                      .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
-                                      .rate_Hz = settings.rate_Hz,
-                                      .about = "Draws the scene, its tools and a flash for every contact.",
-                                      .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
-                                      .presents = "the fence after the frame that first shows it",
-                                      .late = sync::Late::kShowNewest,
-                                      .degradable = {"frame_rate", "resolution"}};
+  const sync::Declaration declaration{
+      .node = "visual_node",
+      .modality = "visual",
+      .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
+      .rate_Hz = settings.rate_Hz,
+      .about = "Draws the scene, its tools and a flash for every contact.",
+      .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
+      .presents = "the fence after the frame that first shows it",
+      .late = sync::Late::kShowNewest,
+      .degradable = {"frame_rate", "resolution"}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);
@@ -66,54 +69,87 @@ int main(int argc, char** argv) try {
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   auto& events = sense.events();
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
-  visual::FrameComposer composer(node.bus().clocks(), settings);
+  visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
+  composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::Recording recording(keep);
+  visual::PictureRate rate;
+  visual::QualityControl quality(settings);
+  visual::Frame frame;
+  sync::Nanoseconds took{0};
   std::string said;
-
-  while (node.running() && !display->closed()) {
-    const sync::HostTime now = node.wait();
+  const auto say = [&](const std::string& sentence) {
+    std::cerr << declaration.node << ": " << sentence << std::endl;
+  };
+  const auto receive = [&](sync::HostTime now) {
     sense.step(now);
     while (const auto m = world.pop()) composer.push(m->message, m->arrival);
     while (const auto m = events.pop()) composer.push(m->message, m->arrival);
     while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
-    if (scenes.poll(now)) {
-      settings = {};
-      for (const std::string& refused : sync::apply_settings(settings, visual::setting_fields(), declaration.node,
-                                                             scenes.scene()->settings, options.set))
-        std::cerr << refused << "\n";
-      std::vector<std::string> trouble;
-      const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
-                                                    visual::height_maps_of(scenes, trouble));
-      renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
-      for (const std::string& sentence : trouble) std::cerr << declaration.node << ": " << sentence << std::endl;
-      renderer->load(view.geometries(), view.lighting(), view.reliefs());
-      recording.begin(view.width(), view.height(), settings);
-      node.set_rate(settings.rate_Hz);
-      sense.set_scene(*scenes.scene());
-    }
-    const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
-    const visual::Frame frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
-    const visual::PictureTarget& picture = renderer->picture();
-    renderer->draw(frame.list);
-    display->show(picture.framebuffer(), picture.width(), picture.height());
+  };
+  const auto load = [&](sync::HostTime now) {
+    settings = {};
+    for (const std::string& refused : sync::apply_settings(settings, visual::setting_fields(), declaration.node,
+                                                           scenes.scene()->settings, options.set))
+      std::cerr << refused << "\n";
+    std::vector<std::string> trouble;
+    const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
+                                                  visual::height_maps_of(scenes, trouble));
+    for (const std::string& sentence : trouble) say(sentence);
+    renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
+    renderer->load(view.geometries(), view.lighting(), view.reliefs());
+    renderer->warm_up(composer.frame(now, 0).list);
+    recording.begin(view.width(), view.height(), settings);
+    node.set_rate(settings.rate_Hz);
+    sense.set_scene(*scenes.scene());
+    sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
+    quality = visual::QualityControl(settings);
+    rate.restart();
+  };
+  const auto draw = [&](sync::HostTime now, std::int64_t tick) {
+    const sync::OutputDef& output = sense.output();
+    frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
+    renderer->set_quality(visual::degraded(quality.quality(), output.resolution));
+    renderer->draw_scene(frame.list);
+    renderer->wait();
+    // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
+    const sync::HostTime latched = node.poll();
+    receive(latched);
+    composer.latch(frame, latched, sense.delay(), rate.held());
+    renderer->draw_over(frame.list);
+    display->show(renderer->picture().framebuffer(), renderer->picture().width(), renderer->picture().height());
     renderer->wait();
     const sync::HostTime fence = sync::host_now();
+    took = fence - now;
+    // An event that arrives just after the latch waits for that of the next frame; not for a picture that a
+    // profile holds.
+    if (!output.any()) sense.set_output_latency(fence - latched + sync::from_seconds(1 / settings.rate_Hz));
     std::int64_t rendered = 0;
     for (const presentation_t& report : composer.presented(fence)) {
       sense.report(report);
       rendered += report.outcome != presentation_t::DROPPED_LATE;
     }
     node.count_rendered(rendered);
-    sense.set_output_latency(fence - now + sync::from_seconds(1 / settings.rate_Hz));
-    sense.publish(fence);
-    if (auto pair = recording.add(tick, fence, [&](std::span<std::uint8_t> rgba) { picture.read(rgba); }))
-      node.bus().publish(channels::kMediaClock, *pair);
-    if (const std::string trouble = recording.trouble(); trouble != said) {
-      std::cerr << declaration.node << ": " << trouble << std::endl;
-      said = trouble;
+  };
+
+  while (node.running() && !display->closed()) {
+    const sync::HostTime now = node.wait();
+    receive(now);
+    if (scenes.poll(now)) {
+      load(now);
+      continue;  // that took several ticks
     }
+    const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
+    const bool fresh = rate.due(now, sense.output().frame_rate_Hz, settings.rate_Hz);
+    if (fresh) draw(now, tick);
+    sense.publish(sync::host_now());
+    const auto read = [&](std::span<std::uint8_t> rgba) { renderer->picture().read(rgba); };
+    if (auto pair = recording.add(tick, now + took, read)) node.bus().publish(channels::kMediaClock, *pair);
+    if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string video = recording.note();
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);
+    if (fresh && scenes.scene()) quality.add(sync::host_now() - now);
+    if (const std::string change = quality.take_change(); !change.empty()) say(change);
+    node.set_quality(quality.step(), quality.steps());
   }
   return 0;
 } catch (const std::exception& e) {

@@ -179,13 +179,15 @@ void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time,
   const sync::HostTime now = sync::host_now();
   const auto estimate =
       dac_.block(frames, {time.currentTime, time.outputBufferDacTime, now, underflow}, latency_s_);
-  const BlockTime block_time{estimate.first_sample, estimate.uncertainty};
+  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, used_};
   render_(out, frames, block_time);
   if (tee_) tee(out, frames, block_time, underflow);
   callbacks_.fetch_add(1, std::memory_order_relaxed);
   if (underflow) underflows_.fetch_add(1, std::memory_order_relaxed);
   last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
-  if (sync::is_realtime() && guard_.tick(now, sync::host_now())) sync::leave_realtime();
+  const sync::HostTime done = sync::host_now();
+  used_ = done - now;
+  if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
 }
 
 void Stream::tee(const float* out, int frames, const BlockTime& time, bool underflow) {

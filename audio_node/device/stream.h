@@ -73,6 +73,7 @@ class Stream {
   sync::BusyGuard guard_;
   bool entered_ = false;
   std::int64_t next_pair_frame_ = 0;
+  sync::Nanoseconds used_{0};  // by the block before
 };
 
 // "audio.wav", or "audio.2.wav" and so on where that exists: a restarted node overwrites nothing.

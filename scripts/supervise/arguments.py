@@ -5,6 +5,7 @@ import dataclasses
 import os
 import pathlib
 import time
+import xml.etree.ElementTree
 
 from refusal import Refusal
 
@@ -14,6 +15,7 @@ SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
+PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
 @dataclasses.dataclass
@@ -26,6 +28,7 @@ class Plan:
     without: list
     device: str  # "": the scene's
     degrade: pathlib.Path  # profile of what is wrong on purpose, or None
+    playout: list  # options of sync_node: when each sense presents
     window: bool
     listen: bool
     realtime: str
@@ -53,6 +56,8 @@ def parse(words, here):
     parser.add_argument("--without", action="append", default=[])
     parser.add_argument("--device", default="")
     parser.add_argument("--degrade")
+    for option in PLAYOUT:
+        parser.add_argument(f"--{option}")
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--listen", action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
@@ -72,7 +77,7 @@ def parse(words, here):
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join(REMOVABLE)}")
     plan = Plan(scene=scene_file(here, a.scene), seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without, device=device(a.device, a.without),
-                degrade=profile(here, a.degrade),
+                degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set))
@@ -113,6 +118,26 @@ def profile(here, text):
     if not path.is_file() or not os.access(path, os.R_OK):
         raise Refusal(f"--degrade {text}: is not a file that can be read; give the path of a profile (XML)")
     return path.absolute()
+
+
+def strangers(plan):
+    """What the profile degrades that is none of this run's senses. One's own may join later; a misspelt one never will."""
+    if plan.degrade is None:
+        return []
+    try:
+        named = {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
+    except (xml.etree.ElementTree.ParseError, OSError):
+        return []  # the nodes say what is wrong with it, with the line
+    return sorted(named - {node.removesuffix("_node") for node in SENSES})
+
+
+def playout(a):
+    """The options for sync_node, which checks itself what is in them."""
+    words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
+    if words and "sync_node" in a.without:
+        raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: it says when each sense "
+                      "presents; leave one away")
+    return words
 
 
 def out_folder(here, text):

@@ -38,6 +38,7 @@ def commands(plan, run_id, git):
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
     }
+    own["sync_node"] = list(plan.playout)
     if plan.degrade:
         for name in (*SENSES, "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]

@@ -9,6 +9,7 @@
 #include "sim_node/scene/sdf_eigen.h"
 #include "sim_node/scene/sdf_read.h"
 #include "sim_node/scene/tactus_materials.h"
+#include "sim_node/scene/tactus_profile.h"
 #include "sim_node/scene/tactus_settings.h"
 #include "sim_node/scene/tactus_tools.h"
 #include "sim_node/scene/unsupported.h"
@@ -70,6 +71,7 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
   read_view(context, world, element);
   read_tools(context, element);
   read_settings(context, element);
+  read_profile(context, element);
 }
 
 }  // namespace

@@ -88,6 +88,7 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
   scene.settings = world.settings;
   scene.camera = to_pose(world.camera), scene.camera_fov_rad = world.camera_fov_rad;
   scene.listener = to_pose(world.listener);
+  scene.profile = world.profile;
   scene.ambient = to_vec3f(world.ambient), scene.background = to_vec3f(world.background);
   const auto count = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
   scene.body_count = count(scene.bodies), scene.shape_count = count(scene.shapes);

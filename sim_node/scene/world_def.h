@@ -101,6 +101,7 @@ struct WorldDef {
   double camera_fov_rad = 1.05;
   Eigen::Vector3d ambient{0.1, 0.1, 0.1}, background{0.02, 0.02, 0.03};
   Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();
+  std::string profile;  // of degradation, XML; empty: none
   std::vector<setting_t> settings;
   // Pairs of bodies that do not collide: jointed without self collision.
   std::vector<std::pair<int, int>> no_collision;

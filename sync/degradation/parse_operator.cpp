@@ -214,6 +214,16 @@ const std::map<std::string, Fill>& operators() {
 
 }  // namespace
 
+std::vector<std::string> output_operators(const OutputDef& o) {
+  std::vector<std::string> names;
+  if (o.frame_rate_Hz > 0) names.emplace_back("frame_rate");
+  if (o.resolution > 0) names.emplace_back("resolution");
+  if (o.dropout_s > 0) names.emplace_back("dropout");
+  if (o.force_step_N > 0) names.emplace_back("force_step");
+  if (o.response_s > 0) names.emplace_back("response");
+  return names;
+}
+
 void parse_operator(Rule& rule, const std::string& name, const std::string& value) {
   const auto it = operators().find(name);
   if (it == operators().end()) throw std::invalid_argument("there is no operator \"" + name + "\"");

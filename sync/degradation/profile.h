@@ -100,6 +100,9 @@ struct Profile {
 // file: the name for messages. No rules: a profile that degrades nothing.
 Profile parse_profile(const std::string& xml, const std::string& file);
 
+// The names of the attributes that ask something of the output itself.
+std::vector<std::string> output_operators(const OutputDef& output);
+
 // Fills what an attribute of <degrade> says into the rule. Throws std::invalid_argument with one sentence.
 void parse_operator(Rule& rule, const std::string& name, const std::string& value);
 

@@ -36,6 +36,8 @@ class ProfileReceiver {
   std::optional<ProfileInForce> take(const degradation_t& page);
   // What holds already, from a file or a scene: only newer ones are taken.
   void set_generation(std::int64_t generation) { generation_ = generation; }
+  // Of the newest; -1: none yet.
+  std::int64_t generation() const { return generation_; }
 
  private:
   std::int64_t generation_ = -1;

@@ -65,7 +65,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
   std::vector<presentation_t> reports;
   std::vector<std::int64_t> scheduled_ns;
   Crossing crossing;
-  Renderer renderer(crossing, kRate, 0.9, sync::Nanoseconds(30'000'000));
+  Renderer renderer(crossing, {.rate_Hz = kRate});
   std::int64_t callbacks = 0;
   {
     StreamOptions options;

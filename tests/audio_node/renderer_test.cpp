@@ -1,56 +1,20 @@
-#include "audio_node/renderer.h"
-
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <complex>
 #include <cstring>
 #include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "tests/audio_node/bench.h"
+
 using namespace tactus;
 using namespace tactus::audio;
+using namespace tactus::audio::test;
 using std::numbers::pi;
 
 namespace {
-
-constexpr double kRate = 48000;
-constexpr std::int64_t kStart_ns = 1'000'000'000'000;
-
-Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz, double damping_1_s, std::int64_t at_ns,
-                 float impulse = 0.1f) {
-  Strike s;
-  s.event_id = id;
-  s.scheduled = sync::host_time(at_ns);
-  StrikeSide& side = s.sides[0];
-  side.voice = voice;
-  const auto pole = std::exp(std::complex<double>(-damping_1_s, 2 * pi * frequency_Hz) / kRate);
-  side.resonators.count = 1;
-  side.resonators.pole_re[0] = static_cast<float>(pole.real());
-  side.resonators.pole_im[0] = static_cast<float>(pole.imag());
-  side.resonators.response[0] = 1;
-  side.impulse = impulse;
-  side.left = side.right = 1;
-  return s;
-}
-
-struct Bench {
-  Crossing crossing;
-  Renderer renderer{crossing, kRate, 0.9, sync::Nanoseconds(30'000'000)};
-  std::vector<float> left;
-  std::vector<presentation_t> reports;
-
-  std::int64_t time_ns(std::size_t sample) const {
-    return kStart_ns + std::llround(static_cast<double>(sample) * 1e9 / kRate);
-  }
-  void play(int frames) {
-    std::vector<float> block(2 * static_cast<std::size_t>(frames));
-    renderer.render(block.data(), frames, {sync::host_time(time_ns(left.size())), sync::Nanoseconds(5000)});
-    for (int n = 0; n < frames; ++n) left.push_back(block[2 * static_cast<std::size_t>(n)]);
-    for (presentation_t r; crossing.reports.pop(r);) reports.push_back(r);
-  }
-};
 
 std::size_t first_sound(const std::vector<float>& x, std::size_t from = 0) {
   while (from < x.size() && x[from] == 0) ++from;
@@ -93,6 +57,47 @@ TEST_CASE("A late strike is played at once, a very late one is dropped, and both
   CHECK(std::abs(bench->reports[1].presented_ns - bench->time_ns(480 + Limiter::kDelay)) <= 2);
 }
 
+TEST_CASE("Of the sense's row of late rules: on time within its slack, then the weaker the later, then dropped") {
+  // Without damping, so that the level after the onset is the strength.
+  const auto played = [](double late_s) {
+    auto bench = std::make_unique<Bench>();
+    bench->play(480);
+    const double first = 480 + Limiter::kDelay;  // that can still be changed
+    const auto at = kStart_ns + std::llround((first / kRate - late_s) * 1e9);
+    REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 0, at)));
+    for (int i = 0; i < 4; ++i) bench->play(480);
+    REQUIRE(bench->reports.size() == 1);
+    const double level = *std::max_element(bench->left.begin(), bench->left.end());
+    return std::pair(bench->reports[0].outcome, level);
+  };
+  const auto [in_time, full] = played(0);
+  REQUIRE(in_time == presentation_t::PRESENTED);
+  CHECK(full == Approx(0.1).epsilon(1e-3));
+  CHECK(played(2.4 / kRate) == std::pair(in_time, full));
+  for (const double late_s : {2.7 / kRate, 0.001, 0.01, 0.02, 0.0299}) {
+    const auto [outcome, level] = played(late_s);
+    CHECK(outcome == presentation_t::LATE);
+    // By a straight line from the slack of 2.5 samples to the limit of 30 ms.
+    const double slack_s = 2.5 / kRate;
+    CHECK(level == Approx(full * (0.03 - late_s) / (0.03 - slack_s)).margin(1e-3 * full));
+  }
+  const auto [beyond, nothing] = played(0.0301);
+  CHECK(beyond == presentation_t::DROPPED_LATE);
+  CHECK(nothing == 0);
+}
+
+TEST_CASE("What is too late to be strong enough is called inaudible") {
+  auto bench = std::make_unique<Bench>();
+  bench->play(480);
+  Strike s = strike_of(1, 1, 500, 20, bench->time_ns(480) - 20'000'000);
+  s.heard_from = 0.5f;
+  REQUIRE(bench->crossing.strikes.push(s));
+  bench->play(480);
+  REQUIRE(bench->reports.size() == 1);
+  CHECK(bench->reports[0].outcome == presentation_t::INAUDIBLE);
+  CHECK(bench->reports[0].presented_ns > 0);
+}
+
 TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   auto bench = std::make_unique<Bench>();
   const double f = 440, d = 12;
@@ -121,9 +126,9 @@ TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") 
 }
 
 TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice") {
-  Voices voices(4);
+  Voices voices(4, kRate);
   const Strike s = strike_of(1, 1, 700, 60, 0);
-  voices.strike(s.sides[0], 20, 3);
+  voices.strike(s.sides[0], 1, 20, 3);
   std::vector<float> mix(2 * kMaxBlock);
   const auto render = [&] {
     std::fill(mix.begin(), mix.end(), 0.f);
@@ -146,14 +151,14 @@ TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice"
 TEST_CASE("A force pulse carries its impulse whatever its length, and spares what is faster than it") {
   // At low frequency only the impulse counts; above the first zero of its spectrum, 2 / T, little remains.
   for (const int length : {1, 2, 10, 48, 200}) {
-    Voices voices(2);
+    Voices voices(2, kRate);
     const Strike low = strike_of(1, 1, 20, 0, 0, 1), high = strike_of(2, 2, 5000, 0, 0, 1);
-    voices.strike(low.sides[0], length, 0);
+    voices.strike(low.sides[0], 1, length, 0);
     std::vector<float> mix(2 * kMaxBlock);
     for (int block = 0; block < 5; ++block) voices.render(mix.data(), kMaxBlock);
     CHECK(std::sqrt(voices.energy()) == Approx(1).epsilon(0.02));  // 1 - (pi f T)^2 / 6 with T < 4.2 ms
-    Voices other(2);
-    other.strike(high.sides[0], length, 0);
+    Voices other(2, kRate);
+    other.strike(high.sides[0], 1, length, 0);
     for (int block = 0; block < 5; ++block) other.render(mix.data(), kMaxBlock);
     if (length >= 48) CHECK(std::sqrt(other.energy()) < 0.02);
   }

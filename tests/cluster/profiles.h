@@ -27,6 +27,19 @@ inline std::string put_in_force(Running& c, const std::string& rules) {
   return c.processes.said(name);
 }
 
+// Asks for a policy through the program that people use. Returns what it said.
+inline std::string ask_for(Running& c, std::vector<std::string> words) {
+  static int number = 0;
+  const std::string name = "playout" + std::to_string(++number);
+  std::vector<std::string> command{programs() / "playout", "--run-id", std::to_string(Running::kRunId)};
+  command.insert(command.end(), words.begin(), words.end());
+  c.processes.spawn(name, command);
+  const int status = c.processes.wait_for_exit(name, kPatience_s);
+  INFO(c.processes.said(name));
+  CHECK(status == 0);
+  return c.processes.said(name);
+}
+
 using EventsHeard = std::map<std::string, std::set<std::int64_t>>;
 
 // The events that each sense has reported so far.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <set>
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/valid.h"
@@ -252,4 +253,54 @@ TEST_CASE("A device that reports nonsense is held where it was") {
   const auto& out = bench.tick(1, {nan, 0, nan});
   CHECK(valid_on_the_bus(out.state));
   CHECK(out.state.device.position_m.z == 0.003);
+}
+
+TEST_CASE("A force in steps, as a profile asks for, keeps its direction and is passed on to what is touched") {
+  constexpr double kStep_N = 0.5;
+  Bench bench;
+  TickInput in;
+  in.force_step_N = kStep_N;
+  std::set<long> levels;
+  for (int ms = 0; ms < 1000; ++ms) {
+    const auto m = model(ms, {plane(7, Vector3d::Zero(), Vector3d(0.3, 0, 1))});
+    const auto& out = bench.tick(ms, Vector3d(0, 0, 0.006 - 0.000003 * ms), &m, {}, in);
+    const double level = out.force_N.norm() / kStep_N;
+    // The limits come after: a step of 0.5 N takes less than the 2 N that a tick may change, so each level is
+    // reached at once.
+    REQUIRE(level == Approx(std::round(level)).margin(1e-9));
+    levels.insert(std::lround(level));
+    if (level > 0.5) CHECK(out.force_N.normalized().dot(Vector3d(0.3, 0, 1).normalized()) == Approx(1));
+    CHECK((sum_of_constraints(out.state) - out.force_N).norm() < 1e-6);
+  }
+  CHECK(levels == std::set<long>{0, 1, 2, 3, 4});
+}
+
+TEST_CASE("A force in steps has passed the limits of force and slew, whatever the step") {
+  const Settings settings;
+  const double step_N = GENERATE(1e-6, 0.1, 3.0, 5.0, 100.0);
+  Bench bench(settings);
+  TickInput in;
+  Vector3d last = Vector3d::Zero();
+  double largest_N = 0;
+  for (int ms = 0; ms < 300; ++ms) {
+    in.force_step_N = ms < 250 ? step_N : 0;  // and switched off
+    const auto m = model(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+    const Vector3d force = bench.tick(ms, {0, 0, 0.005 - 0.0001 * ms}, &m, {}, in).force_N;
+    CHECK(force.norm() <= settings.force_limit_N + 1e-9);
+    CHECK((force - last).norm() <= settings.slew_limit_N_s * 1e-3 + 1e-9);
+    largest_N = std::max(largest_N, force.norm());
+    last = force;
+  }
+  CHECK(largest_N == Approx(settings.force_limit_N));
+}
+
+TEST_CASE("A lost touch model fades to no force however large the steps of force are") {
+  Bench bench;
+  TickInput in;
+  in.force_step_N = GENERATE(0.5, 3.0);
+  for (int ms = 0; ms < 200; ++ms) {
+    const auto m = model(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+    bench.tick(ms, {0, 0, 0.002}, ms < 100 ? &m : nullptr, {}, in);
+  }
+  CHECK(bench.tick(200, {0, 0, 0.002}, nullptr, {}, in).force_N.norm() == 0);
 }

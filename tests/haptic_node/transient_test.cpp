@@ -110,3 +110,22 @@ TEST_CASE("A transient that no hand would feel is not called presented") {
   REQUIRE(reports.size() == 1);
   CHECK(reports[0].outcome == presentation_t::DROPPED_LATE);
 }
+
+TEST_CASE("Of the sense's row of late rules: a late transient is as strong as it should be, or not at all") {
+  // On time up to 7.5 ms, dropped after 15 ms.
+  const auto felt = [](double lateness_ms) {
+    Transients transients(TransientShape{});
+    std::vector<presentation_t> reports;
+    transients.schedule(hit(1, 100 - lateness_ms), reports);
+    const double force = transients.step(host_ms(100), kDt, true, kUncertain, reports).norm();
+    REQUIRE(reports.size() == 1);
+    return std::pair(int{reports[0].outcome}, force);
+  };
+  const auto [outcome, full] = felt(0);
+  REQUIRE(full > 0.1);
+  CHECK(outcome == presentation_t::PRESENTED);
+  CHECK(felt(7.5) == std::pair(int{presentation_t::PRESENTED}, full));
+  CHECK(felt(7.6) == std::pair(int{presentation_t::LATE}, full));
+  CHECK(felt(15) == std::pair(int{presentation_t::LATE}, full));
+  CHECK(felt(15.1) == std::pair(int{presentation_t::DROPPED_LATE}, 0.0));
+}

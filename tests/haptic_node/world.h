@@ -85,10 +85,9 @@ struct Bench {
   explicit Bench(const Settings& s = {}, const scene_t& in_scene = scene())
       : safety(safety_limits(s)), renderer(in_scene, 0, s, safety) {}
 
-  // One tick at `ms` of simulated time; the model, if any, arrives just then.
+  // One tick at `ms` of simulated time; the model, if any, arrives just then. in: what else there is.
   TickOutput& tick(double ms, const Vector3d& device, const touch_model_t* fresh = nullptr,
-                   std::vector<contact_event_t> events = {}) {
-    TickInput in;
+                   std::vector<contact_event_t> events = {}, TickInput in = {}) {
     in.now = host_ms(ms);
     in.device.position = device;
     in.device.velocity = last ? Vector3d((device - *last) / ((ms - last_ms) * 1e-3)) : Vector3d::Zero();

@@ -127,3 +127,17 @@ TEST_CASE("Bodies beyond what any scene can tell of are refused") {
   CHECK(history.refused() == 1);
   CHECK(history.pose(BodyHistory::kMaxBodies, sim_time(0)).how == How::kNone);
 }
+
+TEST_CASE("A sense that presents seconds late still finds where bodies were, however long") {
+  BodyHistory history(1);
+  const std::int64_t late = GENERATE(500, 5'000, 20'000) * kMs;
+  for (std::int64_t i = 0; i < 60 * 30; ++i) {
+    const std::int64_t now = i * 16 * kMs, then = now - late;
+    history.keep(Nanoseconds(late));
+    history.push(page(now, 0, {1e-9 * static_cast<double>(now), 0, 0}, {1, 0, 0}), at(now));
+    if (then < 0) continue;
+    const auto s = history.pose(0, sim_time(then));
+    REQUIRE((s.how == How::kExact || s.how == How::kInterpolated));
+    REQUIRE(s.value.position.x() == Approx(1e-9 * static_cast<double>(then)).margin(1e-6));
+  }
+}

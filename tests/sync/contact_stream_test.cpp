@@ -324,3 +324,20 @@ TEST_CASE("When too many events are pending the latest give way, and are counted
   CHECK(stream.overflow() == 5010 - static_cast<std::int64_t>(ContactStream::kMaxPendingEvents));
   CHECK(stream.take_events(sim_time(10 * kMs)).size() == 10);
 }
+
+TEST_CASE("A sense that presents seconds late still finds what was touched, however long") {
+  const std::int64_t late = GENERATE(150, 2'000, 10'000) * kMs;
+  ContactStream stream(kRun);
+  for (std::int64_t ms = 0; ms < 12'000; ++ms) {
+    stream.keep(Nanoseconds(late));
+    contact_t touched = contact(1, 1e-3f * static_cast<float>(ms));
+    touched.tool = 0;
+    stream.push(frame(ms * kMs, {touched}), at(ms * kMs));
+    const std::int64_t end = ms * kMs - late, begin = end - 20 * kMs;
+    if (begin < 0 || ms % 20 != 0) continue;
+    const auto felt = stream.integral(sim_time(begin), sim_time(end), 0);
+    REQUIRE((felt.how == How::kExact || felt.how == How::kInterpolated));
+    // Each snapshot holds for its millisecond: the mean of twenty.
+    REQUIRE(felt.force_N == Approx(1e-3 * (static_cast<double>(begin / kMs) + 9.5)).epsilon(1e-5));
+  }
+}

@@ -43,7 +43,8 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   CHECK(j["asynchrony_ms"]["audio_visual"]["n"] == 80);
   CHECK(j["asynchrony_ms"]["audio_visual"]["p50"].get<double>() == Approx(-7).margin(0.1));
   CHECK(j["asynchrony_ms"]["haptic_audio"] ==
-        Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr}}));
+        Json({{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr},
+                                                    {"beyond_least_threshold", nullptr}, {"beyond_all_thresholds", nullptr}}));
   CHECK(j["asynchrony_ms"].contains("haptic_visual"));
   CHECK(j["bus"]["WORLD_STATE"]["messages"] == 501);
   CHECK(j["bus"]["WORLD_STATE"]["gaps"] == 0);

@@ -261,3 +261,78 @@ TEST_CASE("When the scene changes the command goes on from where the element sta
   }
   CHECK(last == Approx(settings.skin_rest_degC).margin(0.01));
 }
+
+TEST_CASE("A display that is slow on purpose approaches the skin by the closed form") {
+  // From where another scene left it, 20 degrees, to resting skin: 13 K/s at first, less than the element can.
+  thermal::Settings settings;
+  Hand hand(kMaterials, settings);
+  hand.renderer = Renderer(settings, kMaterials, 0, 9, 20.0);
+  for (int i = 1; i <= 500; ++i) {
+    const thermal_state_t state = hand.renderer.step(hand.next(), {.response_s = 1});
+    REQUIRE(state.commanded_degC == Approx(33 - 13 * std::exp(-0.02 * i)).margin(1e-4));
+    REQUIRE(state.skin_degC == 33);
+  }
+}
+
+TEST_CASE("A slow display is later than the skin, and switching it on and off is no jump") {
+  Hand hand;
+  float before = hand.press(kCopper, 1, 10).commanded_degC;
+  const thermal::Settings settings;
+  for (int i = 0; i < 200; ++i) {
+    Tick tick = hand.next();
+    tick.contact.contact_time = kTick;
+    tick.contact.force_N = 1;
+    tick.contact.area_m2 = 1e-4;
+    tick.contact.material = tick.contact.body = kCopper;
+    const bool slow = i >= 10 && i < 100;
+    const thermal_state_t state = hand.renderer.step(tick, {.response_s = slow ? 2.0 : 0.0});
+    // The element's own limit; the step to the skin's temperature takes some ticks of it.
+    CHECK(std::abs(state.commanded_degC - before) <= settings.slew_max_K_s * 0.02 + 1e-4);
+    if (i == 10) CHECK(std::abs(state.commanded_degC - before) < 0.02);  // on: goes on from there
+    if (i == 50) CHECK(state.commanded_degC > state.skin_degC + 0.5);
+    if (i == 199) CHECK(state.commanded_degC == state.skin_degC);
+    before = state.commanded_degC;
+  }
+}
+
+TEST_CASE("However slow a display is on purpose, it is in the safe range, and lost input returns it to rest") {
+  Hand hand;
+  for (int i = 0; i < 200; ++i) {
+    Tick tick = hand.next();
+    tick.contact.contact_time = kTick;
+    tick.contact.force_N = 20;
+    tick.contact.area_m2 = 1e-4;
+    tick.contact.material = tick.contact.body = kFurnace;
+    REQUIRE(hand.renderer.step(tick, {.response_s = 0.5}).commanded_degC <= 42);
+  }
+  thermal_state_t state{};
+  for (int i = 0; i < 50; ++i) {
+    Tick tick = hand.next();
+    tick.contact.how = sync::How::kStale;
+    state = hand.renderer.step(tick, {.response_s = 60});
+  }
+  CHECK(state.commanded_degC == 33);
+  // Back again it goes on from there, not from where it was when the input was lost.
+  for (int i = 0; i < 50; ++i) state = hand.renderer.step(hand.next(), {.response_s = 1e6});
+  CHECK(state.commanded_degC == Approx(33).margin(0.1));
+}
+
+TEST_CASE("Of the sense's row of late rules: what is late is applied and called late, however late") {
+  const auto felt = [](std::int64_t lateness_ms) {
+    Hand hand;
+    hand.rest(400);
+    Tick tick = hand.next();
+    const std::int64_t end = sync::to_ns(tick.end);
+    tick.events = {event(contact_event_t::BEGIN, 1, end - lateness_ms * kMs),
+                   event(contact_event_t::END, 3, end - (lateness_ms - 5) * kMs)};
+    const float skin = hand.renderer.step(tick).skin_degC;
+    REQUIRE(hand.renderer.reports().size() == 1);
+    return std::pair(int{hand.renderer.reports()[0].outcome}, skin);
+  };
+  const auto [outcome, skin] = felt(100);
+  REQUIRE(skin < 33);
+  CHECK(outcome == presentation_t::PRESENTED);
+  CHECK(felt(500) == std::pair(int{presentation_t::PRESENTED}, skin));
+  CHECK(felt(501) == std::pair(int{presentation_t::LATE}, skin));
+  CHECK(felt(8000) == std::pair(int{presentation_t::LATE}, skin));
+}

@@ -64,6 +64,21 @@ TEST_CASE("Every begin and hit yields exactly one report, whatever the frames do
   }
 }
 
+TEST_CASE("What becomes of a late event is the rule of the modality") {
+  const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
+  const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t foretold_ns) {
+    EventLedger ledger(Settings{}, rule);
+    ledger.take({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
+    return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
+  };
+  CHECK(outcome(sync::Late::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);
+  CHECK(outcome(sync::Late::kShowNewest, 50'000'001, 0) == presentation_t::LATE);
+  CHECK(outcome(sync::Late::kShowNewest, 260'000'000, 250'000'001) == presentation_t::DROPPED_LATE);
+  // Foretold to be in time, and shown: late, however much.
+  CHECK(outcome(sync::Late::kShowNewest, 900'000'000, 200'000'000) == presentation_t::LATE);
+  CHECK(outcome(sync::Late::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
+}
+
 TEST_CASE(
     "The time that drawing takes is foretold by the median: one stop in the middle of a frame does not move it") {
   RenderTime time;

@@ -1,7 +1,9 @@
 #include "visual_node/frame/frame_composer.h"
 
 #include <catch2/catch.hpp>
+#include <functional>
 #include <map>
+#include <random>
 
 #include "test_scene.h"
 
@@ -65,6 +67,8 @@ contact_events_t event_at(std::int64_t sim_ns, std::int64_t id) {
 struct Fixture {
   FrameComposer composer{kRun, Settings{}};
   std::map<std::int64_t, int> outcomes;
+  std::map<std::int64_t, presentation_t> reports;
+  sync::Nanoseconds delay{0}, held{0};
   std::int64_t number = 0;
 
   void load() {
@@ -72,13 +76,18 @@ struct Fixture {
     test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::SPHERE, {0.1, 0, 0});
     composer.load(scene, {}, Settings{});
   }
-  // One frame at host time `now_ns` that takes 4 ms.
-  Frame frame(std::int64_t sim_ns) {
+  // One frame at host time `now_ns`: 3 ms for its surfaces, 1 ms for its flashes. meanwhile: what happens in
+  // between.
+  Frame frame(
+      std::int64_t sim_ns, const std::function<void()>& meanwhile = [] {}) {
     const sync::HostTime now = sync::host_time(sim_ns + kBegan_ns);
-    Frame f = composer.frame(now, number++);
+    Frame f = composer.frame(now, number++, delay);
+    meanwhile();
+    composer.latch(f, now + milliseconds(3), delay, held);
     for (const presentation_t& r : composer.presented(now + milliseconds(4))) {
-      CHECK(outcomes.count(r.event_id) == 0);
+      CHECK(reports.count(r.event_id) == 0);
       outcomes[r.event_id] = r.outcome;
+      reports[r.event_id] = r;
     }
     return f;
   }
@@ -161,6 +170,87 @@ TEST_CASE_METHOD(Fixture,
   CHECK(outcomes.count(73) == 1);
   for (int i = 2; i < 10; ++i) frame(t + i * kFrame.count());
   CHECK(outcomes.size() == 3);
+}
+
+TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn flashes in the same frame") {
+  load();
+  for (int i = 0; i < 10; ++i) hear(i * kFrame.count()), frame(i * kFrame.count());
+  const std::int64_t t = 10 * kFrame.count();
+  const Frame f =
+      frame(t, [&] { composer.push(event_at(t + 1'000'000, 71), sync::host_time(t + 2'000'000 + kBegan_ns)); });
+  CHECK_FALSE(f.list.glows.empty());
+  REQUIRE(reports.count(71) == 1);
+  CHECK(reports[71].presented_ns - reports[71].scheduled_ns == 3'000'000);
+  SECTION("and its flash is no older than the frame") {
+    const Frame later = frame(t + kFrame.count());
+    REQUIRE(later.list.glows.size() == f.list.glows.size());
+    CHECK(f.list.glows[0].centre.w() == 0);
+    CHECK(later.list.glows[0].centre.w() ==
+          Approx(sync::to_seconds(kFrame) / Settings{}.flash_duration_s).epsilon(1e-3));
+  }
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "With a delay an event is shown in the frame nearest to its instant: at most half a frame off") {
+  load();
+  delay = milliseconds(GENERATE(9, 17, 30, 45));
+  std::mt19937 random(7);
+  std::int64_t id = 100;
+  for (int i = 0; i < 400; ++i) {
+    const std::int64_t t = i * kFrame.count();
+    hear(t);
+    if (i > 10 && i < 390)
+      composer.push(event_at(t - static_cast<std::int64_t>(random() % 5'000'000), ++id),
+                    sync::host_time(t + kBegan_ns));
+    frame(t);
+  }
+  REQUIRE(reports.size() == static_cast<std::size_t>(id - 100));
+  for (const auto& [event_id, r] : reports)
+    CHECK(std::abs(r.presented_ns - r.scheduled_ns) <= kFrame.count() / 2 + 1);
+}
+
+TEST_CASE_METHOD(
+    Fixture,
+    "With few pictures a second an event is shown in the first one at or after its instant, and none is dropped") {
+  load();
+  const int every = GENERATE(6, 30);  // ticks: 10 and 2 pictures a second
+  delay = milliseconds(GENERATE(0, 40));
+  held = every * kFrame;
+  std::mt19937 random(7);
+  std::int64_t id = 100;
+  std::map<std::int64_t, std::int64_t> due;
+  std::vector<std::int64_t> fences;
+  for (int i = 0; i < 600; ++i) {
+    const std::int64_t t = i * kFrame.count();
+    hear(t);
+    if (i > 60 && i < 500) {
+      due[++id] = t - static_cast<std::int64_t>(random() % 1'000'000) + delay.count() + kBegan_ns;
+      composer.push(event_at(due[id] - delay.count() - kBegan_ns, id), sync::host_time(t + kBegan_ns));
+    }
+    if (i % every == 0) frame(t), fences.push_back(t + 4'000'000 + kBegan_ns);
+  }
+  REQUIRE(reports.size() == due.size());
+  for (const auto& [event_id, r] : reports) {
+    CHECK(r.scheduled_ns == due[event_id]);
+    CHECK(r.presented_ns == *std::lower_bound(fences.begin(), fences.end(), due[event_id]));
+    CHECK(r.outcome ==
+          (r.presented_ns - r.scheduled_ns > 50'000'000 ? presentation_t::LATE : presentation_t::PRESENTED));
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "A scene's settings of what is late hold for its events") {
+  load();
+  scene_t scene = test::empty_scene();
+  Settings settings;
+  settings.late_after_s = 0.01, settings.drop_after_s = 0.1;
+  composer.load(scene, {}, settings);
+  hear(0);
+  frame(0);
+  hear(1'000'000'000);
+  composer.push(event_at(1'000'000'000 - 20'000'000, 1), sync::host_time(1'000'000'000 + kBegan_ns));
+  composer.push(event_at(1'000'000'000 - 120'000'000, 2), sync::host_time(1'000'000'000 + kBegan_ns));
+  frame(1'000'000'000);
+  CHECK(outcomes == std::map<std::int64_t, int>{{1, presentation_t::LATE}, {2, presentation_t::DROPPED_LATE}});
 }
 
 TEST_CASE_METHOD(Fixture, "Events of a stall are shown late or dropped, each reported") {

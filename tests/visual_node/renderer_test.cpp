@@ -4,74 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "test_scene.h"
-#include "visual_node/egl/display.h"
+#include "offscreen.h"
 #include "visual_node/frame/marker.h"
-#include "visual_node/scene_view/scene_view.h"
 
 using namespace tactus;
 using namespace tactus::visual;
-
-namespace {
-
-constexpr int kWidth = 640, kHeight = 480;
-
-// IEC 61966-2-1.
-double srgb(double linear) {
-  linear = std::clamp(linear, 0.0, 1.0);
-  return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
-}
-
-Display& display() {
-  static const auto context = [] {
-    quiet_software_renderer();
-    return make_headless(-1);
-  }();
-  return *context;
-}
-
-struct Image {
-  std::vector<std::uint8_t> rgba = std::vector<std::uint8_t>(kWidth * kHeight * 4);
-  // x from the left, y from the top.
-  Eigen::Vector3d at(int x, int y) const {
-    const auto i = static_cast<std::size_t>(((kHeight - 1 - y) * kWidth + x) * 4);
-    return {static_cast<double>(rgba[i]), static_cast<double>(rgba[i + 1]), static_cast<double>(rgba[i + 2])};
-  }
-};
-
-Image render(const scene_t& scene, const Settings& settings = {}, std::vector<Rect> overlay = {},
-             const HeightMaps& height_maps = {}) {
-  display();
-  const SceneView view(scene, {}, settings, height_maps);
-  Renderer renderer(kWidth, kHeight, settings.shadow_size);
-  renderer.load(view.geometries(), view.lighting(), view.reliefs());
-  std::vector<Eigen::Isometry3d> poses;
-  for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
-  DrawList list = view.draw(poses, {});
-  list.overlay = std::move(overlay);
-  renderer.draw(list);
-  renderer.wait();
-  Image image;
-  renderer.picture().read(image.rgba);
-  return image;
-}
-
-// A floor of 10 m at z = 0 seen straight from above, the middle of the picture at the origin; picture up is +x.
-scene_t floor_from_above(double height_m) {
-  scene_t scene = test::empty_scene();
-  test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::PLANE, {10, 10, 0});
-  scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, height_m) *
-                                           Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitY())));
-  return scene;
-}
-
-// Pixels per metre on that floor.
-double scale_px(double height_m) { return kWidth / 2 / std::tan(0.5) / height_m; }
-
-// 8 bits, and what the device's own encoding as sRGB errs.
-constexpr double kTolerance = 2;
-
-}  // namespace
+using namespace tactus::test;
 
 TEST_CASE("The middle of a lit sphere has the colour that the formula gives") {
   scene_t scene = test::empty_scene();

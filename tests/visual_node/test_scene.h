@@ -66,7 +66,8 @@ inline HeightMap sine_map(int columns, int rows) {
   map.columns = columns, map.rows = rows, map.white = 65535;
   for (int i = 0; i < columns * rows; ++i) {
     const double u = (i % columns + 0.5) / columns;
-    map.levels.push_back(static_cast<std::uint16_t>(std::lround(65535 * (1 + std::sin(2 * std::numbers::pi * u)) / 2)));
+    map.levels.push_back(
+        static_cast<std::uint16_t>(std::lround(65535 * (1 + std::sin(2 * std::numbers::pi * u)) / 2)));
   }
   return map;
 }

@@ -33,8 +33,8 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings)
-    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings) {}
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late)
+    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                                      const HeightMaps& height_maps) {
@@ -42,31 +42,38 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
   scene_ = scene;
   view_.emplace(scene, meshes, settings, height_maps);
   flashes_ = Flashes(settings);
+  ledger_.set(settings);
   return *view_;
 }
 
 Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay,
                            sync::HostTime newest_arrival) {
   tick_ = now;
+  bodies_.keep(delay);
   const sync::HostTime t = now + render_time_.expected();
   const auto map = bodies_.map(now);
   const auto instant = map ? std::optional(map->to_sim(t - delay)) : std::nullopt;
   Frame frame;
+  frame.number = number;
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
-  flash_due(t, delay);
-  if (view_) {
+  if (view_)
     frame.list = view_->draw(body_poses(instant), tool_poses(instant, now));
-    frame.list.glows = flashes_.frame(t, frame.list.camera);
-  } else {
+  else
     frame.list.lighting.background = kNoScene;
-  }
+  return frame;
+}
+
+void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, sync::Nanoseconds held) {
+  latched_ = now;
+  const sync::HostTime t = now + latch_time_.expected();
+  flash_due(t, delay, held);
+  if (view_) frame.list.glows = flashes_.frame(t, frame.list.camera);
   if (settings_.event_marker == "strip")
-    append_marker(frame.list.overlay, static_cast<std::uint32_t>(number & 0xffffff), flashes_.shown(),
+    append_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), flashes_.shown(),
                   view_ ? view_->height() : settings_.height / 4 * 4);
   if (const std::string_view text = word(frame); !text.empty())
     append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
-  return frame;
 }
 
 void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {
@@ -90,15 +97,24 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
   }
 }
 
+// When the frame after the one that is presented at t will be: a loop that is late skips ticks.
+sync::HostTime FrameComposer::presented_next(sync::HostTime t) const {
+  const sync::Nanoseconds period = sync::from_seconds(1 / settings_.rate_Hz);
+  const auto ticks = std::max<std::int64_t>(1, (t - tick_ + period - sync::Nanoseconds(1)) / period);
+  return tick_ + ticks * period + render_time_.expected();
+}
+
 // An event is shown in the frame that is nearest to its instant; one that is to be shown at once, in the next.
-void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay) {
-  const auto map = contacts_.map(tick_);
+void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
+  const auto map = contacts_.map(latched_);
   if (!map) return;
   // Without a scene there is nothing to show an event in: it waits until it is too late.
-  const sync::Nanoseconds early = std::min(delay, sync::from_seconds(0.5 / settings_.rate_Hz));
+  sync::Nanoseconds early{0};
+  if (held == sync::Nanoseconds(0))
+    early = std::clamp((presented_next(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
   const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
-  for (const contact_event_t& event : ledger_.take(due, *map, t, delay)) flashes_.add(event, t);
+  for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
 std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {
@@ -130,6 +146,7 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
 
 std::vector<presentation_t> FrameComposer::presented(sync::HostTime fence) {
   render_time_.add(fence - tick_);
+  latch_time_.add(fence - latched_);
   return ledger_.presented(fence);
 }
 

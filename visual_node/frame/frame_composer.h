@@ -1,6 +1,7 @@
 // Composes the picture of one instant from everything that has arrived: the one object behind the loop. Pure.
 //
 // A frame shows the world at the instant at which it will be presented: the tick plus the time that drawing takes.
+// Its events are latched late: when all surfaces have been drawn, just before the flashes are.
 #pragma once
 
 #include <map>
@@ -24,13 +25,19 @@ struct Frame {
   sync::How how = sync::How::kNone;            // how the poses of the bodies were obtained
   std::int8_t state = node_health_t::WAITING;  // of the node, for its health
   std::string note;
+  std::int64_t number = 0;
 };
 
 class FrameComposer {
  public:
-  // own: messages of another clock are read through its map; those of another run by arrival.
-  FrameComposer(sync::OwnClock own, const Settings& settings);
+  // From latch to fence, before the first frame: a software renderer's typical time.
+  static constexpr sync::Nanoseconds kFlashesTake{1'000'000};
 
+  // own: messages of another clock are read through its map; those of another run by arrival.
+  // late: what becomes of an event that could not be shown in time.
+  FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
+
+  void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) { tools_[m.tool] = {m, arrival}; }
@@ -42,6 +49,11 @@ class FrameComposer {
   // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.
   Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
               sync::HostTime newest_arrival = sync::HostTime{});
+  // The surfaces of that frame are drawn, now: adds what lies over them, with the events that arrived until now.
+  // held: each picture stays for so long because a profile wants few; it shows the events up to its instant. 0: a
+  // picture in every tick.
+  void latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay = sync::Nanoseconds(0),
+             sync::Nanoseconds held = sync::Nanoseconds(0));
   // That frame was presented at `fence`: reports of the events that it showed first or dropped.
   std::vector<presentation_t> presented(sync::HostTime fence);
 
@@ -50,7 +62,8 @@ class FrameComposer {
     tool_state_t state;
     sync::HostTime arrival;
   };
-  void flash_due(sync::HostTime t, sync::Nanoseconds delay);
+  void flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);
+  sync::HostTime presented_next(sync::HostTime t) const;
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
   std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
@@ -63,8 +76,8 @@ class FrameComposer {
   std::optional<SceneView> view_;
   Flashes flashes_;
   EventLedger ledger_;
-  RenderTime render_time_;
-  sync::HostTime tick_{};
+  RenderTime render_time_, latch_time_{kFlashesTake};  // from tick and latch to the fence
+  sync::HostTime tick_{}, latched_{};
   std::optional<sync::HostTime> stale_since_;
 };
 

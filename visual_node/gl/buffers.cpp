@@ -106,12 +106,17 @@ ReliefTexture::~ReliefTexture() { glDeleteTextures(1, &id_); }
 
 PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
   glGenFramebuffers(1, &framebuffer_);
-  glGenRenderbuffers(1, &colour_);
+  glGenTextures(1, &colour_);
   glGenRenderbuffers(1, &depth_);
+  glBindTexture(GL_TEXTURE_2D, colour_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+  for (const auto filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  for (const auto wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  glBindRenderbuffer(GL_RENDERBUFFER, colour_);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_SRGB8_ALPHA8, width, height);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_, 0);
   glBindRenderbuffer(GL_RENDERBUFFER, depth_);
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
@@ -120,13 +125,13 @@ PictureTarget::PictureTarget(int width, int height) : width_(width), height_(hei
 
 PictureTarget::~PictureTarget() {
   glDeleteFramebuffers(1, &framebuffer_);
-  glDeleteRenderbuffers(1, &colour_);
+  glDeleteTextures(1, &colour_);
   glDeleteRenderbuffers(1, &depth_);
 }
 
-void PictureTarget::bind() const {
+void PictureTarget::bind(int width, int height) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  glViewport(0, 0, width_, height_);
+  glViewport(0, 0, width, height);
 }
 
 void PictureTarget::read(std::span<std::uint8_t> rgba) const {

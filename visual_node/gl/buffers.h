@@ -70,17 +70,20 @@ class ReliefTexture {
   Eigen::Vector2f size_m_;
 };
 
-// The picture: sRGB colour and depth. Colour is encoded on writing, so that light is added in linear space.
+// A picture: sRGB colour and depth. Colour is encoded on writing, so that light is added in linear space.
 class PictureTarget {
  public:
   PictureTarget(int width, int height);
   ~PictureTarget();
   PictureTarget(const PictureTarget&) = delete;
   PictureTarget& operator=(const PictureTarget&) = delete;
-  void bind() const;
+  // Draws into all of it, or into so many pixels at the lower left.
+  void bind() const { bind(width_, height_); }
+  void bind(int width, int height) const;
   // sRGB bytes, 4 a pixel, the lowest row first. Waits for the picture to be finished.
   void read(std::span<std::uint8_t> rgba) const;
   unsigned framebuffer() const { return framebuffer_; }
+  unsigned texture() const { return colour_; }
   int width() const { return width_; }
   int height() const { return height_; }
 

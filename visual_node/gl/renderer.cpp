@@ -3,6 +3,8 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace tactus::visual {
 namespace {
@@ -42,52 +44,86 @@ std::unique_ptr<Program> surface_program(const Lighting& lighting, bool relief) 
 
 void enable(unsigned what, bool on) { on ? glEnable(what) : glDisable(what); }
 
+int scaled(int pixels, double scale) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); }
+
+// Small pictures are scaled up as they are stored where the driver can read sRGB without decoding it.
+bool reads_encoded() {
+  static const bool can = epoxy_has_gl_extension("GL_EXT_texture_sRGB_decode");
+  return can;
+}
+
 }  // namespace
 
-Renderer::Renderer(int width, int height, int shadow_size) : picture_(width, height), shadow_size_(shadow_size) {
+Renderer::Renderer(int width, int height, int shadow_size)
+    : picture_(width, height), small_(width, height), shadow_size_(shadow_size) {
   load({}, {});
+}
+
+Renderer::Surfaces Renderer::surfaces(const Lighting& lighting, bool reliefs) {
+  return {surface_program(lighting, false), reliefs ? surface_program(lighting, true) : nullptr};
 }
 
 void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& lighting,
                     const std::vector<Relief>& reliefs) {
   const bool shadows = lighting.shadow_light >= 0;
   shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_) : nullptr;
-  surface_ = surface_program(lighting, false);
-  rough_surface_ = reliefs.empty() ? nullptr : surface_program(lighting, true);
+  coarse_shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_ / 2) : nullptr;
+  Lighting unshadowed = lighting;
+  unshadowed.shadow_light = -1;
+  plain_ = surfaces(unshadowed, !reliefs.empty());
+  shadowed_ = shadows ? surfaces(lighting, !reliefs.empty()) : Surfaces{};
   reliefs_.clear();
   for (const Relief& r : reliefs) reliefs_.push_back(std::make_unique<ReliefTexture>(r));
   geometries_.clear();
   for (const Triangles& t : geometries) geometries_.push_back(std::make_unique<GeometryBuffer>(t));
-  warm_up(lighting);
 }
 
-// Drivers compile a program when it first draws: a software renderer took 0.2 s for the first flash.
-void Renderer::warm_up(const Lighting& lighting) {
-  DrawList list;
-  list.lighting = lighting;
-  list.instances.resize(1);
-  list.opaque = list.translucent = {{.geometry = 0, .first = 0, .count = 1},
-                                    {.geometry = 0, .first = 0, .count = 1, .relief = 0}};
+// Drivers compile a program when it first draws, and again for what they first meet in a picture or in the one
+// after it: a software renderer took 0.2 s for the first flash and 0.1 s for the second picture.
+void Renderer::warm_up(DrawList list) {
+  const auto first = static_cast<int>(list.instances.size());
+  list.instances.emplace_back();
+  for (auto* batches : {&list.opaque, &list.translucent})
+    for (const int relief : {-1, 0})
+      batches->push_back({.geometry = 0, .first = first, .count = 1, .casts_shadow = true, .relief = relief});
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
-  draw(list);
-  wait();
+  const Quality before = quality_;
+  // With and without shadows twice; then what is left, which has no programs of its own.
+  const Quality &best = kQualities.front(), &last = kQualities.back();
+  std::vector<Quality> kinds{best, last, best, last, degraded(best, 0.5)};
+  kinds.insert(kinds.end(), kQualities.begin() + 1, kQualities.end() - 1);
+  for (const Quality& q : kinds) {
+    quality_ = q;
+    draw_scene(list);
+    draw_over(list);
+    wait();
+  }
+  quality_ = before;
 }
 
-void Renderer::draw(const DrawList& list) {
+const ShadowTarget* Renderer::shadow() const {
+  return quality_.shadow_divisor == 0 ? nullptr : (quality_.shadow_divisor == 1 ? shadow_ : coarse_shadow_).get();
+}
+
+void Renderer::draw_scene(const DrawList& list) {
   instances_.write(list.instances.data(), list.instances.size() * sizeof(Instance));
-  if (shadow_) draw_shadow(list);
+  surfaces_ = shadow() ? &shadowed_ : &plain_;
+  if (shadow()) draw_shadow(list, *shadow());
   draw_surfaces(list);
+  if (quality_.scale < 1 && !quality_.coarse) scale_up();
+}
 
-  glDisable(GL_DEPTH_TEST);
-  glBlendFunc(GL_ONE, GL_ONE);
-  glow_.use();
-  glow_.set("clip_from_world", list.camera.clip_from_world());
-  glow_.set("exposure", list.lighting.exposure);
-  glows_.draw(list.glows.data(), list.glows.size());
-
+void Renderer::draw_over(const DrawList& list) {
+  if (quality_.coarse)
+    bind_scene();
+  else
+    picture_.bind();
+  draw_glows(list);
+  if (quality_.coarse) scale_up();
   glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
+  glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   overlay_.use();
   overlay_.set("size",
@@ -96,8 +132,48 @@ void Renderer::draw(const DrawList& list) {
   glDisable(GL_BLEND);
 }
 
-void Renderer::draw_shadow(const DrawList& list) {
-  shadow_->bind();
+void Renderer::draw_glows(const DrawList& list) {
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glow_.use();
+  glow_.set("clip_from_world", list.camera.clip_from_world());
+  glow_.set("exposure", list.lighting.exposure);
+  glows_.draw(list.glows.data(), list.glows.size());
+}
+
+void Renderer::bind_scene() const {
+  if (quality_.scale < 1)
+    small_.bind(scaled(small_.width(), quality_.scale), scaled(small_.height(), quality_.scale));
+  else
+    picture_.bind();
+}
+
+void Renderer::scale_up() {
+  const auto width = static_cast<float>(small_.width()), height = static_cast<float>(small_.height());
+  const auto used_width = static_cast<float>(scaled(small_.width(), quality_.scale)),
+             used_height = static_cast<float>(scaled(small_.height(), quality_.scale));
+  picture_.bind();
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  enable(GL_FRAMEBUFFER_SRGB, !reads_encoded());
+  upscale_.use();
+  upscale_.set("small", 0);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, small_.texture());
+  if (reads_encoded()) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SRGB_DECODE_EXT, GL_SKIP_DECODE_EXT);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, quality_.coarse ? GL_NEAREST : GL_LINEAR);
+  // What is used of the texture, and its outermost texels' middles: beyond lies what other pictures have left.
+  const std::array<float, 8> instance{
+      used_width / width,          used_height / height,         0, 0, 0.5f / width, 0.5f / height,
+      (used_width - 0.5f) / width, (used_height - 0.5f) / height};
+  scaled_.draw(instance.data(), 1);
+}
+
+void Renderer::draw_shadow(const DrawList& list, const ShadowTarget& shadow) {
+  shadow.bind();
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -113,7 +189,7 @@ void Renderer::draw_shadow(const DrawList& list) {
 }
 
 void Renderer::draw_surfaces(const DrawList& list) {
-  picture_.bind();
+  bind_scene();
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
@@ -127,11 +203,11 @@ void Renderer::draw_surfaces(const DrawList& list) {
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(lights.size() * sizeof(Light)), lights.data(),
                GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights_.id());
-  describe(*surface_, list);
-  if (rough_surface_) describe(*rough_surface_, list);
-  if (shadow_) {
+  describe(*surfaces_->smooth, list);
+  if (surfaces_->rough) describe(*surfaces_->rough, list);
+  if (shadow()) {
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, shadow_->texture());
+    glBindTexture(GL_TEXTURE_2D, shadow()->texture());
   }
   glDisable(GL_BLEND);
   for (const Batch& b : list.opaque) draw_surface(b);
@@ -156,12 +232,12 @@ void Renderer::describe(const Program& surface, const DrawList& list) const {
 void Renderer::draw_surface(const Batch& batch) {
   if (batch.relief >= 0 && batch.relief < static_cast<int>(reliefs_.size())) {
     const ReliefTexture& relief = *reliefs_[static_cast<std::size_t>(batch.relief)];
-    rough_surface_->use();
-    rough_surface_->set("relief_size", relief.size_m());
+    surfaces_->rough->use();
+    surfaces_->rough->set("relief_size", relief.size_m());
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_2D, relief.id());
   } else {
-    surface_->use();
+    surfaces_->smooth->use();
   }
   draw_batch(batch);
 }

@@ -8,6 +8,7 @@
 #include "visual_node/gl/buffers.h"
 #include "visual_node/gl/program.h"
 #include "visual_node/scene_view/draw_list.h"
+#include "visual_node/scene_view/quality.h"
 
 namespace tactus::visual {
 
@@ -16,34 +17,48 @@ class Renderer {
   // Throws std::runtime_error when a shader does not compile.
   Renderer(int width, int height, int shadow_size);
 
-  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are. Takes a tenth of a
-  // second on a software renderer; the first picture after it takes no longer than others.
+  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are.
   void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
             const std::vector<Relief>& reliefs = {});
-  // Gives the work to the device and returns.
-  void draw(const DrawList& list);
-  // Waits until the device has finished the picture.
+  // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than others,
+  // whatever the quality. Takes half a second on a software renderer.
+  void warm_up(DrawList list);
+  // How the next pictures are drawn.
+  void set_quality(const Quality& quality) { quality_ = quality; }
+  // A picture is drawn in two parts, so that what has just become known can still be in it: the surfaces, which
+  // take nearly all of the time, and then flashes and overlay. Each gives the work to the device and returns.
+  void draw_scene(const DrawList& list);
+  void draw_over(const DrawList& list);
+  // Waits until the device has finished what it was given.
   void wait() const;
   const PictureTarget& picture() const { return picture_; }
 
  private:
-  void warm_up(const Lighting& lighting);
-  void draw_shadow(const DrawList& list);
+  struct Surfaces {                          // programs
+    std::unique_ptr<Program> smooth, rough;  // rough is null when no material has a relief
+  };
+  static Surfaces surfaces(const Lighting& lighting, bool reliefs);
+  const ShadowTarget* shadow() const;
+  void bind_scene() const;
+  void draw_shadow(const DrawList& list, const ShadowTarget& shadow);
   void draw_surfaces(const DrawList& list);
+  void draw_glows(const DrawList& list);
+  void scale_up();
   void describe(const Program& surface, const DrawList& list) const;
   void draw_surface(const Batch& batch);
   void draw_batch(const Batch& batch);
 
-  PictureTarget picture_;
+  PictureTarget picture_, small_;  // small_ is drawn into at less than full scale
   int shadow_size_;
-  std::unique_ptr<ShadowTarget> shadow_;  // null: no lamp casts one
-  std::unique_ptr<Program> surface_;
-  std::unique_ptr<Program> rough_surface_;  // null: no material has a relief
-  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"};
+  Quality quality_;
+  std::unique_ptr<ShadowTarget> shadow_, coarse_shadow_;  // null: no lamp casts one
+  Surfaces shadowed_, plain_;
+  const Surfaces* surfaces_ = nullptr;  // of the picture being drawn
+  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
-  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)};
+  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2};
 };
 
 }  // namespace tactus::visual

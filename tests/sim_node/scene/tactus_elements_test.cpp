@@ -1,6 +1,7 @@
 // Our own elements: materials, tools, settings.
 #include "scene_file.h"
 #include "sim_node/scene/materials.h"
+#include "sync/degradation/profile.h"
 
 using namespace tactus;
 using namespace tactus::sim;
@@ -161,4 +162,33 @@ TEST_CASE("A node that is not built here is warned of and passed on: a sixth sen
   CHECK(w.settings[0].node == "smell_node");
   REQUIRE(file.warnings.size() == 1);
   CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:4: /sdf/world[@name=\"w\"]/tactus:smell_node "));
+}
+
+TEST_CASE("A scene brings a degradation profile, and a wrong one is refused with its line") {
+  const WorldDef w = load("<tactus:profile name='late &amp; sparse' seed='7'>\n"
+                          "<tactus:degrade modality='audio' delay='40ms' jitter='3ms normal'/>\n"
+                          "<tactus:degrade modality='visual' rate='5Hz'/></tactus:profile>");
+  const sync::Profile profile = sync::parse_profile(w.profile, "scene");
+  CHECK(profile.name == "late & sparse");
+  CHECK(profile.seed == 7);
+  REQUIRE(profile.rules.size() == 2);
+  CHECK(profile.rules[0].delay->delay_s == Approx(0.04));
+  CHECK(profile.rules[1].modality == "visual");
+  CHECK(load("").profile.empty());
+
+  const auto at = [](const std::string& rule) { return refusal("<tactus:profile>\n" + rule + "\n</tactus:profile>"); };
+  CHECK_THAT(at("<tactus:degrade modality='audio' delay='40kg'/>"), Catch::Contains("delay=\"40kg\""));
+  CHECK_THAT(at("<tactus:degrade delay='40ms'/>"), Catch::Contains("needs a modality"));
+  CHECK_THAT(at("<tactus:worsen modality='audio'/>"), Catch::Contains("tactus:degrade"));
+  CHECK_THAT(refusal("<tactus:profile colour='red'/>"), Catch::Contains("colour"));
+  CHECK_THAT(refusal("<tactus:profile/><tactus:profile/>"), Catch::Contains("second profile"));
+  CHECK_THAT(refusal("<tactus:profile file='none.xml'/>"), Catch::Contains("none.xml"));
+}
+
+TEST_CASE("A scene names the file of its profile") {
+  SceneFile file(world("<tactus:profile file='late.xml'/>"));
+  file.write("late.xml", "<profile name='late'><degrade modality='audio' delay='40ms'/></profile>");
+  CHECK(sync::parse_profile(file.load().profile, "late.xml").name == "late");
+  file.write("late.xml", "<profile><degrade/></profile>");
+  CHECK_THAT(file.refusal(), Catch::Contains("late.xml:1"));
 }

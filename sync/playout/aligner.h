@@ -1,0 +1,31 @@
+// How long a sense needs, from an event to the earliest instant at which it could be presented, estimated from how long it
+// needed for the events before: the delay under which (nearly) all events of that sense come in time. Pure.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "sync/time.h"
+
+namespace tactus::sync {
+
+enum class AlignerKind : std::uint8_t { kFixed, kQuantile, kMovingAverage, kVirtualTime };
+
+class Aligner {
+ public:
+  virtual ~Aligner() = default;
+  // An event needed so long.
+  virtual void add(Nanoseconds needed) = 0;
+  // The delay for the next event; 0 before the first one.
+  virtual Nanoseconds delay() const = 0;
+};
+
+// fixed: the delay of kFixed.
+std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed);
+
+// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other word.
+AlignerKind aligner_named(const std::string& word);
+const char* name_of(AlignerKind kind);
+
+}  // namespace tactus::sync

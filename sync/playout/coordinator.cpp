@@ -1,0 +1,98 @@
+#include "sync/playout/coordinator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace tactus::sync {
+namespace {
+
+// Of a request and of what another coordinator says; both are within range by lcmtypes/valid.h.
+PlayoutPlan plan_of(const auto& m) {
+  PlayoutPlan plan;
+  plan.policy = static_cast<Policy>(m.policy);
+  plan.aligner = static_cast<AlignerKind>(m.aligner);
+  plan.base = Nanoseconds(m.base_ns);
+  plan.budget = Nanoseconds(m.budget_ns);
+  for (const playout_entry_t& e : m.entries)
+    if (e.soa_ns != 0) plan.soa[e.modality] = Nanoseconds(e.soa_ns);
+  return plan;
+}
+
+// The delays come from what the senses were heard to need.
+bool estimated(const PlayoutPlan& plan) {
+  return (plan.policy == Policy::kAligned || plan.policy == Policy::kLocalHapticFirst) && plan.aligner != AlignerKind::kFixed;
+}
+
+}  // namespace
+
+PlayoutCoordinator::PlayoutCoordinator(std::int64_t own_clock, PlayoutPlan plan)
+    : own_clock_(own_clock), plan_(std::move(plan)), needs_(plan_) {}
+
+void PlayoutCoordinator::put_in_force(std::int64_t generation, PlayoutPlan plan) {
+  generation_ = generation;
+  plan_ = std::move(plan);
+  needs_.set_plan(plan_);
+  said_.clear();
+  next_ = {};
+}
+
+bool PlayoutCoordinator::take(const playout_request_t& m) {
+  if (m.generation <= generation_) return false;
+  PlayoutPlan plan = plan_of(m);
+  try {
+    plan.check();
+  } catch (const std::invalid_argument&) {
+    return false;  // who asks has checked it: this one is forged
+  }
+  put_in_force(m.generation, std::move(plan));
+  return true;
+}
+
+void PlayoutCoordinator::take(const playout_t& m, HostTime now) {
+  if (m.header.clock == own_clock_) return;
+  if (m.header.clock < own_clock_) heard_ = now;
+  if (m.generation > generation_) put_in_force(m.generation, plan_of(m));
+}
+
+Nanoseconds PlayoutCoordinator::settled(const std::string& modality, Nanoseconds delay) {
+  const auto [it, first] = said_.try_emplace(modality, delay);
+  const Nanoseconds change = delay - it->second;
+  if (!estimated(plan_) || change > Nanoseconds(0) || change < -kSlack) it->second = delay;
+  return it->second;
+}
+
+std::optional<playout_t> PlayoutCoordinator::due(HostTime now) {
+  if (now < next_ || (heard_ && now - *heard_ < kSilent)) return std::nullopt;
+  next_ = now - next_ < kPeriod ? next_ + kPeriod : now + kPeriod;
+  playout_t m{};
+  m.header.sim_time_ns = -1;
+  m.generation = generation_;
+  m.policy = static_cast<std::int8_t>(plan_.policy);
+  m.aligner = static_cast<std::int8_t>(plan_.aligner);
+  m.base_ns = plan_.base.count();
+  m.budget_ns = plan_.budget.count();
+  const auto needed = needs_.all();
+  // Before anything is known of any sense, each keeps its own delay.
+  const bool known = std::any_of(needed.begin(), needed.end(), [&](const auto& n) { return needs_.needed(n.first).has_value(); });
+  // The turns of a loop whose rate changed would begin elsewhere: only a real change is followed.
+  const double rate_Hz = lockstep_rate_Hz(plan_, needed);
+  if (rate_Hz == 0 || std::abs(rate_Hz - lockstep_Hz_) > kLockstepSlack * lockstep_Hz_) lockstep_Hz_ = rate_Hz;
+  m.lockstep_Hz = lockstep_Hz_;
+  for (const auto& [name, delay] : playout_delays(plan_, needed)) {
+    if (estimated(plan_) && !known) break;
+    playout_entry_t e{};
+    e.modality = name;
+    e.delay_ns = settled(name, delay).count();
+    const auto soa = plan_.soa.find(name);
+    e.soa_ns = soa == plan_.soa.end() ? 0 : soa->second.count();
+    const auto need = needs_.needed(name);
+    e.needs_ns = need ? std::min(need->count(), std::int64_t{60'000'000'000}) : -1;
+    m.entries.push_back(std::move(e));
+  }
+  m.count = static_cast<std::int32_t>(m.entries.size());
+  return m;
+}
+
+}  // namespace tactus::sync

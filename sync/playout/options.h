@@ -1,0 +1,23 @@
+// The policy of presentation on a command line: of sync_node and of the program that changes it while the cluster runs.
+#pragma once
+
+#include <string>
+
+#include "sync/playout/policy.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tactus::sync {
+
+struct PlayoutOptions {
+  std::string policy, aligner, base, budget, soa;  // empty: not given
+
+  // named: the policy is an option, --policy; else it is the program's first word.
+  void add_to(CLI::App& app, bool named);
+  // An asynchrony without a policy means experiment. Throws std::invalid_argument with one sentence.
+  PlayoutPlan plan() const;
+};
+
+}  // namespace tactus::sync

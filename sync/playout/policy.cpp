@@ -1,0 +1,112 @@
+#include "sync/playout/policy.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "sync/settings.h"
+
+namespace tactus::sync {
+namespace {
+
+constexpr std::array<const char*, 5> kNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
+constexpr double kLongest_s = 60;
+// The order of the senses in the loop of I-Touch (Pocheville 2005); what it did not have comes after them.
+constexpr std::array<const char*, 3> kSerial{"haptic", "audio", "visual"};
+
+std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& needed) {
+  std::vector<std::string> order;
+  for (const char* name : kSerial)
+    if (needed.contains(name)) order.emplace_back(name);
+  for (const auto& [name, time] : needed)
+    if (std::find(kSerial.begin(), kSerial.end(), name) == kSerial.end()) order.push_back(name);
+  return order;
+}
+
+// What the slowest needs that the budget allows to wait for.
+Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed) {
+  if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
+  Nanoseconds most{0};
+  for (const auto& [name, time] : needed)
+    if (time <= plan.budget) most = std::max(most, time);
+  return most;
+}
+
+}  // namespace
+
+Policy policy_named(const std::string& word) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (word == kNames[i]) return static_cast<Policy>(i);
+  throw std::invalid_argument("there is no policy \"" + word +
+                              "\"; choose asap, aligned, experiment, local_haptic_first or itouch2005");
+}
+
+const char* name_of(Policy policy) { return kNames[static_cast<std::size_t>(policy)]; }
+
+void PlayoutPlan::check() const {
+  if (policy != Policy::kExperiment && !soa.empty())
+    throw std::invalid_argument("asynchronies are for the policy experiment; say so, or leave them out");
+  for (const auto& [name, asynchrony] : soa)
+    if (base + asynchrony < Nanoseconds(0))
+      throw std::invalid_argument("the asynchrony of " + name + " reaches before the event; choose a base of at least " +
+                                  std::to_string(-asynchrony.count() / 1'000'000) + " ms");
+}
+
+Nanoseconds parse_duration(const std::string& text) {
+  const double s = parse_quantity(text, "s");
+  if (s < 0 || s > kLongest_s) throw std::invalid_argument("\"" + text + "\" does not lie between 0 and 60 s");
+  return from_seconds(s);
+}
+
+std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
+  std::map<std::string, Nanoseconds> soa;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const auto equals = part.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw std::invalid_argument("\"" + part + "\" is no asynchrony; write one as visual=-50ms");
+    const double s = parse_quantity(part.substr(equals + 1), "s");
+    if (std::abs(s) > kLongest_s) throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
+    soa[part.substr(0, equals)] = from_seconds(s);
+  }
+  return soa;
+}
+
+std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
+                                                  const std::map<std::string, Nanoseconds>& needed) {
+  std::map<std::string, Nanoseconds> delays;
+  for (const auto& [name, time] : needed) delays[name] = Nanoseconds(0);
+  switch (plan.policy) {
+    case Policy::kAsap: break;
+    case Policy::kAligned:
+    case Policy::kLocalHapticFirst: {
+      auto others = needed;
+      if (plan.policy == Policy::kLocalHapticFirst) others.erase("haptic");
+      for (const auto& [name, time] : others) delays[name] = common_delay(plan, others);
+      break;
+    }
+    case Policy::kExperiment:
+      for (const auto& [name, asynchrony] : plan.soa) delays[name] = Nanoseconds(0);
+      for (auto& [name, delay] : delays) {
+        const auto asked = plan.soa.find(name);
+        delay = std::max(Nanoseconds(0), plan.base + (asked == plan.soa.end() ? Nanoseconds(0) : asked->second));
+      }
+      break;
+    case Policy::kItouch2005: {
+      Nanoseconds sum{0};
+      for (const std::string& name : serial_order(needed)) delays[name] = sum += needed.at(name);
+      break;
+    }
+  }
+  return delays;
+}
+
+double lockstep_rate_Hz(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed) {
+  Nanoseconds sum{0};
+  for (const auto& [name, time] : needed) sum += time;
+  return plan.policy == Policy::kItouch2005 && sum > Nanoseconds(0) ? 1 / to_seconds(sum) : 0;
+}
+
+}  // namespace tactus::sync

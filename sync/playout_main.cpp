@@ -1,0 +1,80 @@
+// playout: asks the running cluster for another policy of presentation, and says when each sense presents from now on.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "sync/bus.h"
+#include "sync/identity.h"
+#include "sync/node.h"
+#include "sync/pacing.h"
+#include "sync/playout/exchange.h"
+#include "sync/playout/options.h"
+#include "sync/printable.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 100 ms
+constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void print(const playout_t& m) {
+  std::printf("policy %s, aligner %s\n", name_of(static_cast<sync::Policy>(m.policy)),
+              name_of(static_cast<sync::AlignerKind>(m.aligner)));
+  if (m.lockstep_Hz > 0) std::printf("one loop for all senses, %.1f Hz\n", m.lockstep_Hz);
+  std::printf("%-16s %10s %10s\n", "sense", "delay/ms", "needs/ms");
+  for (const playout_entry_t& e : m.entries) {
+    std::printf("%-16s %10.1f ", sync::printable(e.modality).c_str(), static_cast<double>(e.delay_ns) * 1e-6);
+    if (e.needs_ns < 0)
+      std::printf("%10s\n", "-");
+    else
+      std::printf("%10.1f%s\n", static_cast<double>(e.needs_ns) * 1e-6,
+                  e.needs_ns > e.delay_ns && e.delay_ns > 0 ? "  comes later than asked" : "");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Asks the running cluster for another policy of presentation, or with no argument says which is in force.");
+  sync::BusOptions bus_options;
+  std::int64_t run_id = 1;
+  sync::PlayoutOptions options;
+  options.add_to(app, false);
+  app.add_option("--port", bus_options.port, "UDP port of the bus")
+      ->envname("TACTUS_PORT")
+      ->check(CLI::Range(1, 65534))
+      ->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  sync::parse_or_exit(app, "playout", argc, argv);
+  const sync::PlayoutPlan plan = options.plan();
+  const bool asks = !options.policy.empty() || !options.soa.empty();
+  if (!asks && argc > 1 && !(options.aligner + options.base + options.budget).empty())
+    throw std::invalid_argument("name the policy too; see playout --help");
+
+  sync::Bus bus(sync::Identity::fresh("playout", run_id), bus_options);
+  auto& playouts = bus.queue<playout_t>(channels::kPlayout, 64);
+  playout_request_t request = sync::request_for(plan, realtime_ns());
+  const sync::HostTime begin = sync::host_now();
+  for (sync::HostTime next = begin; sync::host_now() < begin + kPatience;) {
+    if (asks && sync::host_now() >= next) {
+      bus.publish(channels::kPlayoutRequest, request);
+      next += kRepeat;
+    }
+    bus.wait(kRepeat / 4);
+    bus.drain(sync::host_now());
+    while (const auto m = playouts.pop()) {
+      if (m->message.header.run_id != run_id || (asks && m->message.generation != request.generation)) continue;
+      print(m->message);
+      return 0;
+    }
+  }
+  throw std::runtime_error("no sync_node answers on this bus; run it inside the cluster: scripts/playout");
+} catch (const std::exception& e) {
+  return tactus::sync::fail("playout", e);
+}

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/audio_node/bench.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using namespace tactus::audio::test;
+
+namespace {
+
+constexpr int kPeriod = 128;
+constexpr std::size_t kFade = 240;  // 5 ms
+
+// A body of `modes` modes, 200 Hz apart.
+StrikeSide body(std::int64_t voice, int modes, float impulse) {
+  StrikeSide side = strike_of(0, voice, 200, 2, 0, impulse).sides[0];
+  for (int i = 0; i < modes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const StrikeSide one = strike_of(0, voice, 200 * (i + 1), 2, 0).sides[0];
+    side.resonators.pole_re[k] = one.resonators.pole_re[0];
+    side.resonators.pole_im[k] = one.resonators.pole_im[0];
+    side.resonators.response[k] = 1.f / static_cast<float>(i + 1);
+  }
+  side.resonators.count = modes;
+  return side;
+}
+
+struct Sounding {
+  Voices voices;
+  std::vector<float> left = {};
+
+  void render(int blocks) {
+    for (int b = 0; b < blocks; ++b) {
+      std::vector<float> mix(2 * kMaxBlock);
+      voices.render(mix.data(), kMaxBlock);
+      for (std::size_t n = 0; n < kMaxBlock; ++n) left.push_back(mix[2 * n]);
+    }
+  }
+  float largest_step(std::size_t from) const {
+    float most = 0;
+    for (std::size_t n = from; n < left.size(); ++n) most = std::max(most, std::abs(left[n] - left[n - 1]));
+    return most;
+  }
+};
+
+// Blocks take a share of their time that each step of quality halves.
+int run(Bench& bench, double share, int blocks) {
+  for (int b = 0; b < blocks; ++b) {
+    const double time_s = kPeriod / kRate;
+    bench.used = sync::from_seconds(share * time_s / std::pow(2, bench.crossing.quality.load()));
+    bench.play(kPeriod);
+  }
+  return bench.crossing.quality.load();
+}
+
+constexpr int kTwoSeconds = static_cast<int>(2 * kRate) / kPeriod;
+
+}  // namespace
+
+TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full again when they long do not") {
+  auto bench = std::make_unique<Bench>();
+  CHECK(run(*bench, 0.4, kTwoSeconds) == 0);
+  CHECK(run(*bench, 0.7, kTwoSeconds / 2) == 1);
+  CHECK(run(*bench, 1.5, kTwoSeconds / 2) == 2);
+  CHECK(run(*bench, 0.3, kTwoSeconds / 2) == 2);
+  CHECK(run(*bench, 0.3, 10 * kTwoSeconds) == 0);
+}
+
+TEST_CASE("Sound whose quality is held does not heed the time") {
+  auto bench = std::make_unique<Bench>();
+  REQUIRE(bench->crossing.orders.push(Orders{{}, 1}));
+  CHECK(run(*bench, 3, 100) == 1);
+  CHECK(run(*bench, 0.01, 10 * kTwoSeconds) == 1);
+  REQUIRE(bench->crossing.orders.push(Orders{{}, -1}));
+  run(*bench, 0.3, 1);
+  CHECK(bench->crossing.quality.load() == 0);
+}
+
+TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") {
+  Sounding full{Voices(4, kRate)}, less{Voices(4, kRate)};
+  Sounding low{Voices(4, kRate)};  // of the lowest eight of 32 alone
+  full.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
+  less.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
+  low.voices.strike(body(1, 8, 0.1f), 1, 20, 0);
+  for (Sounding* s : {&full, &less, &low}) s->render(20);
+  CHECK(less.left == full.left);
+  less.voices.set_limits({4, 4});
+  for (Sounding* s : {&full, &less, &low}) s->render(20);
+  // The sums are of the same modes in the same order: equal to the bit once the rest has gone.
+  CHECK(std::equal(less.left.begin() + 20 * kMaxBlock + kFade, less.left.end(),
+                   low.left.begin() + 20 * kMaxBlock + kFade));
+  CHECK(less.left.back() != full.left.back());
+  // No step is larger than those of the sound itself and of its share that fades: sum of 0.1 / k over 5 ms.
+  const float own = full.largest_step(20 * kMaxBlock);
+  CHECK(less.largest_step(20 * kMaxBlock) <= own + 0.1f * 4 / kFade);
+}
+
+TEST_CASE("Modes that were cut come back with the next strike, and without a click") {
+  Sounding s{Voices(4, kRate)}, low{Voices(4, kRate)}, fresh{Voices(4, kRate)}, fresh_low{Voices(4, kRate)};
+  s.voices.set_limits({4, 4});
+  s.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
+  low.voices.strike(body(1, 8, 0.1f), 1, 20, 0);
+  s.render(20), low.render(20);
+  s.voices.set_limits({4, 1});
+  s.render(20), low.render(20);
+  CHECK(s.left == low.left);
+  for (Sounding* one : {&s, &fresh}) one->voices.strike(body(1, 32, 0.1f), 1, 20, 0), one->render(1);
+  for (Sounding* one : {&low, &fresh_low}) one->voices.strike(body(1, 8, 0.1f), 1, 20, 0), one->render(1);
+  const double upper = fresh.voices.energy() - fresh_low.voices.energy();
+  REQUIRE(upper > 0);
+  CHECK(s.voices.energy() - low.voices.energy() == Approx(upper).epsilon(1e-3));
+}
+
+TEST_CASE("When there are too many voices the quietest fade, the others go on") {
+  const std::vector<float> impulses{0.04f, 0.01f, 0.03f, 0.02f, 0.05f};
+  Sounding s{Voices(5, kRate)}, loud{Voices(5, kRate)};
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    const StrikeSide side =
+        strike_of(0, static_cast<std::int64_t>(i), 200 + 31 * static_cast<double>(i), 2, 0, impulses[i]).sides[0];
+    s.voices.strike(side, 1, 1, 0);
+    if (impulses[i] > 0.025f) loud.voices.strike(side, 1, 1, 0);
+  }
+  s.render(10), loud.render(10);
+  CHECK(s.voices.active() == 5);
+  s.voices.set_limits({3, 1});
+  s.render(10), loud.render(10);
+  CHECK(s.voices.active() == 3);
+  for (std::size_t n = 10 * kMaxBlock + kFade; n < s.left.size(); ++n) CHECK(s.left[n] == loud.left[n]);
+  // Each moves by 2 pi f / rate of its amplitude a sample, of 0.15 in all, at 324 Hz at the most; 0.03 of it
+  // fades.
+  CHECK(s.largest_step(10 * kMaxBlock) < 0.15f * 0.0425f + 0.03f / kFade);
+}
+
+TEST_CASE("A strike that finds all voices in use takes the quietest, which fades while it begins") {
+  Sounding s{Voices(2, kRate)};
+  s.voices.strike(strike_of(0, 1, 300, 2, 0, 0.1f).sides[0], 1, 1, 0);
+  s.voices.strike(strike_of(0, 2, 200, 2, 0, 0.05f).sides[0], 1, 1, 0);
+  s.render(10);
+  // A long pulse, so that it is no jump by itself: slower than its own period it leaves little.
+  s.voices.strike(strike_of(0, 3, 250, 2, 0, 0.1f).sides[0], 1, 48, 0);
+  CHECK(s.voices.active() == 3);
+  s.render(10);
+  CHECK(s.voices.active() == 2);
+  // 0.1 at 300 Hz, 0.05 at 200 Hz which fades, and 0.1 within half of 48 samples.
+  const float most = 0.1f * 0.0393f + 0.05f * 0.0262f + 0.05f / kFade + 0.1f * 2 / 48 + 0.1f * 0.0327f;
+  CHECK(s.largest_step(10 * kMaxBlock) < most);
+}
+
+TEST_CASE("However many strikes come at once, the newest sound and the node stays within its voices") {
+  Sounding s{Voices(4, kRate)};
+  for (int i = 0; i < 500; ++i) s.voices.strike(strike_of(0, i, 300, 2, 0, 1e-3f).sides[0], 1, 1, 0);
+  s.render(1);
+  CHECK(s.voices.active() <= 4 + 16);
+  s.render(10);
+  CHECK(s.voices.active() == 4);
+}

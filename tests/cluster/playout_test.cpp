@@ -1,0 +1,73 @@
+// When the senses of a running cluster present: by policy, changed while it runs, kept when nobody says so any more.
+#include <cstdlib>
+
+#include "tests/cluster/profiles.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+// Presented in a after b, ms, of hits of the tool that neither had reported before; touch by its transient.
+std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b, const EventsHeard& before) {
+  std::vector<double> out;
+  const auto of_a = ear.presented().find(a), of_b = ear.presented().find(b);
+  if (of_a == ear.presented().end() || of_b == ear.presented().end()) return out;
+  const auto known = before.find(a);
+  for (const auto& [id, r] : of_a->second) {
+    const auto other = of_b->second.find(id);
+    if (other == of_b->second.end() || r.presented_ns < 0 || other->second.presented_ns < 0) continue;
+    if (known != before.end() && known->second.contains(id)) continue;
+    out.push_back(static_cast<double>(r.presented_ns - other->second.presented_ns) * 1e-6);
+  }
+  return out;
+}
+
+// Of events of the next few seconds, once the delays have been slewed in.
+double settled_asynchrony_ms(Running& c, const std::string& a, const std::string& b, double slewed_s) {
+  c.ear.listen(slewed_s);
+  const EventsHeard before = heard_of(c.ear);
+  CHECK(c.ear.wait_until([&] { return asynchronies_ms(c.ear, a, b, before).size() >= 5; }, kPatience_s));
+  return median(asynchronies_ms(c.ear, a, b, before));
+}
+
+}  // namespace
+
+TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs") {
+  Running c;
+  c.start();
+  // 100 ms of a base of 200 ms come at 5 % of the time: within 4 s and a half of it.
+  CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") != std::string::npos);
+  const double apart = settled_asynchrony_ms(c, "visual", "audio", 6);
+  CHECK(apart > 60);
+  CHECK(apart < 240);
+  ask_for(c, {"experiment", "--base", "200ms"});
+  const double together = settled_asynchrony_ms(c, "visual", "audio", 4);
+  CHECK(std::abs(together) < 60);
+  CHECK(c.all_live(kNodes));
+}
+
+TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for") {
+  Running c;
+  c.start();
+  ask_for(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
+  const double before = settled_asynchrony_ms(c, "visual", "audio", 6);
+  c.processes.kill("sync_node");
+  const double alone = settled_asynchrony_ms(c, "visual", "audio", 1);
+  CHECK(alone > before / 2);
+  CHECK(alone < before * 2);
+  c.processes.start("sync_node", {});
+  CHECK(c.ear.wait_until([&] { return c.lives("sync_node"); }, kPatience_s));
+  const double again = settled_asynchrony_ms(c, "visual", "audio", 2);
+  CHECK(again > before / 2);
+  CHECK(again < before * 2);
+  CHECK(ask_for(c, {}).find("experiment") != std::string::npos);
+}
+
+TEST_CASE("In the serial loop of 2005 all senses go on, one after the other") {
+  Running c;
+  c.start();
+  CHECK(ask_for(c, {"itouch2005"}).find("one loop") != std::string::npos);
+  CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
+  CHECK(c.all_live(kNodes));
+}

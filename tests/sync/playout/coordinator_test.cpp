@@ -1,0 +1,158 @@
+#include "sync/playout/coordinator.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "sync/playout/exchange.h"
+#include "sync/playout/lockstep.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr Nanoseconds kMs{1'000'000};
+HostTime at(int ms) { return host_time(9'000'000'000) + ms * kMs; }
+
+PlayoutPlan plan(Policy policy = Policy::kLocalHapticFirst) {
+  PlayoutPlan p;
+  p.policy = policy;
+  return p;
+}
+
+std::map<std::string, std::int64_t> delays_ms(const std::optional<playout_t>& m) {
+  std::map<std::string, std::int64_t> out;
+  if (m)
+    for (const playout_entry_t& e : m->entries) out[e.modality] = e.delay_ns / kMs.count();
+  return out;
+}
+
+void heard(PlayoutCoordinator& c, const std::string& sense, int ms, int events = 40) {
+  for (int i = 0; i < events; ++i) c.needs().add(sense, ms * kMs);
+}
+
+using Delays = std::map<std::string, std::int64_t>;
+
+}  // namespace
+
+TEST_CASE("A coordinator says ten times a second when each sense presents") {
+  PlayoutCoordinator c(5, plan());
+  heard(c, "audio", 18), heard(c, "visual", 33), heard(c, "haptic", 2);
+  int said = 0;
+  for (int ms = 0; ms < 1000; ms += 5)
+    if (const auto m = c.due(at(ms))) {
+      ++said;
+      CHECK(delays_ms(m) == Delays{{"audio", 33}, {"haptic", 0}, {"visual", 33}});
+    }
+  CHECK(said == 10);
+}
+
+TEST_CASE("Before anything was presented every sense keeps its own delay") {
+  PlayoutCoordinator c(5, plan());
+  c.needs().know("audio");
+  CHECK(delays_ms(c.due(at(0))).empty());
+  PlayoutCoordinator experiment(5, plan(Policy::kExperiment));
+  experiment.needs().know("audio");
+  CHECK(delays_ms(experiment.due(at(0))) == Delays{{"audio", 150}});
+}
+
+TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense") {
+  PlayoutCoordinator c(5, plan());
+  heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
+  const auto before = delays_ms(c.due(at(0)));
+  SECTION("after a stall of 2 s all that waited comes at once") {
+    for (int i = 0; i < 12; ++i) c.needs().add("visual", (2000 - 80 * i) * kMs);
+    heard(c, "visual", 33, 8);
+    CHECK(delays_ms(c.due(at(200))) == before);
+  }
+  SECTION("it says nothing any more") {
+    heard(c, "audio", 18, 500);
+    CHECK(delays_ms(c.due(at(200))) == before);
+  }
+  SECTION("it needs more than the budget for good: nobody waits for it any more") {
+    heard(c, "visual", 300, 200);
+    const auto after = delays_ms(c.due(at(200)));
+    CHECK(after.at("audio") == 25);
+    CHECK(after.at("thermal") == 25);
+  }
+}
+
+TEST_CASE("A delay rises as soon as it must and falls only by more than the slack") {
+  PlayoutCoordinator c(5, plan());
+  heard(c, "audio", 30, 200);
+  CHECK(delays_ms(c.due(at(0))).at("audio") == 30);
+  heard(c, "audio", 28, 200);
+  CHECK(delays_ms(c.due(at(200))).at("audio") == 30);
+  heard(c, "audio", 31, 200);
+  CHECK(delays_ms(c.due(at(400))).at("audio") == 31);
+  heard(c, "audio", 20, 200);
+  CHECK(delays_ms(c.due(at(600))).at("audio") == 20);
+}
+
+TEST_CASE("A newer request is put in force and an older one is not") {
+  PlayoutCoordinator c(5, plan());
+  PlayoutPlan asked = plan(Policy::kExperiment);
+  asked.soa["visual"] = -50 * kMs;
+  CHECK(c.take(request_for(asked, 100)));
+  heard(c, "audio", 18), heard(c, "visual", 33);
+  const auto m = c.due(at(0));
+  REQUIRE(m);
+  CHECK(m->generation == 100);
+  CHECK(delays_ms(m) == Delays{{"audio", 150}, {"visual", 100}});
+  CHECK_FALSE(c.take(request_for(plan(Policy::kAsap), 99)));
+  CHECK(c.plan().policy == Policy::kExperiment);
+  asked.soa["visual"] = -500 * kMs;  // before the event
+  CHECK_FALSE(c.take(request_for(asked, 200)));
+}
+
+TEST_CASE("Of two hosts the one with the lower clock speaks; the other knows all it said and goes on when it falls silent") {
+  PlayoutCoordinator low(3, plan()), high(7, plan());
+  heard(low, "audio", 18), heard(high, "audio", 18);
+  REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // heard by one only
+  int high_said = 0;
+  for (int ms = 0; ms < 2000; ms += 10) {
+    if (auto m = low.due(at(ms))) {
+      m->header.clock = 3;
+      high.take(*m, at(ms));
+    }
+    if (auto m = high.due(at(ms))) {
+      ++high_said;
+      m->header.clock = 7;
+      low.take(*m, at(ms));
+    }
+  }
+  CHECK(high_said <= 1);
+  CHECK(high.plan().policy == Policy::kExperiment);
+  int alone = 0;
+  for (int ms = 2000; ms < 4000; ms += 10) alone += high.due(at(ms)).has_value();
+  CHECK(alone >= 9);
+}
+
+TEST_CASE("A request is kept for a coordinator that comes back, and only for the same run") {
+  const auto folder = std::filesystem::temp_directory_path() / "tactus_playout_test";
+  std::filesystem::create_directories(folder);
+  auto request = request_for(plan(Policy::kItouch2005), 77);
+  request.header.run_id = 12, request.header.source = 1, request.header.incarnation = 1;
+  keep_request(folder, request);
+  REQUIRE(kept_request(folder, 12));
+  CHECK(kept_request(folder, 12)->policy == playout_t::ITOUCH2005);
+  CHECK_FALSE(kept_request(folder, 13));
+  std::ofstream(folder / "playout.request", std::ios::app) << "x";
+  CHECK_FALSE(kept_request(folder, 12));
+  std::filesystem::remove_all(folder);
+  CHECK_FALSE(kept_request(folder, 12));
+}
+
+TEST_CASE("The turns of a lock-step are instants of the world, wherever the host clock stands") {
+  const TimeMap map{sim_time(123'456'789), at(0), 1.0};
+  const Lockstep loop{map, 12.5};
+  for (int ms = -500; ms < 500; ms += 7) {
+    const HostTime t = at(ms);
+    CHECK(loop.begin_of_turn(t) <= t);
+    CHECK(t - loop.begin_of_turn(t) < 80 * kMs);
+    CHECK(loop.next_turn(t) >= t);
+    CHECK(loop.next_turn(t) - t < 80 * kMs);
+    CHECK(map.to_sim(loop.next_turn(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
+  }
+}

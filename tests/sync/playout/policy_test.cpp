@@ -1,0 +1,85 @@
+#include "sync/playout/policy.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus::sync;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr Nanoseconds kMs{1'000'000};
+const std::map<std::string, Nanoseconds> kNeeded{
+    {"haptic", 2 * kMs}, {"audio", 18 * kMs}, {"visual", 35 * kMs}, {"thermal", 25 * kMs}};
+
+PlayoutPlan plan(Policy policy) {
+  PlayoutPlan p;
+  p.policy = policy;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("As soon as possible waits for nothing") {
+  for (const auto& [name, delay] : playout_delays(plan(Policy::kAsap), kNeeded)) CHECK(delay == 0 * kMs);
+}
+
+TEST_CASE("Aligned, all wait for the slowest") {
+  for (const auto& [name, delay] : playout_delays(plan(Policy::kAligned), kNeeded)) CHECK(delay == 35 * kMs);
+}
+
+TEST_CASE("Local haptic first, touch waits for nothing and the others for the slowest of them") {
+  for (const auto& [name, delay] : playout_delays(plan(Policy::kLocalHapticFirst), kNeeded))
+    CHECK(delay == (name == "haptic" ? 0 : 35) * kMs);
+}
+
+TEST_CASE("Nobody waits for a sense that needs more than the budget") {
+  auto needed = kNeeded;
+  needed["visual"] = 400 * kMs;
+  const auto delays = playout_delays(plan(Policy::kAligned), needed);
+  CHECK(delays.at("audio") == 25 * kMs);
+  CHECK(delays.at("haptic") == 25 * kMs);
+}
+
+TEST_CASE("An experiment gives each sense its asynchrony against the base, negative ones too, whatever the senses need") {
+  PlayoutPlan p = plan(Policy::kExperiment);
+  p.base = 150 * kMs;
+  p.soa = parse_soa("audio=50ms,visual=-100ms,wind=-0.01s");
+  const auto delays = playout_delays(p, kNeeded);
+  CHECK(delays.at("audio") == 200 * kMs);
+  CHECK(delays.at("visual") == 50 * kMs);
+  CHECK(delays.at("haptic") == 150 * kMs);
+  CHECK(delays.at("wind") == 140 * kMs);
+}
+
+TEST_CASE("In a serial loop each sense comes after the one before, and the loop takes as long as all of them") {
+  const PlayoutPlan p = plan(Policy::kItouch2005);
+  const auto delays = playout_delays(p, kNeeded);
+  CHECK(delays.at("haptic") == 2 * kMs);
+  CHECK(delays.at("audio") == 20 * kMs);
+  CHECK(delays.at("visual") == 55 * kMs);
+  CHECK(delays.at("thermal") == 80 * kMs);
+  CHECK(lockstep_rate_Hz(p, kNeeded) == Approx(12.5));
+  CHECK(lockstep_rate_Hz(plan(Policy::kAligned), kNeeded) == 0);
+}
+
+TEST_CASE("A fixed delay is the base within the budget") {
+  PlayoutPlan p = plan(Policy::kAligned);
+  p.aligner = AlignerKind::kFixed;
+  p.base = 40 * kMs;
+  CHECK(playout_delays(p, kNeeded).at("audio") == 40 * kMs);
+  p.base = 100 * kMs;
+  CHECK(playout_delays(p, kNeeded).at("audio") == p.budget);
+}
+
+TEST_CASE("What cannot be is refused with a remedy") {
+  PlayoutPlan p = plan(Policy::kExperiment);
+  p.base = 50 * kMs;
+  p.soa = parse_soa("audio=-80ms");
+  CHECK_THROWS_WITH(p.check(), Contains("audio") && Contains("base of at least 80 ms"));
+  p.policy = Policy::kAligned;
+  CHECK_THROWS_WITH(p.check(), Contains("experiment"));
+  CHECK_THROWS_WITH(policy_named("serial"), Contains("itouch2005"));
+  for (const char* wrong : {"audio", "=5ms", "audio=5kg", "audio=100s", "audio="})
+    CHECK_THROWS_AS(parse_soa(wrong), std::invalid_argument);
+  for (const char* wrong : {"-1ms", "61s", "x", ""}) CHECK_THROWS_AS(parse_duration(wrong), std::invalid_argument);
+}
