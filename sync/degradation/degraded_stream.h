@@ -66,7 +66,8 @@ std::uint64_t wire_key(const Message& m) {
                static_cast<std::uint64_t>(m.header.source));
 }
 
-// Snapshots: each is decided on once, with its first page, and the others share its fate.
+// Snapshots: each is decided on once, with its first page, and the others share its fate; under a deadband, which
+// compares all that a snapshot tells, with its last page, for which the others wait.
 template <class Message>
 class DegradedSnapshots {
  public:
@@ -76,7 +77,26 @@ class DegradedSnapshots {
     const SimTime time = sim_time(m.header.sim_time_ns);
     if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
     if (stack.lost_on_wire(wire_key(m), time)) return;
-    Verdict v = verdict_on(m, arrival, stack, decisions);
+    if constexpr (requires { m.pages; })
+      if (stack.compares() && m.pages > 1 && !verdicts_.contains(snapshot_key(m)))
+        return gather(std::move(m), arrival, stack, decisions);
+    const Verdict v = verdict_on(m, arrival, signals_of(m), stack, decisions);
+    put(std::move(m), arrival, v, stack);
+  }
+  // The next message that is let through by now, and when it arrived.
+  std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
+    auto next = waiting_.pop(now);
+    if (next) freshen(next->first);
+    return next;
+  }
+
+ private:
+  static constexpr std::size_t kRemembered = 256;
+  // Pages of a snapshot are told within the time to the next; of so many some may be on their way at once.
+  static constexpr std::size_t kGathering = 4;
+  using Gathered = std::map<std::int32_t, std::pair<Message, HostTime>>;  // by page
+
+  void put(Message m, HostTime arrival, const Verdict& v, Stack& stack) {
     if (v.dropped()) {
       if (v.conceal != Conceal::kZero) return;
       make_zero(m);
@@ -88,20 +108,33 @@ class DegradedSnapshots {
     if (v.twice) waiting_.push(release, m, arrival);
     waiting_.push(release, std::move(m), arrival);
   }
-  // The next message that is let through by now, and when it arrived.
-  std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
-    auto next = waiting_.pop(now);
-    if (next) freshen(next->first);
-    return next;
+
+  void gather(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
+    const std::uint64_t key = snapshot_key(m);
+    auto it = std::find_if(gathering_.begin(), gathering_.end(), [&](const auto& g) { return g.first == key; });
+    if (it == gathering_.end()) it = gathering_.insert(it, {key, {}});
+    const auto pages = static_cast<std::size_t>(m.pages);
+    it->second.insert_or_assign(m.page, std::make_pair(std::move(m), arrival));
+    // One that newer ones have overtaken is judged by what came of it: what is missing counts as a change.
+    if (it->second.size() < pages) {
+      if (gathering_.size() <= kGathering) return;
+      it = gathering_.begin();
+    }
+    const Gathered whole = std::move(it->second);
+    gathering_.erase(it);
+    std::vector<Signal> signals;
+    for (const auto& [number, page] : whole) {
+      const std::vector<Signal> more = signals_of(page.first);
+      signals.insert(signals.end(), more.begin(), more.end());
+    }
+    const Verdict v = verdict_on(whole.begin()->second.first, arrival, signals, stack, decisions);
+    for (const auto& [number, page] : whole) put(page.first, page.second, v, stack);
   }
 
- private:
-  static constexpr std::size_t kRemembered = 256;
-
-  Verdict verdict_on(const Message& m, HostTime arrival, Stack& stack, Decisions* decisions) {
+  Verdict verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, Stack& stack,
+                     Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
     if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
-    const std::vector<Signal> signals = signals_of(m);
     Item item{.key = key,
               .stream = stream_of(m),
               .incarnation = m.header.incarnation,
@@ -135,6 +168,7 @@ class DegradedSnapshots {
   }
 
   Waiting<Message> waiting_;
+  std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
   std::map<std::uint64_t, Verdict> verdicts_;
   std::deque<std::uint64_t> order_;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;

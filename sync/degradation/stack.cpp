@@ -31,6 +31,7 @@ Stack::Stack(const Profile& profile, const std::string& modality, SimTime start)
     // Two senses, or two rules of one, draw different numbers for the same event.
     Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}};
     changes_values_ |= rule.quantise || rule.gain || rule.bias || rule.lowpass;
+    compares_ |= rule.deadband.has_value();
     rules_.push_back(std::move(a));
   }
 }

@@ -67,6 +67,8 @@ class Stack {
   double changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                  std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b);
   bool changes_values() const { return changes_values_; }
+  // Whether a snapshot is judged by what is in it, so that all of it must be there.
+  bool compares() const { return compares_; }
 
  private:
   // The memory of the operators of one rule, of events and of each stream of snapshots apart: none disturbs
@@ -102,7 +104,7 @@ class Stack {
   std::vector<Active> rules_;
   SceneNames names_;
   SimTime start_{};
-  bool changes_values_ = false;
+  bool changes_values_ = false, compares_ = false;
 };
 
 }  // namespace tactus::sync

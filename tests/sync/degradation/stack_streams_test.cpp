@@ -75,6 +75,43 @@ TEST_CASE("A deadband compares each stream with itself: another between two of i
   CHECK(kept[contact_frame_t::OTHER].size() == 1);
 }
 
+TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they come, and they share its fate") {
+  Stack stack = stack_of("deadband=\"10% force\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  Decisions decisions;
+  std::map<std::int64_t, int> kept;
+  for (std::int64_t ms = 0; ms < 200; ++ms) {
+    for (int i = 0; i < 3; ++i) {
+      const int page = ms % 2 == 0 ? i : 2 - i;
+      // Only what is on the last page changes, once.
+      contact_frame_t m = frame(contact_frame_t::TOOL, ms, ms, page == 2 && ms >= 100 ? 2 : 1);
+      m.contacts[0].contact_id = page;
+      m.page = page, m.pages = 3;
+      if (ms == 150 && page == 1) continue;  // lost on the wire
+      frames.push(m, host_time(ms * kMs), stack, &decisions);
+    }
+    while (const auto m = frames.pop(host_time(ms * kMs))) ++kept[m->first.header.sim_time_ns / kMs];
+  }
+  // That of which a page is missing is let through when four newer ones are on their way: none was, so it never
+  // is.
+  CHECK(kept == std::map<std::int64_t, int>{{0, 3}, {100, 3}});
+  CHECK(decisions.size() == 199);
+}
+
+TEST_CASE(
+    "Under a deadband a snapshot of which a page is lost is judged by what came of it, once newer ones have overtaken it") {
+  Stack stack = stack_of("deadband=\"10% force\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  std::vector<std::int64_t> kept;
+  for (std::int64_t ms = 0; ms < 10; ++ms) {
+    contact_frame_t m = frame(contact_frame_t::TOOL, ms, ms, 1);
+    m.pages = 2;  // the second never comes
+    frames.push(m, host_time(ms * kMs), stack, nullptr);
+    while (const auto let = frames.pop(host_time(ms * kMs))) kept.push_back(let->first.header.sim_time_ns / kMs);
+  }
+  CHECK(kept == std::vector<std::int64_t>{0});  // the first; the others tell of no change
+}
+
 TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in between") {
   Stack stack = stack_of("loss=\"20% burst=5\"");
   DegradedSnapshots<contact_frame_t> frames;
