@@ -131,8 +131,10 @@ void check_all_but(const std::string& degraded) {
       CHECK(owed >= 10);
       // The profile did what it says, to the sense that it names: 30 ms, less one tick of rounding.
       if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 29);
-      // Held back by its rate the degraded sense may be too late to make sense, and says so.
-      CHECK(presented + (sense == degraded ? refused : 0) == owed);
+      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop touch feels only
+      // what is there when its turn comes.
+      const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
+      CHECK(presented + (may_refuse ? refused : 0) == owed);
     }
   }
 }
