@@ -2,8 +2,8 @@
 //
 //   in   LOG...   logs of runs: what each sense needed for each event, as PRESENTED says; none: a made trace
 //
-// The made trace: three senses at 20, 33 and 12 ms with tails (exponential, 4 ms; Pareto of shape 2.5, 3 ms; none), and a third of
-// the way through 15 ms more for the second, as when a network is loaded.
+// The made trace: three senses at 20, 33 and 12 ms with tails (exponential, 4 ms; Pareto of shape 2.5, 3 ms;
+// none), and a third of the way through 15 ms more for the second, as when a network is loaded.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -37,7 +37,8 @@ std::vector<sync::TraceEvent> made_trace(unsigned seed) {
   for (int i = 0; i < kMadeEvents; ++i) {
     const double loaded = i > kMadeEvents / 3 && i < 2 * kMadeEvents / 3 ? 15 : 0;
     const double pareto = 3 * (std::pow(uniform(random), -1 / 2.5) - 1);
-    trace.push_back({{"audio", ms(20 + exponential(random))}, {"visual", ms(33 + loaded + pareto)}, {"haptic", ms(12)}});
+    trace.push_back(
+        {{"audio", ms(20 + exponential(random))}, {"visual", ms(33 + loaded + pareto)}, {"haptic", ms(12)}});
   }
   return trace;
 }
@@ -104,20 +105,25 @@ int main(int argc, char** argv) try {
 
   const auto trace = logs.empty() ? made_trace(seed) : logged_trace(logs);
   if (trace.size() < 64)
-    throw std::runtime_error("only " + std::to_string(trace.size()) + " events were presented in two senses; take a longer log");
+    throw std::runtime_error("only " + std::to_string(trace.size()) +
+                             " events were presented in two senses; take a longer log");
   const sync::Nanoseconds fixed_delay = sync::parse_duration(fixed);
   nlohmann::json table = nlohmann::json::array();
-  std::printf("%zu events\n%-14s %12s %12s %10s %10s %8s %10s\n", trace.size(), "aligner", "async p50/ms", "async p95/ms",
-              "added/ms", "delay/ms", "late/%", "ns/event");
-  for (const auto kind : {sync::AlignerKind::kFixed, sync::AlignerKind::kQuantile, sync::AlignerKind::kMovingAverage,
-                          sync::AlignerKind::kVirtualTime}) {
+  std::printf("%zu events\n%-14s %12s %12s %10s %10s %8s %10s\n", trace.size(), "aligner", "async p50/ms",
+              "async p95/ms", "added/ms", "delay/ms", "late/%", "ns/event");
+  for (const auto kind : {sync::AlignerKind::kFixed, sync::AlignerKind::kQuantile,
+                          sync::AlignerKind::kMovingAverage, sync::AlignerKind::kVirtualTime}) {
     const sync::AlignerResult r = sync::through_aligner(trace, kind, fixed_delay);
     const double cost = cost_ns(trace, kind, fixed_delay);
-    std::printf("%-14s %12.2f %12.2f %10.2f %10.2f %8.2f %10.0f\n", name_of(kind), to_ms(r.asynchrony_p50), to_ms(r.asynchrony_p95),
-                to_ms(r.added_mean), to_ms(r.delay_last), 100 * r.late_share, cost);
-    table.push_back({{"aligner", name_of(kind)}, {"asynchrony_p50_ms", to_ms(r.asynchrony_p50)},
-                     {"asynchrony_p95_ms", to_ms(r.asynchrony_p95)}, {"added_mean_ms", to_ms(r.added_mean)},
-                     {"delay_last_ms", to_ms(r.delay_last)}, {"late_share", r.late_share}, {"cost_ns", cost}});
+    std::printf("%-14s %12.2f %12.2f %10.2f %10.2f %8.2f %10.0f\n", name_of(kind), to_ms(r.asynchrony_p50),
+                to_ms(r.asynchrony_p95), to_ms(r.added_mean), to_ms(r.delay_last), 100 * r.late_share, cost);
+    table.push_back({{"aligner", name_of(kind)},
+                     {"asynchrony_p50_ms", to_ms(r.asynchrony_p50)},
+                     {"asynchrony_p95_ms", to_ms(r.asynchrony_p95)},
+                     {"added_mean_ms", to_ms(r.added_mean)},
+                     {"delay_last_ms", to_ms(r.delay_last)},
+                     {"late_share", r.late_share},
+                     {"cost_ns", cost}});
   }
   if (!json.empty() && !(std::ofstream(json) << table.dump(2) << "\n"))
     throw std::runtime_error("cannot write " + json + "; name a file in a folder that is there");

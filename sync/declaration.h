@@ -1,5 +1,5 @@
-// A modality is a declaration: what it reads, how often it ticks, what instant it calls presented, what becomes of what is late,
-// and what about its output can be degraded. A node folder declares; sync/ does the rest.
+// A modality is a declaration: what it reads, how often it ticks, what instant it calls presented, what becomes of
+// what is late, and what about its output can be degraded. A node folder declares; sync/ does the rest.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ struct Declaration {
   std::string about;      // one sentence for --help
 
   // Of a modality only.
-  std::vector<std::string> inputs = {};      // channels that it reads: its profile acts on them
-  std::string presents = {};                 // the instant that PRESENTED speaks of
+  std::vector<std::string> inputs = {};  // channels that it reads: its profile acts on them
+  std::string presents = {};             // the instant that PRESENTED speaks of
   Late late = Late::kShowNewest;
   std::vector<std::string> degradable = {};  // attributes of a profile that act on its output, e.g. "frame_rate"
 };

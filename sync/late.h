@@ -27,7 +27,8 @@ struct LatePolicy {
   // presentation_t::PRESENTED, LATE or DROPPED_LATE.
   std::int8_t outcome(Nanoseconds lateness) const {
     if (lateness <= tolerance) return presentation_t::PRESENTED;
-    return rule == Late::kAlwaysApply || lateness <= drop_after ? presentation_t::LATE : presentation_t::DROPPED_LATE;
+    return rule == Late::kAlwaysApply || lateness <= drop_after ? presentation_t::LATE
+                                                                : presentation_t::DROPPED_LATE;
   }
   // Factor on the strength of what is presented so late, 0 .. 1.
   double gain(Nanoseconds lateness) const {

@@ -1,4 +1,5 @@
-// playout: asks the running cluster for another policy of presentation, and says when each sense presents from now on.
+// playout: asks the running cluster for another policy of presentation, and says when each sense presents from now
+// on.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -20,7 +21,8 @@ constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 10
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void print(const playout_t& m) {
@@ -41,7 +43,8 @@ void print(const playout_t& m) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Asks the running cluster for another policy of presentation, or with no argument says which is in force.");
+  CLI::App app(
+      "Asks the running cluster for another policy of presentation, or with no argument says which is in force.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   sync::PlayoutOptions options;

@@ -57,9 +57,11 @@ Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHi
   const auto after = thresholds_of(a, b), before = thresholds_of(b, a);
   if (!after && !before) return {};
   const auto count = [&](auto limit) {
-    return soa.beyond(before ? limit(*before) : SoaHistogram::kRange, after ? limit(*after) : SoaHistogram::kRange);
+    return soa.beyond(before ? limit(*before) : SoaHistogram::kRange,
+                      after ? limit(*after) : SoaHistogram::kRange);
   };
-  return {count([](const ThresholdRange& r) { return r.least; }), count([](const ThresholdRange& r) { return r.largest; })};
+  return {count([](const ThresholdRange& r) { return r.least; }),
+          count([](const ThresholdRange& r) { return r.largest; })};
 }
 
 }  // namespace tactus::sync

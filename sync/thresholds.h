@@ -1,5 +1,6 @@
-// Published thresholds of asynchrony between two senses: sync/thresholds.csv, a row per pair, direction and source. The sources
-// disagree, so none of them is the truth: what is measured is held against the least and the largest of a direction. Pure.
+// Published thresholds of asynchrony between two senses: sync/thresholds.csv, a row per pair, direction and
+// source. The sources disagree, so none of them is the truth: what is measured is held against the least and the
+// largest of a direction. Pure.
 #pragma once
 
 #include <optional>

@@ -43,7 +43,8 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   const auto file = context.asset_file(attributes.required_text("file"), *element);
   attributes.done();
-  if (element->GetFirstElement()) context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
+  if (element->GetFirstElement())
+    context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
   try {
     return sync::read_profile_file(file.string());
   } catch (const std::invalid_argument& e) {
@@ -56,7 +57,8 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
 void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
   const sdf::ElementPtr element = written(world, "tactus:profile");
   if (!element) return;
-  for (auto other = element->GetNextElement("tactus:profile"); other; other = other->GetNextElement("tactus:profile"))
+  for (auto other = element->GetNextElement("tactus:profile"); other;
+       other = other->GetNextElement("tactus:profile"))
     context.refuse(*other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
   if (element->HasAttribute("file")) {
     context.world.profile = from_file(context, element);

@@ -43,8 +43,9 @@ class Quantile : public Aligner {
   Nanoseconds delay_{0};
 };
 
-// Mean and four mean deviations (Ramjee, Kurose, Towsley, Schulzrinne 1994, algorithm 1), each an exponential average with the
-// gain 1/16 of RFC 3550, section 6.4.1: contacts come ten times a second, not every 20 ms as speech does.
+// Mean and four mean deviations (Ramjee, Kurose, Towsley, Schulzrinne 1994, algorithm 1), each an exponential
+// average with the gain 1/16 of RFC 3550, section 6.4.1: contacts come ten times a second, not every 20 ms as
+// speech does.
 class MovingAverage : public Aligner {
  public:
   void add(Nanoseconds needed) override {
@@ -63,8 +64,9 @@ class MovingAverage : public Aligner {
   bool begun_ = false;
 };
 
-// Virtual-time rendering (after Ishibashi and Tasaka 1995): the target slides later by what an event was late, at most a step at
-// a time, and earlier by a step when a whole run of events had more room than that. Steps and run length are ours.
+// Virtual-time rendering (after Ishibashi and Tasaka 1995): the target slides later by what an event was late, at
+// most a step at a time, and earlier by a step when a whole run of events had more room than that. Steps and run
+// length are ours.
 class VirtualTime : public Aligner {
  public:
   void add(Nanoseconds needed) override {
@@ -86,10 +88,10 @@ class VirtualTime : public Aligner {
   Nanoseconds delay() const override { return target_; }
 
  private:
-  static constexpr Nanoseconds kMargin{2'000'000};        // design: jitter of a paced loop without priority
-  static constexpr Nanoseconds kStepLater{10'000'000};    // design: followed at a slew of 5 % within 0.2 s
-  static constexpr Nanoseconds kStepEarlier{2'000'000};   // design: to fall back is not urgent
-  static constexpr int kRun = 32;                         // design: so many events in time before it falls back
+  static constexpr Nanoseconds kMargin{2'000'000};       // design: jitter of a paced loop without priority
+  static constexpr Nanoseconds kStepLater{10'000'000};   // design: followed at a slew of 5 % within 0.2 s
+  static constexpr Nanoseconds kStepEarlier{2'000'000};  // design: to fall back is not urgent
+  static constexpr int kRun = 32;                        // design: so many events in time before it falls back
   Nanoseconds target_{0}, room_{Nanoseconds::max()};
   int run_ = 0;
   bool begun_ = false;
@@ -112,7 +114,8 @@ std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed) {
 AlignerKind aligner_named(const std::string& word) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (word == kNames[i]) return static_cast<AlignerKind>(i);
-  throw std::invalid_argument("there is no aligner \"" + word + "\"; choose fixed, quantile, average or virtual-time");
+  throw std::invalid_argument("there is no aligner \"" + word +
+                              "\"; choose fixed, quantile, average or virtual-time");
 }
 
 const char* name_of(AlignerKind kind) { return kNames[static_cast<std::size_t>(kind)]; }

@@ -1,5 +1,6 @@
-// How long a sense needs, from an event to the earliest instant at which it could be presented, estimated from how long it
-// needed for the events before: the delay under which (nearly) all events of that sense come in time. Pure.
+// How long a sense needs, from an event to the earliest instant at which it could be presented, estimated from how
+// long it needed for the events before: the delay under which (nearly) all events of that sense come in time.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,8 @@ class Aligner {
 // fixed: the delay of kFixed.
 std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed);
 
-// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other word.
+// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other
+// word.
 AlignerKind aligner_named(const std::string& word);
 const char* name_of(AlignerKind kind);
 

@@ -22,7 +22,8 @@ PlayoutPlan plan_of(const auto& m) {
 
 // The delays come from what the senses were heard to need.
 bool estimated(const PlayoutPlan& plan) {
-  return (plan.policy == Policy::kAligned || plan.policy == Policy::kLocalHapticFirst) && plan.aligner != AlignerKind::kFixed;
+  return (plan.policy == Policy::kAligned || plan.policy == Policy::kLocalHapticFirst) &&
+         plan.aligner != AlignerKind::kFixed;
 }
 
 }  // namespace
@@ -75,7 +76,8 @@ std::optional<playout_t> PlayoutCoordinator::due(HostTime now) {
   m.budget_ns = plan_.budget.count();
   const auto needed = needs_.all();
   // Before anything is known of any sense, each keeps its own delay.
-  const bool known = std::any_of(needed.begin(), needed.end(), [&](const auto& n) { return needs_.needed(n.first).has_value(); });
+  const bool known =
+      std::any_of(needed.begin(), needed.end(), [&](const auto& n) { return needs_.needed(n.first).has_value(); });
   // The turns of a loop whose rate changed would begin elsewhere: only a real change is followed.
   const double rate_Hz = lockstep_rate_Hz(plan_, needed);
   if (rate_Hz == 0 || std::abs(rate_Hz - lockstep_Hz_) > kLockstepSlack * lockstep_Hz_) lockstep_Hz_ = rate_Hz;

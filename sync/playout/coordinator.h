@@ -1,5 +1,5 @@
-// Decides when each sense presents, and says so: the heart of PLAYOUT. Of several hosts' sync_nodes the one with the lowest clock
-// speaks; the others listen and know what to say should it fall silent. Pure.
+// Decides when each sense presents, and says so: the heart of PLAYOUT. Of several hosts' sync_nodes the one with
+// the lowest clock speaks; the others listen and know what to say should it fall silent. Pure.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// A request for a policy as a message, and the last one kept in a file: a coordinator that was killed comes back with what
-// somebody asked for.
+// A request for a policy as a message, and the last one kept in a file: a coordinator that was killed comes back
+// with what somebody asked for.
 #pragma once
 
 #include <filesystem>

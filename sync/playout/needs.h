@@ -1,8 +1,8 @@
 // What each sense needs from an event to its earliest possible presentation, as heard so far. Pure.
 //
-// A sense is asked how late it could have been with nothing degraded and no playout delay (presentation_t.ready_ns): so no
-// degradation moves a delay. What comes after a stall is far beyond the budget and says nothing of the next event; a sense that
-// is beyond it most of the time is left out.
+// A sense is asked how late it could have been with nothing degraded and no playout delay
+// (presentation_t.ready_ns): so no degradation moves a delay. What comes after a stall is far beyond the budget
+// and says nothing of the next event; a sense that is beyond it most of the time is left out.
 #pragma once
 
 #include <deque>

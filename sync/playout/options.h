@@ -1,4 +1,5 @@
-// The policy of presentation on a command line: of sync_node and of the program that changes it while the cluster runs.
+// The policy of presentation on a command line: of sync_node and of the program that changes it while the cluster
+// runs.
 #pragma once
 
 #include <string>

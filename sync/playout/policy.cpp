@@ -50,7 +50,8 @@ void PlayoutPlan::check() const {
     throw std::invalid_argument("asynchronies are for the policy experiment; say so, or leave them out");
   for (const auto& [name, asynchrony] : soa)
     if (base + asynchrony < Nanoseconds(0))
-      throw std::invalid_argument("the asynchrony of " + name + " reaches before the event; choose a base of at least " +
+      throw std::invalid_argument("the asynchrony of " + name +
+                                  " reaches before the event; choose a base of at least " +
                                   std::to_string(-asynchrony.count() / 1'000'000) + " ms");
 }
 
@@ -68,7 +69,8 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
     if (equals == std::string::npos || equals == 0)
       throw std::invalid_argument("\"" + part + "\" is no asynchrony; write one as visual=-50ms");
     const double s = parse_quantity(part.substr(equals + 1), "s");
-    if (std::abs(s) > kLongest_s) throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
+    if (std::abs(s) > kLongest_s)
+      throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
     soa[part.substr(0, equals)] = from_seconds(s);
   }
   return soa;

@@ -19,18 +19,19 @@ enum class Policy : std::uint8_t {
   kItouch2005         // one after the other in one loop: touch, sound, heat, picture
 };
 
-// "asap", "aligned", "experiment", "local_haptic_first", "itouch2005". Throws std::invalid_argument with one sentence.
+// "asap", "aligned", "experiment", "local_haptic_first", "itouch2005". Throws std::invalid_argument with one
+// sentence.
 Policy policy_named(const std::string& word);
 const char* name_of(Policy policy);
 
 struct PlayoutPlan {
   Policy policy = Policy::kLocalHapticFirst;
   AlignerKind aligner = AlignerKind::kQuantile;
-  // Common delay of kExperiment and of AlignerKind::kFixed. design: more than a picture of 60 Hz needs on a software renderer,
-  // so that asynchronies of -100 ms can be had.
+  // Common delay of kExperiment and of AlignerKind::kFixed. design: more than a picture of 60 Hz needs on a
+  // software renderer, so that asynchronies of -100 ms can be had.
   Nanoseconds base{150'000'000};
-  // Senses that need more are not waited for. design: an action and its effect still belong together to everyone after 60 ms
-  // (the least thresholds of touch and picture in thresholds.csv)
+  // Senses that need more are not waited for. design: an action and its effect still belong together to everyone
+  // after 60 ms (the least thresholds of touch and picture in thresholds.csv)
   Nanoseconds budget{60'000'000};
   std::map<std::string, Nanoseconds> soa;  // of kExperiment, by modality
 
@@ -43,12 +44,13 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text);
 // "120ms", "0.12s". Throws std::invalid_argument with one sentence when it is none, negative, or longer than 60 s.
 Nanoseconds parse_duration(const std::string& text);
 
-// needed: what each sense needs by its aligner; senses not heard of yet are not in it. A sense that needs more than the budget
-// is not waited for: it is late, and the others stay where they are.
-std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed);
+// needed: what each sense needs by its aligner; senses not heard of yet are not in it. A sense that needs more
+// than the budget is not waited for: it is late, and the others stay where they are.
+std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
+                                                  const std::map<std::string, Nanoseconds>& needed);
 
-// Of kItouch2005: rate of a loop in which every sense waits for the one before, Hz; 0 for any other policy or before anything is
-// known.
+// Of kItouch2005: rate of a loop in which every sense waits for the one before, Hz; 0 for any other policy or
+// before anything is known.
 double lockstep_rate_Hz(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed);
 
 }  // namespace tactus::sync

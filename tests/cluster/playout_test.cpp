@@ -1,4 +1,5 @@
-// When the senses of a running cluster present: by policy, changed while it runs, kept when nobody says so any more.
+// When the senses of a running cluster present: by policy, changed while it runs, kept when nobody says so any
+// more.
 #include <cstdlib>
 
 #include "tests/cluster/profiles.h"
@@ -9,7 +10,8 @@ using namespace tactus::cluster;
 namespace {
 
 // Presented in a after b, ms, of hits of the tool that neither had reported before; touch by its transient.
-std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b, const EventsHeard& before) {
+std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b,
+                                    const EventsHeard& before) {
   std::vector<double> out;
   const auto of_a = ear.presented().find(a), of_b = ear.presented().find(b);
   if (of_a == ear.presented().end() || of_b == ear.presented().end()) return out;
@@ -37,7 +39,8 @@ TEST_CASE("Sound and picture are as far apart as an experiment asks, changed whi
   Running c;
   c.start();
   // 100 ms of a base of 200 ms come at 5 % of the time: within 4 s and a half of it.
-  CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") != std::string::npos);
+  CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") !=
+        std::string::npos);
   const double apart = settled_asynchrony_ms(c, "visual", "audio", 6);
   CHECK(apart > 60);
   CHECK(apart < 240);

@@ -13,8 +13,9 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Policies of presentation to hold under, as scripts/run takes them; "": its default. Each degraded sense has its turn with the
-// default and with one other; with TACTUS_ALL_POLICIES in the environment, which takes five minutes, with all of them.
+// Policies of presentation to hold under, as scripts/run takes them; "": its default. Each degraded sense has its
+// turn with the default and with one other; with TACTUS_ALL_POLICIES in the environment, which takes five minutes,
+// with all of them.
 const std::map<std::string, std::string> kOtherPolicy{
     {"", "aligned"}, {"audio", "asap"}, {"visual", "experiment"}, {"haptic", "itouch2005"}, {"thermal", "asap"}};
 
@@ -131,8 +132,8 @@ void check_all_but(const std::string& degraded) {
       CHECK(owed >= 10);
       // The profile did what it says, to the sense that it names: 30 ms, less one tick of rounding.
       if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 29);
-      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop touch feels only
-      // what is there when its turn comes.
+      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop
+      // touch feels only what is there when its turn comes.
       const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
       CHECK(presented + (may_refuse ? refused : 0) == owed);
     }

@@ -160,7 +160,8 @@ TEST_CASE("One seed decides the same to the byte, another seed otherwise") {
     CHECK(fingerprint(verdicts(everything, is_event, 7)) != fingerprint(verdicts(everything, is_event, 8)));
   }
   // Without logarithms and powers, which differ between C libraries, it is the same on every machine.
-  CHECK(fingerprint(verdicts("loss=\"20%\" reorder=\"10% by=10ms\" duplicate=\"5%\"", true, 7)) == 0xeb7f74d09e8e226eull);
+  CHECK(fingerprint(verdicts("loss=\"20%\" reorder=\"10% by=10ms\" duplicate=\"5%\"", true, 7)) ==
+        0xeb7f74d09e8e226eull);
 }
 
 TEST_CASE("Repetitions change no decision: told once or fifty times, the same is lost, late and doubled") {

@@ -99,7 +99,8 @@ TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they c
 }
 
 TEST_CASE(
-    "Under a deadband a snapshot of which a page is lost is judged by what came of it, once newer ones have overtaken it") {
+    "Under a deadband a snapshot of which a page is lost is judged by what came of it, once newer ones have "
+    "overtaken it") {
   Stack stack = stack_of("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;

@@ -48,15 +48,16 @@ TEST_CASE("A fixed aligner gives its delay, whatever is needed") {
 
 TEST_CASE("The quantile aligner is late for one event in twenty") {
   const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
-  // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics: 122/129).
+  // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics:
+  // 122/129).
   const double late = late_share(*aligner, tailed(20'000));
   CHECK(late > 0.040);
   CHECK(late < 0.066);
 }
 
 TEST_CASE("Mean and four deviations are late for less than 3 % of an exponential tail") {
-  // Mean 5, mean deviation 10/e = 3.68 ms of that tail: at 19.7 ms beyond its beginning lies exp(-19.7/5) = 1.9 %; the averages
-  // of 16 events waver.
+  // Mean 5, mean deviation 10/e = 3.68 ms of that tail: at 19.7 ms beyond its beginning lies exp(-19.7/5) = 1.9 %;
+  // the averages of 16 events waver.
   const auto aligner = make_aligner(AlignerKind::kMovingAverage, 0 * kMs);
   const double late = late_share(*aligner, tailed(20'000));
   CHECK(late > 0.005);
@@ -84,6 +85,7 @@ TEST_CASE("One event that came very late moves the quantile by nothing") {
 }
 
 TEST_CASE("Aligners are known by name, and no others") {
-  for (const char* name : {"fixed", "quantile", "average", "virtual-time"}) CHECK(name_of(aligner_named(name)) == std::string(name));
+  for (const char* name : {"fixed", "quantile", "average", "virtual-time"})
+    CHECK(name_of(aligner_named(name)) == std::string(name));
   CHECK_THROWS_AS(aligner_named("median"), std::invalid_argument);
 }

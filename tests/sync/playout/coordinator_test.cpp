@@ -106,7 +106,9 @@ TEST_CASE("A newer request is put in force and an older one is not") {
   CHECK_FALSE(c.take(request_for(asked, 200)));
 }
 
-TEST_CASE("Of two hosts the one with the lower clock speaks; the other knows all it said and goes on when it falls silent") {
+TEST_CASE(
+    "Of two hosts the one with the lower clock speaks; the other knows all it said and goes on when it falls "
+    "silent") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
   REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // heard by one only

@@ -40,7 +40,9 @@ TEST_CASE("Nobody waits for a sense that needs more than the budget") {
   CHECK(delays.at("haptic") == 25 * kMs);
 }
 
-TEST_CASE("An experiment gives each sense its asynchrony against the base, negative ones too, whatever the senses need") {
+TEST_CASE(
+    "An experiment gives each sense its asynchrony against the base, negative ones too, whatever the senses "
+    "need") {
   PlayoutPlan p = plan(Policy::kExperiment);
   p.base = 150 * kMs;
   p.soa = parse_soa("audio=50ms,visual=-100ms,wind=-0.01s");
