@@ -14,11 +14,8 @@
 #include "sync/node.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
-#include "visual_node/egl/display.h"
 #include "visual_node/frame/frame_composer.h"
-#include "visual_node/frame/picture_rate.h"
-#include "visual_node/frame/quality_control.h"
-#include "visual_node/gl/renderer.h"
+#include "visual_node/gl/stage.h"
 #include "visual_node/scene_view/meshes.h"
 #include "visual_node/video/recording.h"
 
@@ -55,12 +52,8 @@ int main(int argc, char** argv) try {
   keep.folder = options.out;
   keep.video = !no_video;
 
-  visual::quiet_software_renderer();
-  const auto display = window ? visual::make_window("Tactus", settings.width, settings.height)
-                              : visual::make_headless(settings.egl_device);
-  auto renderer =
-      std::make_unique<visual::Renderer>(settings.width / 4 * 4, settings.height / 4 * 4, settings.shadow_size);
-  std::cerr << declaration.node << ": " << display->description() << std::endl;
+  visual::Stage stage(settings, window);
+  std::cerr << declaration.node << ": " << stage.description() << std::endl;
 
   sync::Node node(declaration, options);
   node.set_rate(settings.rate_Hz);
@@ -72,8 +65,6 @@ int main(int argc, char** argv) try {
   visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::Recording recording(keep);
-  visual::PictureRate rate;
-  visual::QualityControl quality(settings);
   visual::Frame frame;
   sync::Nanoseconds took{0};
   std::string said;
@@ -95,29 +86,21 @@ int main(int argc, char** argv) try {
     const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
                                                   visual::height_maps_of(scenes, trouble));
     for (const std::string& sentence : trouble) say(sentence);
-    renderer = std::make_unique<visual::Renderer>(view.width(), view.height(), settings.shadow_size);
-    renderer->load(view.geometries(), view.lighting(), view.reliefs());
-    renderer->warm_up(composer.frame(now, 0).list);
+    stage.load(view, composer.frame(now, 0).list, settings);
     recording.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
     sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
-    quality = visual::QualityControl(settings);
-    rate.restart();
   };
   const auto draw = [&](sync::HostTime now, std::int64_t tick) {
-    const sync::OutputDef& output = sense.output();
+    const sync::OutputDef output = sense.output();
     frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
-    renderer->set_quality(visual::degraded(quality.quality(), output.resolution));
-    renderer->draw_scene(frame.list);
-    renderer->wait();
+    stage.draw_scene(frame.list, output);
     // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
     const sync::HostTime latched = node.poll();
     receive(latched);
-    composer.latch(frame, latched, sense.delay(), rate.held());
-    renderer->draw_over(frame.list);
-    display->show(renderer->picture().framebuffer(), renderer->picture().width(), renderer->picture().height());
-    renderer->wait();
+    composer.latch(frame, latched, sense.delay(), stage.held());
+    stage.draw_over(frame.list);
     const sync::HostTime fence = sync::host_now();
     took = fence - now;
     // An event that arrives just after the latch waits for that of the next frame; not for a picture that a
@@ -131,7 +114,7 @@ int main(int argc, char** argv) try {
     node.count_rendered(rendered);
   };
 
-  while (node.running() && !display->closed()) {
+  while (node.running() && !stage.closed()) {
     const sync::HostTime now = node.wait();
     receive(now);
     if (scenes.poll(now)) {
@@ -139,14 +122,15 @@ int main(int argc, char** argv) try {
       continue;  // that took several ticks
     }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
-    const bool fresh = rate.due(now, sense.output().frame_rate_Hz, settings.rate_Hz);
+    const bool fresh = stage.due(now, sense.output());
     if (fresh) draw(now, tick);
     sense.publish(sync::host_now());
-    const auto read = [&](std::span<std::uint8_t> rgba) { renderer->picture().read(rgba); };
+    const auto read = [&](std::span<std::uint8_t> rgba) { stage.picture().read(rgba); };
     if (auto pair = recording.add(tick, now + took, read)) node.bus().publish(channels::kMediaClock, *pair);
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string video = recording.note();
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);
+    visual::QualityControl& quality = stage.quality();
     if (fresh && scenes.scene()) quality.add(sync::host_now() - now);
     if (const std::string change = quality.take_change(); !change.empty()) say(change);
     node.set_quality(quality.step(), quality.steps());

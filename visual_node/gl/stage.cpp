@@ -1,0 +1,32 @@
+#include "visual_node/gl/stage.h"
+
+namespace tactus::visual {
+
+Stage::Stage(const Settings& s, bool window) : quality_(s), loop_rate_Hz_(s.rate_Hz) {
+  quiet_software_renderer();
+  display_ = window ? make_window("Tactus", s.width, s.height) : make_headless(s.egl_device);
+  renderer_ = std::make_unique<Renderer>(s.width / 4 * 4, s.height / 4 * 4, s.shadow_size);
+}
+
+void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s) {
+  renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size);
+  renderer_->load(view.geometries(), view.lighting(), view.reliefs());
+  renderer_->warm_up(sample);
+  quality_ = QualityControl(s);
+  rate_.restart();
+  loop_rate_Hz_ = s.rate_Hz;
+}
+
+void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
+  renderer_->set_quality(degraded(quality_.quality(), output.resolution));
+  renderer_->draw_scene(list);
+  renderer_->wait();
+}
+
+void Stage::draw_over(const DrawList& list) {
+  renderer_->draw_over(list);
+  display_->show(picture().framebuffer(), picture().width(), picture().height());
+  renderer_->wait();
+}
+
+}  // namespace tactus::visual
