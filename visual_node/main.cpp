@@ -103,11 +103,12 @@ int main(int argc, char** argv) try {
     stage.draw_over(frame.list);
     const sync::HostTime fence = sync::host_now();
     took = fence - now;
+    const sync::HostTime shown = fence + sync::from_seconds(settings.display_latency_s);
     // An event that arrives just after the latch waits for that of the next frame; not for a picture that a
     // profile holds.
-    if (!output.any()) sense.set_output_latency(fence - latched + sync::from_seconds(1 / settings.rate_Hz));
+    if (!output.any()) sense.set_output_latency(shown - latched + sync::from_seconds(1 / settings.rate_Hz));
     std::int64_t rendered = 0;
-    for (const presentation_t& report : composer.presented(fence)) {
+    for (const presentation_t& report : composer.presented(shown)) {
       sense.report(report);
       rendered += report.outcome != presentation_t::DROPPED_LATE;
     }

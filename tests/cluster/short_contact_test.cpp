@@ -129,11 +129,13 @@ void check_all_but(const std::string& degraded) {
       for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
       INFO(sense << " of " << owed << ": " << said.str());
       CHECK(owed >= 10);
-      // The profile did what it says, to the sense that it names: 30 ms, less half a video frame, for a picture shows what is
-      // nearest to it.
+      // The profile did what it says, to the sense that it names: 30 ms, less half a video frame, for a picture shows
+      // what is nearest to it.
       if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 21);
-      // Held back by its rate the degraded sense may be too late to make sense, and says so.
-      CHECK(presented + (sense == degraded ? refused : 0) == owed);
+      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop touch feels only
+      // what is there when its turn comes.
+      const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
+      CHECK(presented + (may_refuse ? refused : 0) == owed);
     }
   }
 }

@@ -83,7 +83,7 @@ void Recording::begin(int width, int height, const Settings& settings) {
                                              });
   if (!options_.video) return;
   file_ = next_video(options_.folder);
-  clock_.emplace(settings.rate_Hz);
+  clock_.emplace();
   const auto complain = [shared = shared_](std::string text) {
     const std::lock_guard lock(shared->mutex);
     shared->trouble = std::move(text);
@@ -111,14 +111,13 @@ std::optional<media_clock_t> Recording::add(std::int64_t tick, sync::HostTime fe
   }
   if (!video_ || video_->ended()) return std::nullopt;
   if (!offer(*video_)) return ++dropped_, std::nullopt;
-  const auto pair = clock_->frame(tick);
-  if (!pair) return std::nullopt;
+  const SlotClock::Pair pair = clock_->frame(tick);
   media_clock_t m{};
   m.header.sim_time_ns = -1;
   m.medium = std::filesystem::path(file_).filename().string();
-  m.index = pair->index;
+  m.index = pair.index;
   m.host_time_ns = sync::to_ns(fence);
-  m.reason = pair->reason;
+  m.reason = pair.reason;
   return m;
 }
 

@@ -13,19 +13,13 @@ std::optional<std::int64_t> SlotFiller::repeats_before(std::int64_t tick) {
   return repeats;
 }
 
-std::optional<SlotClock::Pair> SlotClock::frame(std::int64_t tick) {
-  std::optional<Pair> pair;
-  if (!first_) {
-    first_ = tick;
-    pair = Pair{0, media_clock_t::START};
-  } else if (tick > last_ + 1) {
-    pair = Pair{tick - *first_, media_clock_t::UNDERFLOW};
-  } else if (tick - last_told_ >= per_second_) {
-    pair = Pair{tick - *first_, media_clock_t::PERIODIC};
-  }
+SlotClock::Pair SlotClock::frame(std::int64_t tick) {
+  const bool start = !first_, missed = first_ && tick > last_ + 1;
+  if (start) first_ = tick;
   last_ = tick;
-  if (pair) last_told_ = tick;
-  return pair;
+  return {tick - *first_, start    ? media_clock_t::START
+                          : missed ? media_clock_t::UNDERFLOW
+                                   : media_clock_t::PERIODIC};
 }
 
 }  // namespace tactus::visual

@@ -20,23 +20,19 @@ class SlotFiller {
   std::int64_t next_ = 0;  // slot to be filled next
 };
 
-// Says which frames get a pair (index in the file, host time): the first, one a second, and the one after a missed
-// slot.
+// The pair (index in the file, host time) of every frame: between two of them nobody need guess.
 class SlotClock {
  public:
-  explicit SlotClock(double rate_Hz) : per_second_(static_cast<std::int64_t>(rate_Hz + 0.5)) {}
-
   struct Pair {
     std::int64_t index;
-    std::int8_t reason;  // media_clock_t: START, PERIODIC, UNDERFLOW
+    std::int8_t reason;  // media_clock_t: START, UNDERFLOW after a missed slot, else PERIODIC
   };
   // Call for every frame that goes to the encoder.
-  std::optional<Pair> frame(std::int64_t tick);
+  Pair frame(std::int64_t tick);
 
  private:
-  std::int64_t per_second_;
   std::optional<std::int64_t> first_;
-  std::int64_t last_ = 0, last_told_ = 0;
+  std::int64_t last_ = 0;
 };
 
 }  // namespace tactus::visual
