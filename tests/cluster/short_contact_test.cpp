@@ -113,7 +113,7 @@ void check_all_but(const std::string& degraded) {
     Result r = read(run.out());
     REQUIRE(r.lasted_ms.size() >= 10);
     std::sort(r.lasted_ms.begin(), r.lasted_ms.end());
-    CHECK(r.lasted_ms[r.lasted_ms.size() / 2] == Approx(3).margin(1));
+    CHECK(r.lasted_ms[r.lasted_ms.size() / 2] == Approx(3).margin(1.5));
     for (const auto& [sense, kinds] : kOwes) {
       int owed = 0, presented = 0, refused = 0;
       std::map<std::string, int> outcomes;
@@ -130,10 +130,11 @@ void check_all_but(const std::string& degraded) {
       for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
       INFO(sense << " of " << owed << ": " << said.str());
       CHECK(owed >= 10);
-      // The profile did what it says, to the sense that it names: 30 ms, less one tick of rounding.
-      if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 29);
-      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop
-      // touch feels only what is there when its turn comes.
+      // The profile did what it says, to the sense that it names: 30 ms, less half a video frame, for a picture shows
+      // what is nearest to it.
+      if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 21);
+      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop touch feels only
+      // what is there when its turn comes.
       const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
       CHECK(presented + (may_refuse ? refused : 0) == owed);
     }
