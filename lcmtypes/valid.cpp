@@ -188,7 +188,7 @@ bool valid(const tool_state_t& m) {
 }
 bool valid(const presented_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
-  return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.owes, 0, 7) &&
+  return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.owes, 0, 15) &&
          m.tool >= -1 && between(m.state, node_health_t::WAITING, node_health_t::READY) &&
          sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
          m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&

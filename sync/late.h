@@ -4,7 +4,7 @@
 //   play with fade      as it should be  weaker, to nothing at drop_after       dropped
 //   drop                as it should be  as it should be, called late           dropped
 //   show newest         as it should be  with what is newest then, called late  dropped
-//   always apply        as it should be  applied, called late                   applied, called late
+//   always apply        as it should be  applied, called late                   applied, called late; nobody waits for it
 //
 // Every outcome is reported. Pure.
 #pragma once

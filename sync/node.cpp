@@ -193,7 +193,7 @@ node_health_t Node::health_message(HostTime now) {
   m.header.sim_time_ns = -1;
   m.node = options_.name;
   m.modality = declaration_.modality;
-  m.owes = declaration_.owes;
+  m.owes = declaration_.owes | (declaration_.late == Late::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
   m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
   if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();

@@ -136,10 +136,11 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
   }
 }
 
-std::vector<std::string> PresentationMatcher::senses() const {
-  std::vector<std::string> names;
-  for (const auto& [name, tally] : tallies_) names.push_back(name);
-  return names;
+std::map<std::string, bool> PresentationMatcher::senses() const {
+  std::map<std::string, bool> waited_for;
+  for (const auto& [source, r] : renderers_)
+    if (!r.modality.empty()) waited_for[r.modality] = (r.owes & node_health_t::NOT_WAITED_FOR) == 0;
+  return waited_for;
 }
 
 void PresentationMatcher::advance(HostTime now) {

@@ -89,8 +89,8 @@ class PresentationMatcher {
   // not heard of again until now.
   void finish(HostTime now);
 
-  // The senses whose nodes were heard of.
-  std::vector<std::string> senses() const;
+  // The senses whose nodes were heard of, and whether the others wait for them.
+  std::map<std::string, bool> senses() const;
   std::int64_t begins() const { return begins_; }
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }

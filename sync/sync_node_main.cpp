@@ -122,7 +122,7 @@ int main(int argc, char** argv) try {
       if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);
     while (const auto m = playouts.pop())
       if (m->message.header.run_id == options.run_id) playout.take(m->message, now);
-    for (const std::string& sense : matcher.senses()) playout.needs().know(sense);
+    for (const auto& [sense, waited_for] : matcher.senses()) playout.needs().know(sense, !waited_for);
     for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
     if (auto m = playout.due(now)) node.bus().publish(channels::kPlayout, *m);
     if (now < next_report) continue;

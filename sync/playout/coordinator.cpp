@@ -82,7 +82,7 @@ std::optional<playout_t> PlayoutCoordinator::due(HostTime now) {
   const double rate_Hz = lockstep_rate_Hz(plan_, needed);
   if (rate_Hz == 0 || std::abs(rate_Hz - lockstep_Hz_) > kLockstepSlack * lockstep_Hz_) lockstep_Hz_ = rate_Hz;
   m.lockstep_Hz = lockstep_Hz_;
-  for (const auto& [name, delay] : playout_delays(plan_, needed)) {
+  for (const auto& [name, delay] : playout_delays(plan_, needed, needs_.slow())) {
     if (estimated(plan_) && !known) break;
     playout_entry_t e{};
     e.modality = name;

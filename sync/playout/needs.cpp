@@ -27,6 +27,14 @@ Needs::Sense* Needs::of(const std::string& modality) {
   return &sense;
 }
 
+void Needs::know(const std::string& modality, bool slow) {
+  if (of(modality) == nullptr) return;
+  if (slow)
+    slow_.insert(modality);
+  else
+    slow_.erase(modality);
+}
+
 void Needs::add(const std::string& modality, Nanoseconds needed) {
   Sense* sense = of(modality);
   if (sense == nullptr) return;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "sync/playout/policy.h"
@@ -21,13 +22,14 @@ class Needs {
 
   // The last events are estimated anew.
   void set_plan(const PlayoutPlan& plan);
-  // A sense is there, whether it has presented anything or not.
-  void know(const std::string& modality) { of(modality); }
+  // A sense is there, whether it has presented anything or not. slow: no other waits for it.
+  void know(const std::string& modality, bool slow = false);
   void add(const std::string& modality, Nanoseconds needed);
   // By the aligner; more than the budget when most lately were; none before the first event.
   std::optional<Nanoseconds> needed(const std::string& modality) const;
   // Of all senses that are there, for playout_delays: 0 for those that have presented nothing yet.
   std::map<std::string, Nanoseconds> all() const;
+  const std::set<std::string>& slow() const { return slow_; }
 
  private:
   static constexpr std::size_t kMaxSenses = 64;
@@ -42,6 +44,7 @@ class Needs {
 
   PlayoutPlan plan_;
   std::map<std::string, Sense> senses_;
+  std::set<std::string> slow_;
 };
 
 }  // namespace tactus::sync

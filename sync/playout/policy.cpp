@@ -25,12 +25,13 @@ std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& 
   return order;
 }
 
-// What the slowest needs that the budget allows to wait for.
-Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed) {
+// What the one needs that takes longest of those that are waited for.
+Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed,
+                         const std::set<std::string>& slow) {
   if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
   Nanoseconds most{0};
   for (const auto& [name, time] : needed)
-    if (time <= plan.budget) most = std::max(most, time);
+    if (time <= plan.budget && !slow.contains(name)) most = std::max(most, time);
   return most;
 }
 
@@ -77,7 +78,8 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
 }
 
 std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
-                                                  const std::map<std::string, Nanoseconds>& needed) {
+                                                  const std::map<std::string, Nanoseconds>& needed,
+                                                  const std::set<std::string>& slow) {
   std::map<std::string, Nanoseconds> delays;
   for (const auto& [name, time] : needed) delays[name] = Nanoseconds(0);
   switch (plan.policy) {
@@ -86,7 +88,7 @@ std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
     case Policy::kLocalHapticFirst: {
       auto others = needed;
       if (plan.policy == Policy::kLocalHapticFirst) others.erase("haptic");
-      for (const auto& [name, time] : others) delays[name] = common_delay(plan, others);
+      for (const auto& [name, time] : others) delays[name] = common_delay(plan, others, slow);
       break;
     }
     case Policy::kExperiment:

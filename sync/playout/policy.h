@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "sync/playout/aligner.h"
@@ -45,9 +46,10 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text);
 Nanoseconds parse_duration(const std::string& text);
 
 // needed: what each sense needs by its aligner; senses not heard of yet are not in it. A sense that needs more
-// than the budget is not waited for: it is late, and the others stay where they are.
+// than the budget is not waited for: it is late, and the others stay where they are. Neither is a slow one.
 std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
-                                                  const std::map<std::string, Nanoseconds>& needed);
+                                                  const std::map<std::string, Nanoseconds>& needed,
+                                                  const std::set<std::string>& slow = {});
 
 // Of kItouch2005: rate of a loop in which every sense waits for the one before, Hz; 0 for any other policy or
 // before anything is known.

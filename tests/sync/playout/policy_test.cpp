@@ -40,6 +40,14 @@ TEST_CASE("Nobody waits for a sense that needs more than the budget") {
   CHECK(delays.at("haptic") == 25 * kMs);
 }
 
+TEST_CASE("Nobody waits for a slow sense, which comes with the others all the same") {
+  auto needed = kNeeded;
+  needed["thermal"] = 50 * kMs;
+  const auto delays = playout_delays(plan(Policy::kAligned), needed, {"thermal"});
+  CHECK(delays.at("audio") == 35 * kMs);
+  CHECK(delays.at("thermal") == 35 * kMs);
+}
+
 TEST_CASE(
     "An experiment gives each sense its asynchrony against the base, negative ones too, whatever the senses "
     "need") {
