@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include "sync/bus.h"
 #include "sync/identity.h"
@@ -18,6 +19,7 @@ using namespace tactus;
 namespace {
 
 constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 100 ms
+constexpr sync::Nanoseconds kListen{500'000'000};     // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::int64_t realtime_ns() {
@@ -62,6 +64,17 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("playout", run_id), bus_options);
   auto& playouts = bus.queue<playout_t>(channels::kPlayout, 64);
+  auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
+  std::set<std::string> senses;
+  for (const sync::HostTime begin = sync::host_now(); !plan.soa.empty() && sync::host_now() < begin + kListen;) {
+    bus.wait(kRepeat);
+    bus.drain(sync::host_now());
+    while (const auto m = healths.pop())
+      if (m->message.header.run_id == run_id) senses.insert(m->message.modality);
+  }
+  for (const auto& [name, asynchrony] : plan.soa)
+    if (!senses.contains(name))
+      throw std::runtime_error("no sense \"" + sync::printable(name) + "\" is heard in this cluster; nothing was changed");
   playout_request_t request = sync::request_for(plan, realtime_ns());
   const sync::HostTime begin = sync::host_now();
   for (sync::HostTime next = begin; sync::host_now() < begin + kPatience;) {

@@ -121,13 +121,13 @@ def profile(here, text):
 
 
 def strangers(plan):
-    """What the profile degrades that is none of this run's senses. One's own may join later; a misspelt one never will."""
-    if plan.degrade is None:
-        return []
+    """What profile and asynchronies name that is none of this run's senses. One's own may join later; a misspelt one never will."""
+    named = {part.partition("=")[0] for word in plan.playout if word.startswith("--soa=") for part in word[len("--soa="):].split(",")}
     try:
-        named = {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
+        if plan.degrade is not None:
+            named |= {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
     except (xml.etree.ElementTree.ParseError, OSError):
-        return []  # the nodes say what is wrong with it, with the line
+        pass  # the nodes say what is wrong with it, with the line
     return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 

@@ -135,7 +135,7 @@ def run(plan):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
     for name in arguments.strangers(plan):
-        say(f"the profile degrades {name!r}, which is none of this run's senses")
+        say(f"{name!r} is named, which is none of this run's senses")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()

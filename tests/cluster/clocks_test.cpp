@@ -57,9 +57,9 @@ TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its hea
   if (!time_namespaces(run)) return;
   Running r;
   // Both in one time namespace: each namespace is a clock of its own, and a host has one sync_node.
-  const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + r.folder.path().string();
-  const std::string there = (programs() / "sync_node").string() + common + " --name sync_node_there & exec " +
-                            (programs() / "visual_node").string() + common;
+  const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + quoted(r.folder.path());
+  const std::string there = quoted(programs() / "sync_node") + common + " --name sync_node_there & exec " +
+                            quoted(programs() / "visual_node") + common;
   r.processes.spawn("visual_node", an_hour_ahead({"sh", "-c", there}));
   auto& reports = r.ear.bus().queue<sync_report_t>(channels::kSyncReport, 64);
   r.processes.start("sync_node");

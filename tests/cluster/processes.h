@@ -59,6 +59,9 @@ class Processes {
   std::map<std::string, int> ended_;
 };
 
+// For a shell: a folder may have a blank in its name.
+inline std::string quoted(const std::string& word) { return "'" + word + "'"; }
+
 // The folder of the programs under test.
 std::filesystem::path programs();
 // The root of the repository.

@@ -74,7 +74,7 @@ TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps run
   RunScript run;
   const std::string script = (repository() / "scripts/run").string();
   run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
-                               script + " " + tapping_scene() + " --seconds 3 --out " + run.out().string() + " | head -1"});
+                               quoted(script) + " " + quoted(tapping_scene()) + " --seconds 3 --out " + quoted(run.out()) + " | head -1"});
   CHECK(run.finish(kLongest_s, "pipe") == 0);
   INFO(run.processes.said("pipe"));
   for (int i = 0; i < 600 && !std::filesystem::exists(run.out() / "events.csv"); ++i)

@@ -1,3 +1,6 @@
+#include <pwd.h>
+#include <unistd.h>
+
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -105,6 +108,11 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
 
 void quiet_software_renderer() {
   setenv("LP_NUM_THREADS", "1", 0);
+  // Mesa keeps compiled shaders under the home that the password file names, and complains where that cannot be written: in a
+  // user namespace it is root's.
+  const passwd* me = getpwuid(getuid());
+  const bool told = std::getenv("XDG_CACHE_HOME") || std::getenv("MESA_SHADER_CACHE_DIR");
+  if (!told && (me == nullptr || access(me->pw_dir, W_OK) != 0)) setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
   setenv("EGL_LOG_LEVEL", "fatal", 0);  // what failed is in our own sentence
 }
 
