@@ -47,9 +47,12 @@ void Sense::set_scene(const scene_t& scene, int tool) {
   stack_.set_scene(names_);
   tool_ = tool;
   // What was said on the command line or since then holds.
-  if (scene.profile.empty() || !node_.options().profile.empty() || receiver_.generation() > 0) return;
-  const std::int64_t hash = fnv1a_64(scene.profile.data(), scene.profile.size());
-  if (hash != profile_hash_) put_in_force({scene.profile, hash, 0, SimTime{}});
+  if (!node_.options().profile.empty() || receiver_.generation() > 0) return;
+  // A scene that brings none takes away that of the scene before.
+  if (scene.profile.empty() && profile_hash_ == 0) return;
+  const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
+  const std::int64_t hash = fnv1a_64(text.data(), text.size());
+  if (hash != profile_hash_) put_in_force({text, hash, 0, SimTime{}});
 }
 
 void Sense::put_in_force(const ProfileInForce& profile) {

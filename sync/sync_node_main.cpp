@@ -91,7 +91,8 @@ int main(int argc, char** argv) try {
   auto& playouts = node.bus().queue<playout_t>(channels::kPlayout, kHealthQueue);
   auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
   sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
-  if (const auto kept = sync::kept_request(options.out, options.run_id)) playout.take(*kept);
+  if (const auto kept = sync::kept_request(options.out, options.run_id); kept && playout.take(*kept))
+    std::cerr << options.name << ": goes on with what was asked for before: policy " << name_of(playout.plan().policy) << std::endl;
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile;

@@ -5,20 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sync/playout/exchange.h"
+
 namespace tactus::sync {
 namespace {
-
-// Of a request and of what another coordinator says; both are within range by lcmtypes/valid.h.
-PlayoutPlan plan_of(const auto& m) {
-  PlayoutPlan plan;
-  plan.policy = static_cast<Policy>(m.policy);
-  plan.aligner = static_cast<AlignerKind>(m.aligner);
-  plan.base = Nanoseconds(m.base_ns);
-  plan.budget = Nanoseconds(m.budget_ns);
-  for (const playout_entry_t& e : m.entries)
-    if (e.soa_ns != 0) plan.soa[e.modality] = Nanoseconds(e.soa_ns);
-  return plan;
-}
 
 // The delays come from what the senses were heard to need.
 bool estimated(const PlayoutPlan& plan) {
@@ -68,12 +58,7 @@ std::optional<playout_t> PlayoutCoordinator::due(HostTime now) {
   if (now < next_ || (heard_ && now - *heard_ < kSilent)) return std::nullopt;
   next_ = now - next_ < kPeriod ? next_ + kPeriod : now + kPeriod;
   playout_t m{};
-  m.header.sim_time_ns = -1;
-  m.generation = generation_;
-  m.policy = static_cast<std::int8_t>(plan_.policy);
-  m.aligner = static_cast<std::int8_t>(plan_.aligner);
-  m.base_ns = plan_.base.count();
-  m.budget_ns = plan_.budget.count();
+  write_plan(m, generation_, plan_);
   const auto needed = needs_.all();
   // Before anything is known of any sense, each keeps its own delay.
   const bool known =

@@ -13,12 +13,7 @@ constexpr const char* kFile = "playout.request";
 
 playout_request_t request_for(const PlayoutPlan& plan, std::int64_t generation) {
   playout_request_t m{};
-  m.header.sim_time_ns = -1;
-  m.generation = generation;
-  m.policy = static_cast<std::int8_t>(plan.policy);
-  m.aligner = static_cast<std::int8_t>(plan.aligner);
-  m.base_ns = plan.base.count();
-  m.budget_ns = plan.budget.count();
+  write_plan(m, generation, plan);
   for (const auto& [name, asynchrony] : plan.soa) {
     playout_entry_t e{};
     e.modality = name;

@@ -12,6 +12,29 @@ namespace tactus::sync {
 
 playout_request_t request_for(const PlayoutPlan& plan, std::int64_t generation);
 
+// A plan in a playout_request_t, or in the playout_t that answers it; asynchronies are in the entries.
+template <class Message>
+void write_plan(Message& m, std::int64_t generation, const PlayoutPlan& plan) {
+  m.header.sim_time_ns = -1;
+  m.generation = generation;
+  m.policy = static_cast<std::int8_t>(plan.policy);
+  m.aligner = static_cast<std::int8_t>(plan.aligner);
+  m.base_ns = plan.base.count();
+  m.budget_ns = plan.budget.count();
+}
+// Both are within range by lcmtypes/valid.h.
+template <class Message>
+PlayoutPlan plan_of(const Message& m) {
+  PlayoutPlan plan;
+  plan.policy = static_cast<Policy>(m.policy);
+  plan.aligner = static_cast<AlignerKind>(m.aligner);
+  plan.base = Nanoseconds(m.base_ns);
+  plan.budget = Nanoseconds(m.budget_ns);
+  for (const playout_entry_t& e : m.entries)
+    if (e.soa_ns != 0) plan.soa[e.modality] = Nanoseconds(e.soa_ns);
+  return plan;
+}
+
 void keep_request(const std::filesystem::path& folder, const playout_request_t& request);
 // None when there is none, it is damaged, or it is of another run.
 std::optional<playout_request_t> kept_request(const std::filesystem::path& folder, std::int64_t run_id);

@@ -1,8 +1,9 @@
 // A degradation profile in a running cluster.
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
-#include "tests/cluster/running.h"
+#include "tests/cluster/profiles.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -16,25 +17,13 @@ int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
                                         [&](const auto& r) { return r.second.outcome == outcome; }));
 }
 
-// Puts the profile in force through the program that people use. Returns what it said.
-std::string degrade(Running& c, const std::string& profile) {
-  c.processes.spawn("degrade", {programs() / "degrade", "--run-id", std::to_string(Running::kRunId), profile});
-  const int status = c.processes.wait_for_exit("degrade", kPatience_s);
-  const std::string said = c.processes.said("degrade");
-  INFO(said);
-  CHECK(status == 0);
-  return said;
-}
-
 }  // namespace
 
 TEST_CASE("A profile put in force while the cluster runs degrades its own sense alone, and can be taken away") {
   Running c;
   c.start();
-  const std::string file = c.folder.path() / "silence.xml";
-  std::ofstream(file) << "<profile name=\"silence\"><degrade modality=\"audio\" off=\"true\"/></profile>";
   const auto before = c.rates(1);
-  CHECK(degrade(c, file).find("audio_node") != std::string::npos);
+  CHECK(put_in_force(c, "<degrade modality=\"audio\" off=\"true\"/>").find("audio_node") != std::string::npos);
 
   CHECK(c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE) >= 3; },
                          kPatience_s));
@@ -47,8 +36,31 @@ TEST_CASE("A profile put in force while the cluster runs degrades its own sense 
     CHECK(rate > before.at(node) / 2);
   }
 
-  degrade(c, "off");
+  put_in_force(c, "");
   const int heard = outcomes(c.ear, "audio", presentation_t::PRESENTED);
   CHECK(
       c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED) > heard; }, kPatience_s));
+}
+
+TEST_CASE(
+    "A scene that brings a profile degrades the sense that it names, and no other, until somebody takes it away") {
+  Running c;
+  std::stringstream text;
+  text << std::ifstream(tapping_scene()).rdbuf();
+  std::string scene = text.str();
+  scene.insert(
+      scene.find("<gravity>"),
+      "<tactus:profile name=\"silence\"><tactus:degrade modality=\"audio\" off=\"true\"/></tactus:profile>\n");
+  const std::string file = c.folder.path() / "silent.sdf";
+  std::ofstream(file) << scene;
+  c.processes.start_all(file);
+  const auto dropped = [&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE); };
+  const auto heard = [&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED); };
+  CHECK(c.ear.wait_until(
+      [&] { return dropped() >= 3 && outcomes(c.ear, "haptic", presentation_t::PRESENTED) >= 3; }, kPatience_s));
+  INFO(c.words());
+  CHECK(heard() == 0);
+  CHECK(outcomes(c.ear, "visual", presentation_t::DROPPED_BY_PROFILE) == 0);
+  put_in_force(c, "");
+  CHECK(c.ear.wait_until([&] { return heard() > 0; }, kPatience_s));
 }

@@ -37,6 +37,8 @@ struct RunLog {
     writer.write((to_ns(MatcherFixture::at(ms)) + kOffsetNs) / 1000, channel, encode(m));
     writer.flush();
   }
+  std::int8_t quality = 0, qualities = 0;
+  std::vector<input_health_t> inputs;
   template <class Message>
   void send(const char* channel, Message m, double ms) {
     m.header.seq = seq[channel + std::to_string(m.header.source)]++;
@@ -54,6 +56,9 @@ struct RunLog {
     Histogram h;
     h.add(Nanoseconds(static_cast<std::int64_t>(incarnation) * 100'000));
     m.tick = m.wake = h.to_message();
+    m.quality = quality, m.qualities = qualities;
+    m.inputs = inputs;
+    m.input_count = static_cast<std::int32_t>(inputs.size());
     send(channels::kNodeHealth, m, ms);
   }
   RunSummary summary(SummaryOptions options = {}) const {

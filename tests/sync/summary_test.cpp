@@ -333,3 +333,27 @@ TEST_CASE("A run with more events than can be matched is a failure that is named
   CHECK_THAT(s.failure(), Catch::Contains("found no room"));
   CHECK_THAT(to_text(s), Catch::Contains("found no room"));
 }
+
+TEST_CASE("The summary tells how long each step of a quality ladder was in use, and how old the inputs were") {
+  RunLog log;
+  log.qualities = 3;
+  input_health_t input{};
+  input.channel = "WORLD_STATE";
+  for (int i = 0; i < 100; ++i) {
+    log.quality = i < 75 ? 0 : 2;
+    input.age_ns = i < 90 ? 5'000'000 : 80'000'000;
+    log.inputs = {input};
+    log.health("visual_node", "visual", 100.0 * i, 60);
+  }
+  const Json j = Json::parse(to_json(log.summary()))["nodes"]["visual_node"];
+  CHECK(j["quality"] == Json::array({0.75, 0, 0.25}));
+  // To a bin of the histogram, a quarter octave.
+  CHECK(j["input_age_ms"]["WORLD_STATE"]["p50"].get<double>() == Approx(5).epsilon(0.19));
+  CHECK(j["input_age_ms"]["WORLD_STATE"]["p99"].get<double>() == Approx(80).epsilon(0.19));
+}
+
+TEST_CASE("A node without a quality ladder has no quality in the summary") {
+  RunLog log;
+  log.health("visual_node", "visual", 0, 60);
+  CHECK(Json::parse(to_json(log.summary()))["nodes"]["visual_node"]["quality"].is_null());
+}
