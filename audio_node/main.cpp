@@ -1,4 +1,4 @@
-// audio_node: sounds the hits of the scene through a sound card, each at a constant delay after its event.
+// audio_node: sounds the hits of the scene through a sound card, each on its sample: when PLAYOUT says, else at a delay of its own.
 //
 //   in   CONTACT_EVENTS; CONTACTS (its clock only); SCENE
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
