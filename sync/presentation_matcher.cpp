@@ -23,6 +23,7 @@ bool was_presented(std::int8_t outcome) {
 }
 
 // What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
+constexpr Nanoseconds kMostHeld{61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
 constexpr Nanoseconds kMostUncertain{60'000'000'000};
 
 // Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
@@ -143,14 +144,55 @@ std::map<std::string, bool> PresentationMatcher::senses() const {
   return waited_for;
 }
 
+void PresentationMatcher::observe(const playout_t& m, HostTime) {
+  if (m.header.run_id != own_.run_id) return;
+  const Nanoseconds turn = m.lockstep_Hz > 0 ? from_seconds(std::min(1 / m.lockstep_Hz, 60.0)) : Nanoseconds(0);
+  for (const playout_entry_t& e : m.entries)
+    if (has_room(playout_, e.modality, kMaxSenses))
+      playout_[e.modality] = std::max(playout_[e.modality], Nanoseconds(e.delay_ns) + turn);
+}
+
+void PresentationMatcher::observe(const degraded_t& m, HostTime) {
+  if (m.header.run_id != own_.run_id) return;
+  for (const decision_t& d : m.decisions) {
+    const auto it = d.is_event ? events_.find(d.key) : events_.end();
+    if (it == events_.end() || !has_room(it->second.held, m.modality, kMaxSenses)) continue;
+    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMostHeld);
+  }
+}
+
+Nanoseconds PresentationMatcher::on_purpose(const Event& e, const std::string& modality) const {
+  const auto playout = playout_.find(modality);
+  const auto held = e.held.find(modality);
+  return (playout == playout_.end() ? Nanoseconds(0) : playout->second) +
+         (held == e.held.end() ? Nanoseconds(0) : held->second);
+}
+
+Nanoseconds PresentationMatcher::longest_on_purpose(const Event& e) const {
+  Nanoseconds longest{0};
+  for (const auto& [modality, tally] : tallies_) longest = std::max(longest, on_purpose(e, modality));
+  return longest;
+}
+
 void PresentationMatcher::advance(HostTime now) {
   while (!due_.empty() && due_.begin()->first <= now) {
-    settle(events_.at(due_.begin()->second), now, false);
+    const std::int64_t id = due_.begin()->second;
+    Event& event = events_.at(id);
     due_.erase(due_.begin());
+    const Nanoseconds later = longest_on_purpose(event);
+    const HostTime until = event.time + later + kSettleAfter;
+    if (later > Nanoseconds(0) && until > now)
+      due_.emplace(until, id);
+    else
+      settle(event, now, false);
   }
   while (!forget_.empty() && forget_.begin()->first <= now) {
     const auto it = events_.find(forget_.begin()->second);
     forget_.erase(forget_.begin());
+    if (it->second.known && !it->second.settled) {  // some sense is late on purpose
+      forget_.emplace(now + kRemember, it->first);
+      continue;
+    }
     if (!it->second.known) unknown_reports_ += static_cast<std::int64_t>(it->second.reports.size());
     events_.erase(it);
   }
@@ -184,7 +226,8 @@ void PresentationMatcher::settle(Event& e, HostTime now, bool last) {
 }
 
 void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Event& e, HostTime now, bool last) {
-  const NodeLife::Answer life = r.life.during(e.time, e.time + kReportsWithin, now);
+  const Nanoseconds later = on_purpose(e, r.modality);
+  const NodeLife::Answer life = r.life.during(e.time, e.time + later + kReportsWithin, now);
   if (life.fate == NodeLife::Fate::kAbsent) return;
   DebtTally& tally = tallies_[r.modality];
   std::int64_t* outcome = nullptr;
@@ -201,6 +244,8 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
     if (by_profile || outcome == nullptr) outcome = by_profile ? &tally.dropped_by_profile : &tally.dropped_late;
   }
   if (outcome == nullptr) {
+    // The log ends before it was to be presented.
+    if (last && later > Nanoseconds(0) && now < e.time + later + kReportsWithin) return;
     const auto simulation = renderers_.find(e.source);
     const bool source_died = simulation != renderers_.end() &&
                              simulation->second.life.died_before(e.incarnation, e.time + kRepeated, now);

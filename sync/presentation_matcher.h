@@ -2,7 +2,7 @@
 // Pure.
 //
 // A node declares in NODE_HEALTH what it owes. An event is settled 1 s after its time (half a second after it was
-// first heard of, if that is later): nothing waits for a dead sense. Every debt has exactly one outcome:
+// first heard of, if that is later; so much later as a sense is to present it late on purpose): nothing waits for a dead sense. Every debt has exactly one outcome:
 //   presented           the node reported so, also late or inaudible
 //   dropped_by_profile  the node reported so: its degradation asked for it
 //   dropped_late        the node reported so
@@ -19,7 +19,9 @@
 #include <optional>
 #include <string>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/degraded_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/sync_report_t.hpp>
 #include <utility>
@@ -80,6 +82,9 @@ class PresentationMatcher {
   void observe(const contact_events_t&, HostTime arrival);
   void observe(const node_health_t&, HostTime arrival);
   void observe(const presented_t&, HostTime arrival);
+  // How late a sense presents on purpose, all events or single ones: they are settled so much later.
+  void observe(const playout_t&, HostTime arrival);
+  void observe(const degraded_t&, HostTime arrival);
   // How long senses needed, from an event to its earliest possible presentation with nothing degraded, by what was observed since
   // the last call.
   std::vector<Need> take_needs() { return std::exchange(needs_, {}); }
@@ -139,10 +144,14 @@ class PresentationMatcher {
     std::int64_t incarnation = 0;
     HostTime time{};
     std::vector<Report> reports;
+    std::map<std::string, Nanoseconds> held;  // by profiles, by modality
   };
 
   Event* find_or_add(std::int64_t id, HostTime arrival);
   bool owes(const Renderer&, const Event&) const;
+  // So much later than at once is this sense to present the event.
+  Nanoseconds on_purpose(const Event&, const std::string& modality) const;
+  Nanoseconds longest_on_purpose(const Event&) const;
   SenderClock& clock_of(const header_t&, HostTime arrival);
   void settle(Event&, HostTime now, bool last);
   void settle_debt(Renderer&, std::int32_t source, const Event&, HostTime now, bool last);
@@ -156,6 +165,7 @@ class PresentationMatcher {
   std::multimap<HostTime, std::int64_t> forget_;
   std::vector<LastDebt> last_debts_;
   std::vector<Need> needs_;
+  std::map<std::string, Nanoseconds> playout_;  // the longest delay so far, by modality
   std::map<std::string, DebtTally> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;

@@ -168,7 +168,8 @@ void Sense::publish_decisions() {
     out.is_event = d.is_event ? 1 : 0;
     out.time_ns = to_ns(d.time);
     out.why = static_cast<std::int8_t>(d.verdict.why);
-    out.held_ns = d.verdict.dropped() ? 0 : (d.verdict.release - d.arrival + d.verdict.shift).count();
+    const Nanoseconds held = d.verdict.release - d.arrival + d.verdict.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
+    out.held_ns = d.verdict.dropped() ? 0 : held.count();
     out.twice = d.verdict.twice ? 1 : 0;
     m.decisions.push_back(out);
     if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions_.size()) continue;

@@ -108,6 +108,8 @@ void RunSummary::add(const LogEvent& e) {
   feed.template operator()<clock_map_t>(channels::kClockMap, [&](const clock_map_t& m) { maps_->observe(m, now); });
   feed.template operator()<contact_events_t>(channels::kContactEvents, match);
   feed.template operator()<presented_t>(channels::kPresented, match);
+  feed.template operator()<playout_t>(channels::kPlayout, match);
+  feed.template operator()<degraded_t>(channels::kDegraded, match);
   if (header && e.channel == channels::kWorldState) observe_course(*header);
   matcher_.advance(now);
 }

@@ -88,6 +88,7 @@ int main(int argc, char** argv) try {
   sync::ProbeThread probes(options.bus, node.bus().identity(), clock);
   sync::ClockAgreement agreement(node.bus().identity().clock);
   sync::PresentationMatcher matcher(node.bus().clocks());
+  auto& degraded = node.bus().queue<degraded_t>(channels::kDegraded, kReportsQueue);
   auto& playouts = node.bus().queue<playout_t>(channels::kPlayout, kHealthQueue);
   auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
   sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
@@ -115,6 +116,7 @@ int main(int argc, char** argv) try {
     feed(matcher, health);
     feed(matcher, events);
     feed(matcher, presented);
+    feed(matcher, degraded);
     while (const auto m = degradations.pop())
       if (m->message.header.run_id == options.run_id)
         if (auto newer = profiles.take(m->message)) profile = std::move(newer);
@@ -122,7 +124,7 @@ int main(int argc, char** argv) try {
     while (const auto m = requests.pop())
       if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);
     while (const auto m = playouts.pop())
-      if (m->message.header.run_id == options.run_id) playout.take(m->message, now);
+      if (m->message.header.run_id == options.run_id) playout.take(m->message, now), matcher.observe(m->message, m->arrival);
     for (const auto& [sense, waited_for] : matcher.senses()) playout.needs().know(sense, !waited_for);
     for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
     if (auto m = playout.due(now)) node.bus().publish(channels::kPlayout, *m);

@@ -47,7 +47,8 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, Stack& st
   for (const contact_event_t& heard : m.events) {
     if (!first_heard(heard.event_id)) continue;
     const Verdict v = stack.decide(item_of(heard, m.header.incarnation, arrival));
-    if (decisions && v.touched)
+    const bool later = stack.presentation_delay(sim_time(heard.time_ns)) > Nanoseconds(0);
+    if (decisions && (v.touched || later))
       decisions->push_back(
           {static_cast<std::uint64_t>(heard.event_id), true, sim_time(heard.time_ns), v, arrival});
     if (v.dropped()) {
