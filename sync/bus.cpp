@@ -4,19 +4,27 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
+#include <system_error>
+
+#include "sync/udp_reader.h"
 
 namespace tactus::sync {
 namespace {
 
-// 2 MB: a 20,000-datagram burst of 100 bytes, or one second of the page budget. Capped by net.core.rmem_max.
-constexpr int kReceiveBufferBytes = 2 << 20;
-// LCM drops the newest message when a subscription's queue is full, so it must not fill: one second of every channel.
+// For LCM's own queues, which a bus in memory uses. It drops the newest message when one is full, so it must not
+// fill.
 constexpr int kLcmQueue = 20000;
+// Multicast comes back to its sender at once, or a firewall keeps it.
+constexpr Nanoseconds kSelfTest = std::chrono::seconds(2);
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // LCM's own: stock tools know what it is
 
-// LCM explains to stderr, at length, why it cannot start; one sentence of ours is enough. Takes what is written to stderr
-// while it lives.
+// LCM explains to stderr, at length, why it cannot start; one sentence of ours is enough. Takes what is written to
+// stderr while it lives.
 class CapturedStderr {
  public:
   CapturedStderr() : kept_(dup(STDERR_FILENO)), file_(memfd_create("stderr", MFD_CLOEXEC)) {
@@ -40,17 +48,29 @@ class CapturedStderr {
   int kept_, file_;
 };
 
-std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id, const BusOptions& options, int port) {
+std::string joining(const Identity& id, const std::string& url) {
+  return id.node + ": cannot join the bus at " + url + ": ";
+}
+
+// For sending. LCM binds no port for that and starts no thread.
+std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id) {
   const CapturedStderr lcm_says;
   auto connection = std::make_shared<lcm::LCM>(url);
-  // getFileno makes LCM bind, start its reading thread and test itself now, not at the first message.
-  if (connection->good() && (options.memory || connection->getFileno() >= 0)) return connection;
-  const std::string where = id.node + ": cannot join the bus at " + url + ": ";
-  if (lcm_says.text().find("in use") != std::string::npos)
-    throw std::runtime_error(where + "port " + std::to_string(port) + " is held by a program that does not share it; " +
-                             "choose another --port, and leave the one after it free too");
-  throw std::runtime_error(where + "there is no multicast route; start it with scripts/run, or add one: " +
-                           "ip route add 224.0.0.0/4 dev lo");
+  if (connection->good()) return connection;
+  throw std::runtime_error(
+      joining(id, url) +
+      "there is no multicast route; start it with scripts/run, or add one: " + "ip route add 224.0.0.0/4 dev lo");
+}
+
+std::unique_ptr<UdpReader> listen(const Identity& id, const BusOptions& options) try {
+  return std::make_unique<UdpReader>(options.group, options.port);
+} catch (const std::system_error& e) {
+  if (e.code().value() == EADDRINUSE)
+    throw std::runtime_error(
+        joining(id, lcm_url(options, options.port)) + "port " + std::to_string(options.port) +
+        " or the next is held by a program that does not share it; choose another --port, and " +
+        "leave the one after it free too");
+  throw std::runtime_error(joining(id, lcm_url(options, options.port)) + e.what());
 }
 
 }  // namespace
@@ -58,7 +78,8 @@ std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id, const
 struct Bus::Connections {
   std::shared_ptr<lcm::LCM> realtime;
   std::shared_ptr<lcm::LCM> bulk;
-  HostTime now{};  // stamp for what is drained
+  std::unique_ptr<UdpReader> reader;  // none in memory: there LCM hands over what arrives
+  HostTime now{};                     // stamp for what is drained
 
   struct Handler {
     Connections* connections;
@@ -68,35 +89,65 @@ struct Bus::Connections {
     }
   };
   std::vector<std::unique_ptr<Handler>> handlers;
+  using Subscribers = std::map<std::string, std::vector<InboxBase*>, std::less<>>;
+  std::array<Subscribers, 2> subscribers;  // of each port
 
-  lcm::LCM& at(Port port) { return port == Port::kBulk ? *bulk : *realtime; }
+  void hear(std::size_t side, const ChannelBytes& m) {
+    const auto at = subscribers[side].find(m.channel);
+    if (at == subscribers[side].end()) return;
+    // A piece of a long message is told as what it is: too long.
+    const std::size_t size = m.whole ? m.data.size() : channels::kMaxMessageBytes + 1;
+    for (InboxBase* inbox : at->second) inbox->accept(m.data.data(), size, now);
+  }
 };
 
 std::string lcm_url(const BusOptions& o, int port) {
   if (o.memory) return "memq://";
-  return "udpm://" + o.group + ":" + std::to_string(port) + "?ttl=" + std::to_string(o.ttl) +
-         "&recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+  return "udpm://" + o.group + ":" + std::to_string(port) + "?ttl=" + std::to_string(o.ttl);
 }
 
 Bus::Bus(Identity identity, const BusOptions& options)
     : identity_(std::move(identity)), maps_(identity_.run_id), connections_(std::make_unique<Connections>()) {
-  connections_->realtime = open(lcm_url(options, options.port), identity_, options, options.port);
-  connections_->bulk =
-      options.memory ? connections_->realtime
-                     : open(lcm_url(options, options.port + 1), identity_, options, options.port + 1);
+  Connections& c = *connections_;
+  c.realtime = c.bulk = open(lcm_url(options, options.port), identity_);
+  if (options.memory) return;
+  c.bulk = open(lcm_url(options, options.port + 1), identity_);
+  c.reader = listen(identity_, options);
+  test_self(lcm_url(options, options.port));
+}
+
+void Bus::test_self(const std::string& url) {
+  Connections& c = *connections_;
+  const std::string token = std::to_string(identity_.incarnation);
+  std::array<bool, 2> heard{};
+  for (const HostTime end = host_now() + kSelfTest; !(heard[0] && heard[1]);) {
+    if (host_now() > end)
+      throw std::runtime_error(
+          joining(identity_, url) +
+          "what is sent there does not come back; let the firewall pass UDP to its group, also "
+          "from this machine to itself");
+    for (lcm::LCM* port : {c.realtime.get(), c.bulk.get()})
+      port->publish(kSelfTestChannel, token.data(), static_cast<unsigned>(token.size()));
+    c.reader->wait(kSelfTest / 20);
+    c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) {
+      if (m.channel == kSelfTestChannel && std::equal(m.data.begin(), m.data.end(), token.begin(), token.end()))
+        heard[side] = true;
+    });
+  }
 }
 
 Bus::~Bus() = default;
 
 void Bus::subscribe(const char* channel, InboxBase* inbox, Port port) {
-  auto handler = std::make_unique<Connections::Handler>(Connections::Handler{connections_.get(), inbox});
-  const auto join = [&](lcm::LCM& connection) {
-    connection.subscribe(channel, &Connections::Handler::handle, handler.get())->setQueueCapacity(kLcmQueue);
-  };
-  const bool one_connection = connections_->realtime == connections_->bulk;
-  if (port != Port::kBulk) join(*connections_->realtime);
-  if (port == Port::kBulk || (port == Port::kBoth && !one_connection)) join(*connections_->bulk);
-  connections_->handlers.push_back(std::move(handler));
+  Connections& c = *connections_;
+  if (!c.reader) {
+    auto handler = std::make_unique<Connections::Handler>(Connections::Handler{&c, inbox});
+    c.realtime->subscribe(channel, &Connections::Handler::handle, handler.get())->setQueueCapacity(kLcmQueue);
+    c.handlers.push_back(std::move(handler));
+    return;
+  }
+  if (port != Port::kBulk) c.subscribers[0][channel].push_back(inbox);
+  if (port != Port::kRealtime) c.subscribers[1][channel].push_back(inbox);
 }
 
 namespace {
@@ -122,19 +173,20 @@ void Bus::follow_clocks() {
 }
 
 void Bus::drain(HostTime now) {
-  connections_->now = now;
+  Connections& c = *connections_;
+  c.now = now;
+  if (c.reader)
+    return c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) { c.hear(side, m); });
   int left = kMaxDrain;
-  while (left > 0 && connections_->realtime->handleTimeout(0) > 0) --left;
-  if (connections_->bulk != connections_->realtime)
-    while (left > 0 && connections_->bulk->handleTimeout(0) > 0) --left;
+  while (left > 0 && c.realtime->handleTimeout(0) > 0) --left;
 }
 
 void Bus::wait(Nanoseconds at_most) {
-  pollfd fds[2] = {{connections_->realtime->getFileno(), POLLIN, 0}, {connections_->bulk->getFileno(), POLLIN, 0}};
-  const int count = connections_->bulk == connections_->realtime ? 1 : 2;
+  if (connections_->reader) return connections_->reader->wait(at_most);
+  pollfd fd{connections_->realtime->getFileno(), POLLIN, 0};
   const std::int64_t ns = at_most.count();
   const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
-  ppoll(fds, static_cast<nfds_t>(count), &timeout, nullptr);
+  ppoll(&fd, 1, &timeout, nullptr);
 }
 
 void Bus::stamp(const char* channel, header_t& h) {

@@ -1,4 +1,5 @@
-// Access to the bus: two LCM ports, stamped messages out, checked messages in.
+// Access to the bus: two LCM ports, stamped messages out, checked messages in. LCM sends; sync/udp_reader.h
+// receives.
 //
 // Nothing here waits for another process. Queues are bounded; what does not fit is dropped and counted.
 #pragma once
@@ -28,7 +29,7 @@ enum class Port { kRealtime, kBulk, kBoth };
 class Bus {
  public:
   // Opens both ports. Throws std::runtime_error with one sentence (what is wrong and what to do) when it cannot.
-  // Threads that LCM starts inherit the caller's scheduling: set that first.
+  // The thread that it starts inherits the caller's scheduling: set that first.
   Bus(Identity identity, const BusOptions& options);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -55,7 +56,8 @@ class Bus {
   // For processes that are driven by events: waits until something arrives, at most so long.
   void wait(Nanoseconds at_most);
 
-  // Stamps the header (all but sim_time_ns) and sends. False when the message is too large or the network refused it.
+  // Stamps the header (all but sim_time_ns) and sends. False when the message is too large or the network refused
+  // it.
   template <class Message>
   bool publish(const char* channel, Message& m, Port port = Port::kRealtime) {
     stamp(channel, m.header);
@@ -83,6 +85,8 @@ class Bus {
   void stamp(const char* channel, header_t& header);
   bool send(const char* channel, const void* data, unsigned size, Port port);
   bool refuse() { return ++refused_, false; }
+  // Throws when what is sent to both ports does not come back.
+  void test_self(const std::string& url);
 
   Identity identity_;
   ClockMaps maps_;
@@ -93,7 +97,7 @@ class Bus {
   std::int64_t refused_ = 0;
 };
 
-// "udpm://group:port?ttl=T&recv_buf_size=N", with a receive buffer as large as bursts need.
+// "udpm://group:port?ttl=T".
 std::string lcm_url(const BusOptions& options, int port);
 
 }  // namespace tactus::sync

@@ -11,9 +11,9 @@ void Recorder::write(HostTime time, std::string_view channel, std::span<const st
   writer_.write((to_ns(time) + info_.realtime_offset_ns) / 1000, channel, data);
 }
 
-void Recorder::push(const TapBatch& batch) {
+void Recorder::push(const MessageBatch& batch) {
   for (std::size_t i = 0; i < batch.size(); ++i) {
-    const TapBatch::Message m = batch[i];
+    const MessageBatch::Message m = batch[i];
     if (const auto header = peek_header(m.data.data(), m.data.size())) {
       auto it = sequences_.find(m.channel);
       if (it == sequences_.end() && sequences_.size() < kMaxChannels)

@@ -11,7 +11,7 @@
 
 #include "sync/log_writer.h"
 #include "sync/recorder_head.h"
-#include "sync/recorder_tap.h"
+#include "sync/message_batch.h"
 #include "sync/sequence.h"
 
 namespace tactus::sync {
@@ -29,7 +29,7 @@ class Recorder {
   // info: all but header and live_from_ns.
   Recorder(Identity identity, log_info_t info, LogWriter writer, HostTime start);
 
-  void push(const TapBatch& batch);
+  void push(const MessageBatch& batch);
   // The scene is complete: it goes to the head of the log, if that is not written yet.
   void begin(const std::vector<HeadAsset>& assets, HostTime now);
   // Call every 100 ms or more often: begins when it has waited long enough, and hands what there is to the disk.

@@ -13,6 +13,7 @@
 
 #include "sync/node.h"
 #include "sync/recorder.h"
+#include "sync/recorder_tap.h"
 
 using namespace tactus;
 
@@ -61,7 +62,7 @@ int main(int argc, char** argv) try {
                           sync::host_now());
   std::cerr << "recorder: writing " << path << std::endl;
 
-  sync::TapBatch batch;
+  sync::MessageBatch batch;
   while (node.running()) {
     const sync::HostTime now = node.wait();
     tap.take(batch);

@@ -39,7 +39,7 @@ struct Fixture {
   std::shared_ptr<MemorySink::State> disk = std::make_shared<MemorySink::State>();
   Identity id{"recorder", 5, 6, 7};
   Recorder recorder;
-  TapBatch batch;
+  MessageBatch batch;
   std::int64_t seq = 0;
 
   static log_info_t info() {
@@ -57,7 +57,7 @@ struct Fixture {
     m.data = {1};
     ++seq;
     batch.clear();
-    batch.add(t, "LIVE", encode(m), 1 << 20);
+    batch.add(t, {"LIVE", encode(m)}, 1 << 20);
     recorder.push(batch);
   }
 };
@@ -143,7 +143,7 @@ TEST_CASE("A log begins at once when what waits for the scene grows too large, a
   for (; !f.recorder.begun(); ++n) {
     f.batch.clear();
     m.header.seq = n;
-    f.batch.add(kStart + Nanoseconds(n), "LIVE", encode(m), 1 << 20);
+    f.batch.add(kStart + Nanoseconds(n), {"LIVE", encode(m)}, 1 << 20);
     f.recorder.push(f.batch);
   }
   CHECK(n < static_cast<int>(Recorder::kMaxHeldBytes / 1024) + 1);
@@ -188,31 +188,15 @@ TEST_CASE("A message that is none of ours is recorded as it is") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.batch.clear();
-  for (std::size_t size : {0u, 1u, 7u, 8u, 60u}) f.batch.add(kStart, "FOREIGN", Bytes(size, 0xff), 1 << 20);
+  for (std::size_t size : {0u, 1u, 7u, 8u, 60u}) f.batch.add(kStart, {"FOREIGN", Bytes(size, 0xff)}, 1 << 20);
   f.recorder.push(f.batch);
   f.recorder.finish(kStart);
   CHECK(read_all(f.disk->bytes).size() == 6);
   CHECK(f.recorder.gaps() == 0);
 }
 
-TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") {
-  TapBatch batch;
-  CHECK(batch.add(kStart, "A", some_bytes(50), 100) == Tapped::kKept);
-  CHECK(batch.add(kStart, "A", some_bytes(60), 100) == Tapped::kNoRoom);
-  CHECK(batch.add(kStart + Nanoseconds(1), "BB", some_bytes(47), 100) == Tapped::kKept);
-  REQUIRE(batch.size() == 2);
-  CHECK(batch[1].channel == "BB");
-  CHECK(batch[1].data.size() == 47);
-  batch.clear();
-  CHECK(batch.size() == 0);
-}
-
 TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
   Fixture f;
-  TapBatch batch;
-  CHECK(batch.add(kStart, "A", some_bytes(channels::kMaxMessageBytes), 1 << 20) == Tapped::kKept);
-  CHECK(batch.add(kStart, "A", some_bytes(channels::kMaxMessageBytes + 1), 1 << 20) == Tapped::kOversized);
-  CHECK(batch.size() == 1);
   CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
   CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
 }

@@ -1,0 +1,39 @@
+// Messages as bytes, in the order of their arrival, in memory that is kept when it is emptied.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sync/datagram.h"
+#include "sync/time.h"
+
+namespace tactus::sync {
+
+class MessageBatch {
+ public:
+  // Refers to the batch.
+  struct Message : ChannelBytes {
+    HostTime arrival;
+  };
+
+  // False, and nothing is added, when the batch would hold more than max_bytes.
+  bool add(HostTime arrival, const ChannelBytes& message, std::size_t max_bytes);
+  void clear();
+  std::size_t size() const { return entries_.size(); }
+  std::size_t bytes() const { return bytes_.size(); }
+  Message operator[](std::size_t i) const;
+
+ private:
+  struct Entry {
+    HostTime arrival;
+    std::uint32_t channel_bytes;
+    std::uint32_t data_bytes;
+    std::size_t at;
+    bool whole;
+  };
+  std::vector<Entry> entries_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,108 @@
+// The receiving end of the bus on real sockets, in a network namespace of its own.
+#include "sync/udp_reader.h"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <thread>
+
+#include "sync/pacing.h"
+#include "tests/cluster/datagram.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+using Heard = std::map<std::pair<std::size_t, std::string>, std::vector<Bytes>>;
+
+// Reads for so long, or until `enough` messages have come.
+Heard read(sync::UdpReader& reader, double seconds, std::size_t enough) {
+  Heard heard;
+  std::size_t count = 0;
+  const auto end = sync::host_now() + sync::from_seconds(seconds);
+  for (auto now = sync::host_now(); now < end && count < enough; now = sync::host_now()) {
+    reader.wait(end - now);
+    reader.read(100000, [&](std::size_t side, const sync::ChannelBytes& m) {
+      heard[{side, std::string(m.channel)}].emplace_back(m.data.begin(), m.data.end());
+      ++count;
+    });
+  }
+  return heard;
+}
+
+Bytes numbered(int i, std::size_t size = 300) {
+  Bytes bytes(size);
+  for (int k = 0; k < 4; ++k) bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(i >> (8 * k));
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("Messages of both ports come in order, also those that came while nobody read") {
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
+  Datagrams wire;
+  constexpr int kMany = 4000;
+  for (int i = 0; i < kMany; ++i) {
+    wire.send_message("A", numbered(i));
+    wire.send_message("B", numbered(i), 1);
+    if (i % 100 == 99)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));  // 0.2 s: somebody must relieve us
+  }
+  const Heard heard = read(reader, 10, 2 * kMany);
+  for (const auto& key : {std::pair<std::size_t, std::string>{0, "A"}, {1, "B"}}) {
+    REQUIRE(heard.contains(key));
+    const auto& messages = heard.at(key);
+    REQUIRE(messages.size() == kMany);
+    for (int i = 0; i < kMany; ++i) REQUIRE(messages[static_cast<std::size_t>(i)] == numbered(i));
+  }
+  CHECK(heard.size() == 2);
+}
+
+TEST_CASE("A reader that waits wakes when something comes, and reads no more than it asked for") {
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
+  Datagrams wire;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (int i = 0; i < 10; ++i) wire.send_message("A", numbered(i));
+  });
+  const auto begin = sync::host_now();
+  reader.wait(std::chrono::seconds(60));
+  CHECK(sync::host_now() - begin < std::chrono::seconds(30));
+  later.join();
+  int count = 0;
+  const auto hear = [&](std::size_t, const sync::ChannelBytes& m) {
+    CHECK(Bytes(m.data.begin(), m.data.end()) == numbered(count));
+    ++count;
+  };
+  for (int tries = 0; count < 3 && tries < 1000; ++tries) reader.read(3 - count, hear);
+  CHECK(count == 3);
+  for (int tries = 0; count < 10 && tries < 1000; ++tries) reader.read(10 - count, hear);
+  CHECK(count == 10);
+}
+
+TEST_CASE(
+    "What is too long, in one datagram or in fragments, is told as too long, and what is noise is not told") {
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
+  Datagrams wire;
+  wire.send_message("LONG", Bytes(50000));
+  wire.send(
+      {'L', 'C', '0', '3', 0, 0, 0, 1, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xf0, 0, 0, 0, 2, 'F', 0, 1, 2});
+  wire.send(Bytes(100, 'x'));
+  wire.send({});
+  wire.send_message("LAST", Bytes(1400));
+  std::map<std::string, bool> fits;
+  for (int tries = 0; !fits.contains("LAST") && tries < 100; ++tries) {
+    reader.wait(std::chrono::milliseconds(100));
+    reader.read(100, [&](std::size_t, const sync::ChannelBytes& m) { fits[std::string(m.channel)] = m.fits(); });
+  }
+  CHECK(fits == std::map<std::string, bool>{{"LONG", false}, {"F", false}, {"LAST", true}});
+}
+
+TEST_CASE("Another group on the same port is not heard") {
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
+  sync::UdpReader other("239.255.76.68", channels::kDefaultPort);
+  Datagrams wire;
+  wire.send_message("A", numbered(1));
+  CHECK(read(reader, 10, 1).size() == 1);
+  CHECK(read(other, 0.1, 1).empty());
+}
