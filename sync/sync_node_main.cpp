@@ -127,7 +127,8 @@ int main(int argc, char** argv) try {
       if (m->message.header.run_id == options.run_id) playout.take(m->message, now), matcher.observe(m->message, m->arrival);
     for (const auto& [sense, waited_for] : matcher.senses()) playout.needs().know(sense, !waited_for);
     for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
-    if (auto m = playout.due(now)) node.bus().publish(channels::kPlayout, *m);
+    if (const auto m = playout.due(now))
+      for (playout_t& page : sync::pages_of(*m)) node.bus().publish(channels::kPlayout, page);
     if (now < next_report) continue;
     next_report = std::max(next_report + kReportPeriod, now);
     for (sync_report_t& page : sync::report_pages(matcher)) node.bus().publish(channels::kSyncReport, page);

@@ -1,14 +1,17 @@
 #include "sync/playout/exchange.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "lcmtypes/channels.h"
 #include "sync/decode.h"
 
 namespace tactus::sync {
 namespace {
 constexpr const char* kFile = "playout.request";
+constexpr int kMaxMessageBytes = static_cast<int>(channels::kMaxMessageBytes);
 }
 
 playout_request_t request_for(const PlayoutPlan& plan, std::int64_t generation) {
@@ -23,6 +26,23 @@ playout_request_t request_for(const PlayoutPlan& plan, std::int64_t generation) 
   }
   m.count = static_cast<std::int32_t>(m.entries.size());
   return m;
+}
+
+std::vector<playout_t> pages_of(const playout_t& whole) {
+  std::vector<playout_entry_t> entries = whole.entries;
+  std::stable_partition(entries.begin(), entries.end(), [](const playout_entry_t& e) { return e.soa_ns != 0; });
+  std::vector<playout_t> pages;
+  for (playout_entry_t& e : entries) {
+    if (pages.empty() || pages.back().getEncodedSize() + e._getEncodedSizeNoHash() > kMaxMessageBytes) {
+      pages.push_back(whole);
+      pages.back().entries.clear();
+      pages.back().count = 0;
+    }
+    pages.back().entries.push_back(std::move(e));
+    ++pages.back().count;
+  }
+  if (pages.empty()) pages.push_back(whole);
+  return pages;
 }
 
 void keep_request(const std::filesystem::path& folder, const playout_request_t& request) {

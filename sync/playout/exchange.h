@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <optional>
 #include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <vector>
 
 #include "sync/playout/policy.h"
 
@@ -22,6 +24,10 @@ void write_plan(Message& m, std::int64_t generation, const PlayoutPlan& plan) {
   m.base_ns = plan.base.count();
   m.budget_ns = plan.budget.count();
 }
+// A PLAYOUT in as many messages as its senses need; a sense looks for itself in each. Those with an asynchrony come first, so
+// that the first page holds the whole plan.
+std::vector<playout_t> pages_of(const playout_t& whole);
+
 // Both are within range by lcmtypes/valid.h.
 template <class Message>
 PlayoutPlan plan_of(const Message& m) {

@@ -49,6 +49,8 @@ const char* name_of(Policy policy) { return kNames[static_cast<std::size_t>(poli
 void PlayoutPlan::check() const {
   if (policy != Policy::kExperiment && !soa.empty())
     throw std::invalid_argument("asynchronies are for the policy experiment; say so, or leave them out");
+  if (soa.size() > kMaxAsynchronies)
+    throw std::invalid_argument("asynchronies are for at most " + std::to_string(kMaxAsynchronies) + " senses");
   for (const auto& [name, asynchrony] : soa)
     if (base + asynchrony < Nanoseconds(0))
       throw std::invalid_argument("the asynchrony of " + name +

@@ -36,6 +36,8 @@ struct PlayoutPlan {
   Nanoseconds budget{60'000'000};
   std::map<std::string, Nanoseconds> soa;  // of kExperiment, by modality
 
+  // So many, with the longest names, fit one message.
+  static constexpr std::size_t kMaxAsynchronies = 12;
   // Throws std::invalid_argument with one sentence when an asynchrony reaches before the event itself.
   void check() const;
 };

@@ -74,3 +74,15 @@ TEST_CASE("In the serial loop of 2005 all senses go on, one after the other") {
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
   CHECK(c.all_live(kNodes));
 }
+
+TEST_CASE("What the display takes after the fence is in what is reported as presented, and is made up for") {
+  Running c;
+  c.start();
+  c.processes.kill("visual_node");
+  c.processes.start("visual_node", {"--set", "visual_node.display_latency=0.2"});
+  CHECK(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
+  ask_for(c, {"asap"});
+  CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 200);
+  ask_for(c, {"experiment", "--base", "300ms"});
+  CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 7)) < 60);
+}

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "lcmtypes/channels.h"
 #include "sync/playout/exchange.h"
 #include "sync/playout/lockstep.h"
 
@@ -157,4 +158,31 @@ TEST_CASE("The turns of a lock-step are instants of the world, wherever the host
     CHECK(loop.next_turn(t) - t < 80 * kMs);
     CHECK(map.to_sim(loop.next_turn(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
   }
+}
+
+TEST_CASE("However many senses there are, each finds its delay in a message that the bus carries") {
+  PlayoutCoordinator c(5, plan(Policy::kExperiment));
+  const int senses = GENERATE(0, 1, 5, 64);
+  playout_request_t request{};
+  PlayoutPlan wanted = plan(Policy::kExperiment);
+  wanted.soa["z07"] = 20 * kMs;
+  write_plan(request, 1, wanted);
+  request.entries = request_for(wanted, 1).entries;
+  request.count = 1;
+  REQUIRE(c.take(request));
+  for (int i = 0; i < senses; ++i)
+    c.needs().know("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
+  const auto m = c.due(at(0));
+  REQUIRE(m);
+  Delays found;
+  const auto pages = pages_of(*m);
+  REQUIRE_FALSE(pages.empty());
+  for (const playout_t& page : pages) {
+    CHECK(page.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
+    CHECK(page.count == static_cast<int>(page.entries.size()));
+    CHECK(page.base_ns == m->base_ns);
+    for (const auto& [name, delay] : delays_ms(page)) CHECK(found.emplace(name, delay).second);
+  }
+  CHECK(found == delays_ms(m));
+  if (senses > 7) CHECK(plan_of(pages.front()).soa == wanted.soa);
 }

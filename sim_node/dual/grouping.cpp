@@ -1,0 +1,173 @@
+#include "sim_node/dual/grouping.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tactus::sim {
+namespace {
+constexpr double kTick_s = 0.001;
+}  // namespace
+
+Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, GroupingRule rule)
+    : bodies_(std::move(bodies)), limits_(limits), rule_(rule) {
+  const std::size_t n = bodies_.size();
+  beside_.resize(n);
+  outside_.resize(n);
+  inside_.resize(n);
+  kick_m_s_.resize(n);
+  member_.resize(n);
+  wanted_at_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const int system = bodies_[i].system;
+    if (system < 0) continue;
+    systems_.resize(std::max(systems_.size(), static_cast<std::size_t>(system) + 1));
+    systems_[static_cast<std::size_t>(system)].push_back(static_cast<int>(i));
+  }
+}
+
+double Grouping::left_s(sync::SimTime now) const {
+  return std::max(0.0, sync::to_seconds(step_began_ + limits_.horizon - now));
+}
+
+namespace {
+// What an acceleration does in n ticks to a body that is moved once a tick: h^2 n (n + 1) / 2.
+double bend_m(double acceleration, double t_s) { return acceleration * t_s * (t_s + kTick_s) / 2; }
+}  // namespace
+
+// Its weight bends its way; what strikes or pushes it turns it aside.
+SweptSphere Grouping::swept(std::size_t i, const BodyMotion& m, double t) const {
+  return {m.centre_m, m.velocity_m_s, bodies_[i].radius_m,
+          bend_m(limits_.gravity_m_s2, t) + kick_m_s_[i] * (t + kTick_s)};
+}
+
+SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
+  return {tool.centre_m, tool.velocity_m_s, tool.radius_m, bend_m(limits_.tool_acceleration_m_s2, t)};
+}
+
+// An impact changes the velocity by (1 + e) m' / (m + m') of that at which they meet (Newton); a tool, which is
+// moved by a hand, is as heavy as can be, but its force is limited. What a struck body strikes in turn is struck
+// at most so fast.
+double Grouping::kick_m_s(const SweptSphere& from, double inverse_mass, std::size_t body, double t) const {
+  const double w = bodies_[body].inverse_mass_1_kg;
+  const double meeting = (from.velocity_m_s - outside_[body].velocity_m_s).norm() + (t > 0 ? from.pad_m / t : 0);
+  const double kick = (1 + limits_.restitution) * w / (w + inverse_mass) * meeting;
+  return inverse_mass > 0 ? kick : std::min(kick, limits_.tool_force_N * w * t);
+}
+
+void Grouping::enter(int index, double kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
+  const auto i = static_cast<std::size_t>(index);
+  if (member_[i] || bodies_[i].inverse_mass_1_kg <= 0) return;
+  member_[i] = 1;
+  kick_m_s_[i] = kick;
+  inside_[i] = swept(i, bodies[i], left_s(now));
+  haptic_.push_back(index);
+}
+
+void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime now,
+                     std::span<const BodyMotion> bodies) {
+  const double t = left_s(now), passed = sync::to_seconds(now - step_began_);
+  found_.clear();
+  grid_.find(bounds_of(from, t), found_);
+  for (const int j : found_) {
+    const auto body = static_cast<std::size_t>(j);
+    if (member_[body]) continue;
+    SweptSphere other = outside_[body];
+    other.centre_m += other.velocity_m_s * passed;
+    if (closest_approach_m(from, other, t) <= from.radius_m + other.radius_m + from.pad_m + other.pad_m)
+      enter(j, kick_m_s(from, inverse_mass, body, t), now, bodies);
+  }
+}
+
+void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+  watched_from_ = now;
+  const double t = left_s(now);
+  tools_.clear();
+  for (const GroupTool& tool : tools) tools_.push_back(swept(tool, t));
+  for (const int i : haptic_)
+    inside_[static_cast<std::size_t>(i)] =
+        swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
+  for (const SweptSphere& tool : tools_) reach(tool, 0, now, bodies);
+  // The list grows while it is gone through.
+  for (std::size_t k = 0; k < haptic_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(haptic_[k]);
+    const double kick = kick_m_s_[i];
+    if (bodies_[i].system >= 0)
+      for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) enter(j, kick, now, bodies);
+    for (const int j : beside_[i]) enter(j, kick, now, bodies);
+    reach(inside_[i], bodies_[i].inverse_mass_1_kg, now, bodies);
+  }
+}
+
+void Grouping::close_as_kim(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+  const double t = left_s(step_began_);
+  for (const GroupTool& tool : tools)
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const SweptSphere from{tool.centre_m, tool.velocity_m_s, tool.radius_m, 0};
+      const SweptSphere body{bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, 0};
+      if (closest_axes_m(from, body, t) <= from.radius_m + body.radius_m)
+        enter(static_cast<int>(i), 0, step_began_, bodies);
+    }
+}
+
+void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
+                          std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
+  step_began_ = now;
+  const double t = left_s(now);
+  boxes_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    beside_[i].clear();
+    outside_[i] = {bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, strays_m[i] + limits_.tolerance_m};
+    boxes_.push_back(bounds_of(outside_[i], t));
+  }
+  for (const auto& [a, b] : touching) {
+    beside_[static_cast<std::size_t>(a)].push_back(b);
+    beside_[static_cast<std::size_t>(b)].push_back(a);
+  }
+  grid_.build(boxes_);
+  std::swap(before_, haptic_);
+  haptic_.clear();
+  std::fill(member_.begin(), member_.end(), 0);
+  if (rule_ == GroupingRule::kKim2005) {
+    close_as_kim(bodies, tools);
+  } else {
+    close(now, bodies, tools);
+    for (const int i : haptic_) wanted_at_[static_cast<std::size_t>(i)] = now;
+    for (const int i : before_)
+      if (now - wanted_at_[static_cast<std::size_t>(i)] < limits_.leave_after) enter(i, 0, now, bodies);
+    close(now, bodies, tools);
+  }
+  std::sort(haptic_.begin(), haptic_.end());
+  entered_.clear();
+  left_.clear();
+  std::set_difference(haptic_.begin(), haptic_.end(), before_.begin(), before_.end(),
+                      std::back_inserter(entered_));
+  std::set_difference(before_.begin(), before_.end(), haptic_.begin(), haptic_.end(), std::back_inserter(left_));
+}
+
+bool Grouping::strayed(sync::SimTime now, std::span<const BodyMotion> bodies,
+                       std::span<const GroupTool> tools) const {
+  const double t = sync::to_seconds(now - watched_from_);
+  const auto off = [&](const SweptSphere& way, const Eigen::Vector3d& centre) {
+    return (way.centre_m + way.velocity_m_s * t - centre).squaredNorm() > way.pad_m * way.pad_m;
+  };
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    if (off(tools_[i], tools[i].centre_m)) return true;
+  return std::any_of(haptic_.begin(), haptic_.end(), [&](int i) {
+    return off(inside_[static_cast<std::size_t>(i)], bodies[static_cast<std::size_t>(i)].centre_m);
+  });
+}
+
+void Grouping::watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+  entered_.clear();
+  left_.clear();
+  if (rule_ == GroupingRule::kKim2005 || !strayed(now, bodies, tools)) return;
+  ++alarms_;
+  before_ = haptic_;
+  close(now, bodies, tools);
+  std::sort(haptic_.begin(), haptic_.end());
+  std::set_difference(haptic_.begin(), haptic_.end(), before_.begin(), before_.end(),
+                      std::back_inserter(entered_));
+  for (const int i : entered_) wanted_at_[static_cast<std::size_t>(i)] = now;
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,104 @@
+// Which bodies are simulated at the haptic rate: those that a tool can touch before the next visual step begins,
+// and whatever these can touch. All others are simulated at the visual rate.
+//
+// The rule of Kim et al. 2005, section 4, sweeps the tool's and the body's bounding spheres along their velocities
+// and intersects the capsules. It misses contacts: of a hand that accelerates, of bodies that are struck by bodies
+// that were struck, of what rests on them. The sound rule compares positions at equal times, pads them by what
+// forces and impacts can do, and closes the group over contacts and joints; the pads are watched at the haptic
+// rate, and where one is left the group grows at once. So whatever the hand does, no tick finds a contact between
+// the groups:
+//
+//   |x_i(t) - x_j(t)| >= |p + v t| - pad_i - pad_j > r_i + r_j   for every i in the group and j outside,
+//
+// as long as both stay within their pads of the straight way; those outside do, for their way is known beforehand.
+// Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/dual/bounds_grid.h"
+#include "sync/time.h"
+
+namespace tactus::sim {
+
+enum class GroupingRule : std::uint8_t { kSound, kKim2005 };
+
+// What does not change of a body.
+struct GroupBody {
+  double radius_m = 0;  // of a sphere about the centre of mass that holds it
+  double inverse_mass_1_kg = 0;
+  int system = -1;  // bodies of one system, joined by joints, move between the groups together; -1: none
+};
+
+struct GroupTool {
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero(), velocity_m_s = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+struct GroupingLimits {
+  sync::Nanoseconds horizon{17'000'000};  // until the next visual step, in whole haptic ticks
+  double tolerance_m = 0.001;             // nearer is a contact
+  // What pads are made for; beyond it the watchdog acts.
+  double tool_acceleration_m_s2 = 30;
+  double tool_force_N = 20;  // on one body
+  double gravity_m_s2 = 9.81;
+  double restitution = 1;
+  sync::Nanoseconds leave_after{100'000'000};  // not reachable for so long
+};
+
+class Grouping {
+ public:
+  Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, GroupingRule rule = GroupingRule::kSound);
+
+  // A visual step begins. bodies: all, as they are now. strays_m: how far each body that is not in the group will
+  // be at most from its straight way within the horizon: its way is known. touching: pairs of bodies that touch
+  // now or will in this step. Bodies may enter and leave. Realtime-safe once its lists have grown.
+  void begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
+                  std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
+  // A haptic tick, before its contacts are sought: where something is further from its straight way than its pad,
+  // the group is closed anew from what is true now; bodies only enter. Cost: of the group, not of all bodies.
+  void watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+
+  bool is_haptic(int body) const { return member_[static_cast<std::size_t>(body)] != 0; }
+  // Ascending; entered and left: in the last call.
+  std::span<const int> haptic() const { return haptic_; }
+  std::span<const int> entered() const { return entered_; }
+  std::span<const int> left() const { return left_; }
+  // How often a pad was left.
+  std::int64_t alarms() const { return alarms_; }
+
+ private:
+  double left_s(sync::SimTime now) const;
+  SweptSphere swept(std::size_t body, const BodyMotion& m, double t_s) const;
+  SweptSphere swept(const GroupTool& tool, double t_s) const;
+  void close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+  void close_as_kim(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+  void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
+  void enter(int body, double kick_m_s, sync::SimTime now, std::span<const BodyMotion> bodies);
+  double kick_m_s(const SweptSphere& from, double inverse_mass, std::size_t body, double t_s) const;
+  bool strayed(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) const;
+
+  std::vector<GroupBody> bodies_;
+  GroupingLimits limits_;
+  GroupingRule rule_;
+  std::vector<std::vector<int>> systems_;  // bodies of each
+  std::vector<std::vector<int>> beside_;   // what each touches
+  sync::SimTime step_began_{};
+  std::vector<SweptSphere> outside_;  // of each body, from step_began_ on
+  BoundsGrid grid_;
+  std::vector<Bounds> boxes_;
+  // Of the group, from watched_from_ on.
+  sync::SimTime watched_from_{};
+  std::vector<SweptSphere> inside_, tools_;
+  std::vector<double> kick_m_s_;
+  std::vector<char> member_;
+  std::vector<sync::SimTime> wanted_at_;
+  std::vector<int> haptic_, before_, entered_, left_, found_;
+  std::int64_t alarms_ = 0;
+};
+
+}  // namespace tactus::sim

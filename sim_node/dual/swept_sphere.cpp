@@ -1,0 +1,29 @@
+#include "sim_node/dual/swept_sphere.h"
+
+namespace tactus::sim {
+
+double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
+  const Eigen::Vector3d u = a.velocity_m_s * horizon_s, v = b.velocity_m_s * horizon_s,
+                        w = a.centre_m - b.centre_m;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double area = uu * vv - uv * uv;
+  // Along each way as a share of it. Parallel ways: any share of the first will do.
+  double s = area > 1e-12 * uu * vv ? std::clamp((uv * vw - uw * vv) / area, 0.0, 1.0) : 0;
+  const double along = uv * s + vw;
+  double t = vv > 0 ? along / vv : 0;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = uu > 0 ? std::clamp((uv * t - uw) / uu, 0.0, 1.0) : 0;
+  } else if (vv <= 0) {
+    s = uu > 0 ? std::clamp(-uw / uu, 0.0, 1.0) : 0;
+  }
+  return (w + u * s - v * t).norm();
+}
+
+Bounds bounds_of(const SweptSphere& s, double horizon_s) {
+  const Eigen::Vector3d end = s.centre_m + s.velocity_m_s * horizon_s;
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(s.radius_m + s.pad_m);
+  return {s.centre_m.cwiseMin(end) - reach, s.centre_m.cwiseMax(end) + reach};
+}
+
+}  // namespace tactus::sim
