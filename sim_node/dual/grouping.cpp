@@ -14,7 +14,7 @@ Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, 
   beside_.resize(n);
   outside_.resize(n);
   inside_.resize(n);
-  kick_m_s_.resize(n);
+  kicks_.resize(n);
   member_.resize(n);
   wanted_at_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -37,7 +37,8 @@ double bend_m(double acceleration, double t_s) { return acceleration * t_s * (t_
 // Its weight bends its way; what strikes or pushes it turns it aside.
 SweptSphere Grouping::swept(std::size_t i, const BodyMotion& m, double t) const {
   return {m.centre_m, m.velocity_m_s, bodies_[i].radius_m,
-          bend_m(limits_.gravity_m_s2, t) + kick_m_s_[i] * (t + kTick_s)};
+          bend_m(limits_.gravity_m_s2, t) +
+              kicks_[i].speed_m_s * std::clamp(kicks_[i].left_s + kTick_s, 0.0, t + kTick_s)};
 }
 
 SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
@@ -54,11 +55,11 @@ double Grouping::kick_m_s(const SweptSphere& from, double inverse_mass, std::siz
   return inverse_mass > 0 ? kick : std::min(kick, limits_.tool_force_N * w * t);
 }
 
-void Grouping::enter(int index, double kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
+void Grouping::enter(int index, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
   const auto i = static_cast<std::size_t>(index);
   if (member_[i] || bodies_[i].inverse_mass_1_kg <= 0) return;
   member_[i] = 1;
-  kick_m_s_[i] = kick;
+  kicks_[i] = kick;
   inside_[i] = swept(i, bodies[i], left_s(now));
   haptic_.push_back(index);
 }
@@ -73,8 +74,9 @@ void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime
     if (member_[body]) continue;
     SweptSphere other = outside_[body];
     other.centre_m += other.velocity_m_s * passed;
-    if (closest_approach_m(from, other, t) <= from.radius_m + other.radius_m + from.pad_m + other.pad_m)
-      enter(j, kick_m_s(from, inverse_mass, body, t), now, bodies);
+    const double meeting =
+        first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
+    if (meeting >= 0) enter(j, {kick_m_s(from, inverse_mass, body, t), t - meeting}, now, bodies);
   }
 }
 
@@ -90,7 +92,7 @@ void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std:
   // The list grows while it is gone through.
   for (std::size_t k = 0; k < haptic_.size(); ++k) {
     const auto i = static_cast<std::size_t>(haptic_[k]);
-    const double kick = kick_m_s_[i];
+    const Kick kick = kicks_[i];
     if (bodies_[i].system >= 0)
       for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) enter(j, kick, now, bodies);
     for (const int j : beside_[i]) enter(j, kick, now, bodies);
@@ -105,7 +107,7 @@ void Grouping::close_as_kim(std::span<const BodyMotion> bodies, std::span<const 
       const SweptSphere from{tool.centre_m, tool.velocity_m_s, tool.radius_m, 0};
       const SweptSphere body{bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, 0};
       if (closest_axes_m(from, body, t) <= from.radius_m + body.radius_m)
-        enter(static_cast<int>(i), 0, step_began_, bodies);
+        enter(static_cast<int>(i), {}, step_began_, bodies);
     }
 }
 
@@ -116,7 +118,8 @@ void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies,
   boxes_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     beside_[i].clear();
-    outside_[i] = {bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, strays_m[i] + limits_.tolerance_m};
+    outside_[i] = {bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m,
+                   strays_m[i] + limits_.tolerance_m};
     boxes_.push_back(bounds_of(outside_[i], t));
   }
   for (const auto& [a, b] : touching) {
@@ -133,7 +136,7 @@ void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies,
     close(now, bodies, tools);
     for (const int i : haptic_) wanted_at_[static_cast<std::size_t>(i)] = now;
     for (const int i : before_)
-      if (now - wanted_at_[static_cast<std::size_t>(i)] < limits_.leave_after) enter(i, 0, now, bodies);
+      if (now - wanted_at_[static_cast<std::size_t>(i)] < limits_.leave_after) enter(i, {}, now, bodies);
     close(now, bodies, tools);
   }
   std::sort(haptic_.begin(), haptic_.end());

@@ -72,13 +72,17 @@ class Grouping {
   std::int64_t alarms() const { return alarms_; }
 
  private:
+  // What impacts may do to a body: change its speed so much, at the earliest so long before the horizon.
+  struct Kick {
+    double speed_m_s = 0, left_s = 0;
+  };
   double left_s(sync::SimTime now) const;
   SweptSphere swept(std::size_t body, const BodyMotion& m, double t_s) const;
   SweptSphere swept(const GroupTool& tool, double t_s) const;
   void close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void close_as_kim(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
-  void enter(int body, double kick_m_s, sync::SimTime now, std::span<const BodyMotion> bodies);
+  void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
   double kick_m_s(const SweptSphere& from, double inverse_mass, std::size_t body, double t_s) const;
   bool strayed(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) const;
 
@@ -94,7 +98,7 @@ class Grouping {
   // Of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;
-  std::vector<double> kick_m_s_;
+  std::vector<Kick> kicks_;
   std::vector<char> member_;
   std::vector<sync::SimTime> wanted_at_;
   std::vector<int> haptic_, before_, entered_, left_, found_;

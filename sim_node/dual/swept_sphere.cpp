@@ -1,6 +1,20 @@
 #include "sim_node/dual/swept_sphere.h"
 
+#include <cmath>
+
 namespace tactus::sim {
+
+double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distance, double horizon_s) {
+  const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
+  // |apart + closing t|^2 = distance^2
+  const double c = apart.squaredNorm() - distance * distance, half_b = apart.dot(closing),
+               a2 = closing.squaredNorm();
+  if (c <= 0) return 0;
+  const double root = half_b * half_b - a2 * c;
+  if (half_b >= 0 || root < 0) return -1;
+  const double when = c / (-half_b + std::sqrt(root));
+  return when <= horizon_s ? when : -1;
+}
 
 double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
   const Eigen::Vector3d u = a.velocity_m_s * horizon_s, v = b.velocity_m_s * horizon_s,

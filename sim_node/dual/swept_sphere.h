@@ -21,6 +21,9 @@ inline double closest_approach_m(const SweptSphere& a, const SweptSphere& b, dou
   return (apart + closing * when).norm();
 }
 
+// When the centres first are so near, s; -1: never within the horizon.
+double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distance_m, double horizon_s);
+
 // Smallest distance of the straight ways themselves, each at an instant of its own: the axes of the capsules that
 // Kim et al. 2005, section 4, intersect. Never larger than closest_approach_m. Source of the method: Ericson 2005,
 // Real-Time Collision Detection, 5.1.9.

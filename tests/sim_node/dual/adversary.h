@@ -15,7 +15,7 @@ namespace tactus::sim::test {
 
 struct AdversaryDef {
   int balls = 60;
-  double room_m = 0.6;                    // balls and tool stay in a cube of this side
+  double room_m = 0.6;                  // balls and tool stay in a cube of this side
   double tool_acceleration_m_s2 = 100;  // bang-bang: always this, in a direction that jumps
   double tool_speed_m_s = 1;            // never faster
   double gravity_m_s2 = 9.81;
