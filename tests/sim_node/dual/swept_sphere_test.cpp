@@ -38,6 +38,25 @@ TEST_CASE("The closest approach of two straight ways is that of a fine sampling 
   }
 }
 
+TEST_CASE("Two ways first meet when a fine sampling of time says so, or never") {
+  Chance c;
+  int met = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const SweptSphere a = c.sphere(), b = c.sphere();
+    const double distance = c.between(0.1, 1);
+    const double when = first_meeting_s(a, b, distance, kHorizon_s);
+    CHECK((when >= 0) == (closest_approach_m(a, b, kHorizon_s) <= distance));
+    if (when <= 0) continue;
+    ++met;
+    const auto apart = [&](double t) {
+      return (a.centre_m + a.velocity_m_s * t - b.centre_m - b.velocity_m_s * t).norm();
+    };
+    CHECK(apart(when) == Approx(distance).epsilon(1e-9));
+    for (int k = 0; k < 100; ++k) CHECK(apart(when * k / 100) > distance);
+  }
+  CHECK(met > 20);
+}
+
 TEST_CASE(
     "The axes of two capsules are as close as a fine sampling of both says, never further than the ways in time") {
   Chance c;
