@@ -47,7 +47,7 @@ struct GroupingLimits {
   double tool_force_N = 20;  // on one body
   double gravity_m_s2 = 9.81;
   double restitution = 1;
-  sync::Nanoseconds leave_after{100'000'000};  // not reachable for so long
+  sync::Nanoseconds leave_after{34'000'000};  // not reachable for two steps
 };
 
 class Grouping {
@@ -83,7 +83,7 @@ class Grouping {
   void close_as_kim(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
   void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
-  double kick_m_s(const SweptSphere& from, double inverse_mass, std::size_t body, double t_s) const;
+  double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
   bool strayed(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) const;
 
   std::vector<GroupBody> bodies_;

@@ -7,17 +7,6 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Rates hold within a factor of two, on a machine that has other work as well.
-void check_same_rates(const std::map<std::string, double>& before, const std::map<std::string, double>& now,
-                      const std::string& except) {
-  for (const auto& [node, rate] : before) {
-    if (node == except) continue;
-    INFO(node << ": " << rate << " Hz before, " << now.at(node) << " Hz now");
-    CHECK(now.at(node) > rate / 2);
-    CHECK(now.at(node) < rate * 2);
-  }
-}
-
 std::vector<std::string> without(const std::string& node) {
   std::vector<std::string> rest = kNodes;
   std::erase(rest, node);
@@ -37,8 +26,9 @@ TEST_CASE("DEGRADE-1: with audio_node stopped the others go on at their rates") 
   const auto before = c.rates(2);
   c.processes.signal("audio_node", SIGTERM);
   CHECK(c.processes.wait_for_exit("audio_node", kPatience_s) == 0);
-  const std::int64_t hits = c.ear.hits(), felt = c.ear.rendered("haptic_node"), seen = c.ear.rendered("visual_node");
-  check_same_rates(before, c.rates(3), "audio_node");
+  const std::int64_t hits = c.ear.hits(), felt = c.ear.rendered("haptic_node"),
+                     seen = c.ear.rendered("visual_node");
+  c.check_rates_hold(before, 3, "audio_node");
   CHECK(c.ear.health("audio_node") == nullptr);
   CHECK(c.ear.wait_until([&] { return c.all_live(without("audio_node")); }, kPatience_s));
   CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
@@ -57,7 +47,7 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
   const std::int64_t frames = c.ear.ticks("visual_node");
   const std::int64_t missed = c.ear.health("visual_node")->missed_ticks;
   c.processes.signal("visual_node", SIGSTOP);
-  check_same_rates(before, c.rates(2), "visual_node");
+  c.check_rates_hold(before, 2, "visual_node");
   CHECK(c.ear.health("visual_node") == nullptr);
   c.processes.signal("visual_node", SIGCONT);
 
@@ -67,12 +57,14 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
   REQUIRE(h != nullptr);
   CHECK(h->state == node_health_t::RUNNING);
   CHECK(h->ticks > frames);
-  CHECK(h->stale_ticks - stale <= 2 + usual);  // two frames
+  // Two frames, and beside heavy load a few more: less than 0.1 s.
+  CHECK(h->stale_ticks - stale <= 5 + usual);
   // It skipped what it missed: at its rate there were two seconds of frames.
   CHECK(h->missed_ticks - missed > before.at("visual_node"));
   for (const input_health_t& in : h->inputs) {
     INFO(in.channel << " is " << in.age_ns << " ns old");
-    if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents) CHECK(in.age_ns < 500'000'000);
+    if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents)
+      CHECK(in.age_ns < 500'000'000);
   }
   CHECK(c.all_live(kNodes));
 }
@@ -89,7 +81,8 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all report it and go o
   for (const std::string& node : kSenses) {
     INFO(node);
     CHECK(c.ear.wait_until(
-        [&] { return c.state(node, node_health_t::INPUT_LOST) || c.state(node, node_health_t::STALE); }, kPatience_s));
+        [&] { return c.state(node, node_health_t::INPUT_LOST) || c.state(node, node_health_t::STALE); },
+        kPatience_s));
   }
   c.ear.listen(1);
   for (const std::string& node : kSenses) {

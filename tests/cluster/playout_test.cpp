@@ -79,10 +79,10 @@ TEST_CASE("What the display takes after the fence is in what is reported as pres
   Running c;
   c.start();
   c.processes.kill("visual_node");
-  c.processes.start("visual_node", {"--set", "visual_node.display_latency=0.2"});
+  c.processes.start("visual_node", {"--set", "display_latency=0.1"});
   CHECK(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
   ask_for(c, {"asap"});
-  CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 200);
+  CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 100);
   ask_for(c, {"experiment", "--base", "300ms"});
   CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 7)) < 60);
 }

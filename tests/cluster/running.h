@@ -45,13 +45,30 @@ struct Running {
     }
     return out;
   }
+  // Rates hold within a factor of two, in the best of three spans: other work on the machine comes and goes, but
+  // who is held back, or runs away, is so in all of them.
+  void check_rates_hold(const std::map<std::string, double>& before, double seconds,
+                        const std::string& except = "") {
+    std::map<std::string, double> left = before;
+    left.erase(except);
+    std::map<std::string, double> now;
+    for (int span = 0; span < 3 && !left.empty(); ++span) {
+      now = rates(seconds);
+      std::erase_if(left, [&](const auto& b) {
+        const auto at = now.find(b.first);
+        return at != now.end() && at->second > b.second / 2 && at->second < b.second * 2;
+      });
+    }
+    for (const auto& [node, rate] : left)
+      FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
+  }
   // The last words of every process, for the report of a failure.
   std::string words() const {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
       const node_health_t* h = ear.health(n);
-      all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->note + ")" : " silent") + ": " +
-             processes.said(n) + "\n";
+      all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->note + ")" : " silent") +
+             ": " + processes.said(n) + "\n";
     }
     return all;
   }

@@ -6,16 +6,6 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Nobody slows down by more than a factor of three, on a machine that has other work as well.
-void check_none_slower(const std::map<std::string, double>& before, const std::map<std::string, double>& now,
-                       const std::string& except) {
-  for (const auto& [node, rate] : before) {
-    if (node == except) continue;
-    INFO(node << ": " << rate << " Hz before, " << now.at(node) << " Hz now");
-    CHECK(now.at(node) > rate / 3);
-  }
-}
-
 std::vector<std::string> without(const std::string& node) {
   std::vector<std::string> rest = kNodes;
   std::erase(rest, node);
@@ -32,7 +22,7 @@ TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the oth
   CHECK(m.running->processes.wait_for_exit("audio_node", kPatience_s) == 0);
   std::map<std::string, std::int64_t> rendered;
   for (const std::string& sense : kSenses) rendered[sense] = m.ear().rendered(sense);
-  check_none_slower(before, m.running->rates(3), "audio_node");
+  m.running->check_rates_hold(before, 3, "audio_node");
   CHECK(m.ear().health("audio_node") == nullptr);
   CHECK(m.ear().wait_until([&] { return m.running->all_live(without("audio_node")); }, kPatience_s));
   for (const char* sense : {"haptic_node", "visual_node", "thermal_node"}) {
@@ -48,7 +38,7 @@ TEST_CASE(
   const auto before = m.running->rates(2);
   const std::int64_t frames = m.ear().ticks("visual_node"), missed = m.ear().health("visual_node")->missed_ticks;
   m.running->processes.signal("visual_node", SIGSTOP);
-  check_none_slower(before, m.running->rates(2), "visual_node");
+  m.running->check_rates_hold(before, 2, "visual_node");
   CHECK(m.ear().health("visual_node") == nullptr);
   m.running->processes.signal("visual_node", SIGCONT);
   REQUIRE(m.ear().wait_until([&] { return m.running->lives("visual_node"); }, kPatience_s));
