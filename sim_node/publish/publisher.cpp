@@ -39,6 +39,18 @@ void Publisher::publish_tool_contacts(const StepView& view, const sim_clock_t& c
   }
 }
 
+void Publisher::publish_game(const StepView& view, const sim_clock_t& clock) {
+  if (view.game == nullptr || !view.game->any()) return;
+  const bool changed = view.game->take_change();
+  if (!changed && ++game_ticks_ < kGameTicks) return;
+  game_ticks_ = 0;
+  game_state_t m{};
+  m.header.sim_time_ns = sync::to_ns(view.time);
+  m.clock = clock;
+  view.game->describe(m);
+  bus_.publish(channels::kGameState, m);
+}
+
 void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
   const sim_clock_t clock{sync::to_ns(map.sim), sync::to_ns(map.host), map.rate};
   for (touch_model_t& m : *view.touch_models) {
@@ -54,6 +66,7 @@ void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
   };
   snapshots_.tick(view.time, view.state, [&](contact_frame_t& m) { send(channels::kContacts, m); },
                   [&](world_state_t& m) { send(channels::kWorldState, m); });
+  publish_game(view, clock);
 }
 
 }  // namespace tactus::sim

@@ -7,6 +7,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
+#include "sim_node/game/game.h"
 #include "sim_node/publish/snapshots.h"
 #include "sim_node/publish/young_events.h"
 #include "sync/bus.h"
@@ -20,6 +21,7 @@ struct StepView {
   const std::vector<contact_event_t>* events = nullptr;        // that became known in this step
   const std::vector<contact_t>* tool_contacts = nullptr;
   StateSource state;
+  Game* game = nullptr;  // null: the scene has none
 };
 
 class Publisher {
@@ -34,8 +36,12 @@ class Publisher {
  private:
   void publish_events(const StepView& view, const sim_clock_t& clock);
   void publish_tool_contacts(const StepView& view, const sim_clock_t& clock);
+  void publish_game(const StepView& view, const sim_clock_t& clock);
+
+  static constexpr int kGameTicks = 250;  // 4 Hz for who joins late or missed a change
 
   sync::Bus& bus_;
+  int game_ticks_ = 0;  // since it was told last
   YoungEvents young_;
   Snapshots snapshots_;
 };
