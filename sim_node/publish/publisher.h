@@ -27,7 +27,7 @@ struct StepView {
 class Publisher {
  public:
   Publisher(sync::Bus& bus, double state_rate_Hz, double pages_per_second, std::size_t event_pages, sync::Nanoseconds step)
-      : bus_(bus), young_(event_pages), snapshots_(state_rate_Hz, pages_per_second, step) {}
+      : bus_(bus), step_(step), young_(event_pages), snapshots_(state_rate_Hz, pages_per_second, step) {}
 
   void publish(const StepView& view, const sync::TimeMap& map);
   // Somebody new is listening: every body goes out as soon as the budget allows.
@@ -41,6 +41,9 @@ class Publisher {
   static constexpr int kGameTicks = 250;  // 4 Hz for who joins late or missed a change
 
   sync::Bus& bus_;
+  sync::Nanoseconds step_;
+  // The world's time, and a step for every tick in which it stands still; before the first of either.
+  sync::SimTime pace_{-std::chrono::hours(1)};
   int game_ticks_ = 0;  // since it was told last
   YoungEvents young_;
   Snapshots snapshots_;
