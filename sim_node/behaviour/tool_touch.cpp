@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lcmtypes/bump.h"
+#include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/triangles.h"
 
@@ -42,7 +43,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     own_compliance = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
-  for (std::size_t i = 0; i < world.shapes.size(); ++i) {
+  const bool points = steered_light(def, world.lights) >= 0;
+  for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
     TriangleMesh ground;
@@ -58,7 +60,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
                          s.material >= 0 ? world.materials[static_cast<std::size_t>(s.material)].bump_asset : 0});
   }
-  model_.tool = tool;
+  model_.tool = points ? -1 : tool;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
 }
 

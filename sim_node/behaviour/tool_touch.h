@@ -32,7 +32,7 @@ class ToolTouch {
   // The same while the world stands still: the planes near where the hand is now. Nothing begins, hits or ends.
   void feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news);
 
-  // The planes, nearest first; header and clock are the publisher's.
+  // The planes, nearest first; header and clock are the publisher's. Tool -1: it only points, and there is none to send.
   const touch_model_t& model() const { return model_; }
   // Where the tool is: its proxy, as last heard of.
   const Eigen::Vector3d& proxy() const { return proxy_; }

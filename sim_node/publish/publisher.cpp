@@ -57,6 +57,7 @@ void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
   const sim_clock_t clock{sync::to_ns(map.sim), sync::to_ns(map.host), map.rate};
   pace_ = std::max(pace_ + step_, view.time);
   for (touch_model_t& m : *view.touch_models) {
+    if (m.tool < 0) continue;
     m.header.sim_time_ns = sync::to_ns(view.time);
     m.clock = clock;
     bus_.publish(channels::kTouchModel, m);

@@ -207,3 +207,26 @@ TEST_CASE("The same messages give the same world, to the bit") {
   };
   CHECK(digest() == digest());
 }
+
+TEST_CASE("A tool that bears the name of a spot light points through everything and feels nothing") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  add_tool(w, {0, 0, 0.05});
+  w.lights.resize(1);
+  w.lights[0].name = w.tools[0].name;
+  w.lights[0].kind = light_def_t::SPOT;
+  Simulation s(w, {});
+  s.start(11);
+  Hand hand{.radius = 0.01, .last = {0, 0, 0.05}};
+  for (int i = 0; i < 300; ++i) {
+    s.step(std::vector{hand.tick(s.touch_models()[0], {0, 0, 0.05 - 0.001 * i}, sync::to_ns(s.now()))});
+    CHECK(s.touch_models()[0].tool == -1);  // is not sent
+    CHECK(s.touch_models()[0].planes.empty());
+    CHECK(s.events().empty());
+  }
+  CHECK(s.bodies().back().position_m.z() == Approx(0.05 - 0.298));  // as told the step before
+  w.lights[0].kind = light_def_t::POINT;
+  Simulation touches(w, {});
+  touches.start(11);
+  CHECK(touches.touch_models()[0].tool == 0);
+}
