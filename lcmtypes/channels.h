@@ -22,6 +22,9 @@ inline constexpr const char* kPlayout = "PLAYOUT";               // playout_t
 inline constexpr const char* kPlayoutRequest = "PLAYOUT_REQUEST";  // playout_request_t
 inline constexpr const char* kDegradation = "DEGRADATION";       // degradation_t
 inline constexpr const char* kDegraded = "DEGRADED";             // degraded_t
+inline constexpr const char* kSimCommand = "SIM_COMMAND";        // sim_command_t
+inline constexpr const char* kSimReply = "SIM_REPLY";            // sim_reply_t
+inline constexpr const char* kGameState = "GAME_STATE";          // game_state_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 
 // Bulk port, so that assets never queue before a force. Receivers listen on both ports: a replayed log has one.

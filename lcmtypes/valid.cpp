@@ -13,6 +13,7 @@ constexpr double kMaxMagnitude = 1e9;
 // A minute: what is presented later than that is another event.
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
 constexpr long kMaxDelay_ns = 60'000'000'000;
+constexpr double kMostPush = 1e6;  // N or N m: beyond it nothing of a room withstands
 // 31 years since a machine or a world began: differences of such times do not overflow.
 constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
 // No simulation runs faster: at this rate a second of it lies between two pictures.
@@ -97,6 +98,9 @@ bool sane(const tool_constraint_t& c) {
 bool sane(const playout_entry_t& e) {
   return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) && between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) &&
          between(e.needs_ns, -1, kMaxDelay_ns);
+}
+bool sane(const hole_state_t& h) {
+  return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
 }
 bool sane(const decision_t& d) {
   return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.why, 0, 5) && d.held_ns >= 0 &&
@@ -204,6 +208,23 @@ bool valid(const playout_t& m) {
   return sane(m.header) && sane_policy(m) && sane_not_negative(m.lockstep_Hz);
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
+bool valid(const sim_command_t& m) {
+  const auto within = [](const vec3_t& v) {
+    return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMostPush;
+  };
+  return sane(m.header) && m.id > 0 && between(m.kind, sim_command_t::PAUSE, sim_command_t::RESTORE) &&
+         between(m.steps, 0, 1'000'000) && (m.name.empty() || name(m.name)) && m.property.size() <= 32 &&
+         (m.property.empty() || name(m.property)) && between(m.count, 0, 6) &&
+         std::all_of(m.values.begin(), m.values.end(), [](double x) { return sane(x); }) && within(m.force_N) &&
+         within(m.torque_N_m) && between(m.duration_ns, 0, kMaxDelay_ns) && between(m.to_file, 0, 1);
+}
+bool valid(const sim_reply_t& m) {
+  return sane(m.header) && m.id > 0 && between(m.done, 0, 1) && m.text.size() <= 512 && between(m.paused, 0, 1);
+}
+bool valid(const game_state_t& m) {
+  return sane(m.header) && sane(m.clock) && between(m.won, 0, 1) && between(m.won_ns, -1, kMaxTime_ns) &&
+         between(m.count, 0, 16) && all_sane(m.holes);
+}
 bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0; }
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&

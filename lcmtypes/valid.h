@@ -10,6 +10,7 @@
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
 #include <tactus/degraded_t.hpp>
+#include <tactus/game_state_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/mesh_t.hpp>
@@ -19,6 +20,8 @@
 #include <tactus/presented_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 #include <tactus/sync_report_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 #include <tactus/tool_state_t.hpp>
@@ -36,6 +39,7 @@ bool valid(const contact_events_t&);
 bool valid(const contact_frame_t&);
 bool valid(const degradation_t&);
 bool valid(const degraded_t&);
+bool valid(const game_state_t&);
 bool valid(const log_info_t&);
 bool valid(const media_clock_t&);
 bool valid(const mesh_t&);
@@ -45,6 +49,8 @@ bool valid(const playout_request_t&);
 bool valid(const presented_t&);
 bool valid(const scene_manifest_t&);
 bool valid(const scene_t&);
+bool valid(const sim_command_t&);
+bool valid(const sim_reply_t&);
 bool valid(const sync_report_t&);
 bool valid(const thermal_state_t&);
 bool valid(const tool_state_t&);

@@ -3,15 +3,21 @@
 //   in   TOOL_STATE       what each hand does: the force on the bodies is the opposite of what the hand feels
 //        NODE_HEALTH      a new process is given every body at once
 //        ASSET_REQUEST    chunks of the scene that somebody lacks
-//   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, in this order; SCENE_MANIFEST, ASSET_CHUNK
+//        SIM_COMMAND      pause, step, reset, set, push, snapshot, restore
+//   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, GAME_STATE, in this order; SIM_REPLY; SCENE_MANIFEST,
+//        ASSET_CHUNK
 //
 // Losing TOOL_STATE lets go of the bodies within 10 ms. A simulation that cannot keep up keeps its step: its time falls
-// behind the clock, and the map that it publishes says so.
+// behind the clock, and the map that it publishes says so. A world that is reset or put back lives anew: under another
+// incarnation, as after a restart, so that no sense keeps what is no more.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "sim_node/behaviour/simulation.h"
+#include "sim_node/command/commander.h"
 #include "sim_node/publish/publisher.h"
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
@@ -29,6 +35,14 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
   if (!refused.empty()) throw std::runtime_error(refused.front());
   return settings;
 }
+
+// How the world is told of; made anew with each of its lives.
+struct Telling {
+  Telling(sync::Bus& bus, const sim::Settings& s, sync::Nanoseconds step)
+      : publisher(bus, s.state_rate_Hz, s.page_budget, static_cast<std::size_t>(s.event_pages), step) {}
+  sim::Publisher publisher;
+  sim::SimPacer pacer;
+};
 
 }  // namespace
 
@@ -55,13 +69,18 @@ int main(int argc, char** argv) try {
   sync::Node node(declaration, options);
   simulation.start(node.bus().identity().incarnation);
   sync::SceneSender scene_sender(node.bus(), sim::make_assets(world, simulation.step_length().count()));
-  sim::Publisher publisher(node.bus(), settings.state_rate_Hz, settings.page_budget,
-                           static_cast<std::size_t>(settings.event_pages), simulation.step_length());
-  sim::SimPacer pacer;
+  std::optional<Telling> telling;
+  const auto begin_telling = [&] { telling.emplace(node.bus(), settings, simulation.step_length()); };
+  begin_telling();
+  sim::Commander commander(simulation, world, options.out);
   auto& tool_states = node.bus().queue<tool_state_t>(channels::kToolState, 64);
   auto& healths = node.bus().queue<node_health_t>(channels::kNodeHealth, 256);
+  auto& commands = node.bus().queue<sim_command_t>(channels::kSimCommand, 256);
+  bool anew = false;  // the world was reset or put back: it lives again from then on
+  sync::HostTime life_begins{};
   std::set<std::int64_t> known;
   std::vector<tool_state_t> news;
+  const std::vector<contact_event_t> no_events;
 
   // A fixed time: it is nobody in particular that is given it, and nobody is waited for.
   node.set_state(node_health_t::WAITING, "offers the scene; its time has not begun");
@@ -76,18 +95,39 @@ int main(int argc, char** argv) try {
     while (auto m = tool_states.pop())
       if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
     while (const auto m = healths.pop())
-      if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) publisher.welcome();
-    simulation.step(news);
-    // The deadline of this tick, which does not tremble as the wake-up does.
-    const sync::TimeMap map = pacer.tick(simulation.now(), node.deadlines().next() - simulation.step_length());
-    publisher.publish({.time = simulation.now(),
-                       .touch_models = &simulation.touch_models(),
-                       .events = &simulation.events(),
-                       .tool_contacts = &simulation.tool_contacts(),
-                       .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }}},
-                      map);
+      if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.welcome();
+    while (const auto m = commands.pop())
+      if (m->message.header.run_id == options.run_id) commander.take(m->message);
+    for (sim_reply_t& answer : commander.answers()) {
+      answer.header.sim_time_ns = -1;
+      node.bus().publish(channels::kSimReply, answer);
+    }
     scene_sender.poll(now);
+    if (commander.take_anew()) {
+      anew = true;
+      life_begins = now + sync::from_seconds(settings.new_life_silence_s);
+    }
+    if (anew && now < life_begins) continue;
+    if (std::exchange(anew, false)) {
+      node.renew();
+      simulation.begin_life(node.bus().identity().incarnation);
+      begin_telling();
+    }
+    const bool steps = commander.step_due();
+    steps ? simulation.step(news) : simulation.hold(news);
+    // The deadline of this tick, which does not tremble as the wake-up does.
+    const sync::HostTime due = node.deadlines().next() - simulation.step_length();
+    sim::SimPacer& pacer = telling->pacer;
+    const sync::TimeMap map = steps ? pacer.tick(simulation.now(), due) : pacer.hold(simulation.now(), due);
+    telling->publisher.publish({.time = simulation.now(),
+                                .touch_models = &simulation.touch_models(),
+                                .events = steps ? &simulation.events() : &no_events,
+                                .tool_contacts = &simulation.tool_contacts(),
+                                .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }},
+                                .game = &simulation.game()},
+                               map);
     node.set_realtime_factor(pacer.realtime_factor());
+    node.set_state(node_health_t::RUNNING, commander.paused() ? "the world stands still" : "");
   }
   return 0;
 } catch (const std::exception& e) {

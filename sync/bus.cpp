@@ -189,6 +189,11 @@ void Bus::wait(Nanoseconds at_most) {
   ppoll(&fd, 1, &timeout, nullptr);
 }
 
+void Bus::renew() {
+  identity_.incarnation = Identity::fresh(identity_.node, identity_.run_id).incarnation;
+  next_seq_.clear();
+}
+
 void Bus::stamp(const char* channel, header_t& h) {
   h.run_id = identity_.run_id;
   h.clock = identity_.clock;

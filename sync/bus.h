@@ -70,6 +70,9 @@ class Bus {
   std::int64_t refused() const { return refused_; }
 
   const Identity& identity() const { return identity_; }
+  // To everyone this process is another from here on, as if it had been started anew: a fresh incarnation, numbered from
+  // the beginning. Throws as Identity::fresh does.
+  void renew();
   const std::vector<std::unique_ptr<InboxBase>>& inboxes() const { return inboxes_; }
 
  private:

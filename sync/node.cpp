@@ -134,6 +134,16 @@ void Node::set_state(std::int8_t state, std::string note) {
   note_ = std::move(note);
 }
 
+void Node::renew() {
+  bus_.renew();
+  ticks_before_ = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
+  missed_before_ = loop_.deadlines().missed();
+  tick_ = wake_ = Histogram();
+  health_.stale_ticks = health_.contacts_rendered = 0;
+  rate_since_ = host_now();
+  ticks_at_rate_since_ = 0;
+}
+
 void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz) {
   overridden_ = true;
   health_.ticks = ticks;
@@ -222,8 +232,8 @@ void Node::report(HostTime now) {
   next_report_ += kReportPeriod;
   if (next_report_ <= now) next_report_ = now + kReportPeriod;  // after a stall one report, not two in a row
   if (!overridden_) {
-    health_.ticks = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
-    health_.missed_ticks = loop_.deadlines().missed();
+    health_.ticks = (event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks()) - ticks_before_;
+    health_.missed_ticks = loop_.deadlines().missed() - missed_before_;
   }
   if (now - rate_since_ >= kRateWindow) {
     health_.rate_Hz = static_cast<double>(health_.ticks - ticks_at_rate_since_) / to_seconds(now - rate_since_);

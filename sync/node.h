@@ -67,6 +67,9 @@ class Node {
   // Like wait() for a process that is driven by events: wakes when something arrives, after a period at the latest.
   HostTime wait_for_event();
 
+  // To everyone this process is another from here on, as if it had been started anew; its health counts from zero.
+  void renew();
+
   Bus& bus() { return bus_; }
   const NodeOptions& options() const { return options_; }
   const Declaration& declaration() const { return declaration_; }
@@ -107,6 +110,7 @@ class Node {
   HostTime next_report_{};
   HostTime rate_since_{};
   std::int64_t ticks_at_rate_since_ = 0;
+  std::int64_t ticks_before_ = 0, missed_before_ = 0;  // of the lives before
   std::int64_t event_ticks_ = 0;
   bool overridden_ = false;
   int reports_ = 0;

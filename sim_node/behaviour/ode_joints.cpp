@@ -49,10 +49,15 @@ void set_axis_params(dJointID id, const JointDef& def, int axis, double erp, dou
   set(dParamStopERP, erp);
   set(dParamStopCFM, cfm);
   set(dParamBounce, 0);
-  // Coulomb friction is a motor that wants to stand still; a motor has that much less to give.
+}
+
+// Coulomb friction is a motor that wants to stand still; a motor has that much less to give.
+void set_motor_params(dJointID id, const JointDef& def, int axis) {
+  const JointAxis& a = def.axes[axis];
+  const int g = ode_axis(def.kind, axis);
   const bool motor = a.motor_effort > 0;
-  set(dParamVel, motor ? a.motor_velocity : 0);
-  set(dParamFMax, motor ? std::max(0.0, a.motor_effort - a.friction) : a.friction);
+  set_param(id, def.kind, group(dParamVel, g), motor ? a.motor_velocity : 0);
+  set_param(id, def.kind, group(dParamFMax, g), motor ? std::max(0.0, a.motor_effort - a.friction) : a.friction);
 }
 
 // Of a body about a line through the anchor, kg m^2; of one that never moves, infinite.
@@ -135,7 +140,10 @@ Joints::Joints(const WorldDef& world, dWorldID ode, const std::vector<dBodyID>& 
         dJointSetUniversalAxis2(id, a.x(), a.y(), a.z());
         break;
     }
-    for (int axis = 0; axis < axis_count(def.kind); ++axis) set_axis_params(id, def, axis, erp, cfm);
+    for (int axis = 0; axis < axis_count(def.kind); ++axis) {
+      set_axis_params(id, def, axis, erp, cfm);
+      set_motor_params(id, def, axis);
+    }
     joints_.push_back({id, def, child, parent, {pair_inertia(def, child, parent, a), pair_inertia(def, child, parent, b)},
                        Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
   }
@@ -181,6 +189,42 @@ void Joints::apply(Joint& j, double h) {
 void Joints::apply_passive(double h) {
   for (Joint& j : joints_)
     if (passive(j.def.axes[0]) || passive(j.def.axes[1])) apply(j, h);
+}
+
+JointAxis* Joints::axis_of(const std::string& name, int axis) {
+  for (Joint& j : joints_)
+    if (j.def.name == name) return axis >= 0 && axis < axis_count(j.def.kind) ? &j.def.axes[axis] : nullptr;
+  return nullptr;
+}
+
+bool Joints::set_motor(const std::string& name, int axis, double effort, double velocity) {
+  JointAxis* a = axis_of(name, axis);
+  if (a == nullptr) return false;
+  a->motor_effort = effort;
+  a->motor_velocity = velocity;
+  for (Joint& j : joints_)
+    if (j.def.name == name) set_motor_params(j.id, j.def, axis);
+  return true;
+}
+
+bool Joints::set_friction(const std::string& name, int axis, double friction) {
+  JointAxis* a = axis_of(name, axis);
+  if (a == nullptr) return false;
+  a->friction = friction;
+  for (Joint& j : joints_)
+    if (j.def.name == name) set_motor_params(j.id, j.def, axis);
+  return true;
+}
+
+void Joints::archive(StateArchive& a) {
+  a.fixed(joints_, [&](Joint& j) {
+    a(j.last_rate), a(j.last_force), a(j.begun);
+    for (int axis = 0; axis < axis_count(j.def.kind); ++axis) {
+      JointAxis& x = j.def.axes[axis];
+      a(x.motor_effort), a(x.motor_velocity), a(x.friction);
+      if (a.reads()) set_motor_params(j.id, j.def, axis);
+    }
+  });
 }
 
 double Joints::largest_gap_m() const {

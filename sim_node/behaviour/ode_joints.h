@@ -1,10 +1,12 @@
 // The joints of a world in ODE, and the springs and dampers in them, which ODE does not have.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sim_node/behaviour/ode_handles.h"
 #include "sim_node/scene/world_def.h"
+#include "sim_node/state/state_archive.h"
 
 namespace tactus::sim::ode {
 
@@ -14,6 +16,12 @@ class Joints {
 
   // Adds the torques and forces of springs and dampers for the next step. Realtime-safe: yes.
   void apply_passive(double step_s);
+  // Of a joint with axes, by its name: a constant torque or force up to a speed, and dry friction. False: there is no such
+  // joint or axis.
+  bool set_motor(const std::string& name, int axis, double effort, double velocity);
+  bool set_friction(const std::string& name, int axis, double friction);
+  void archive(StateArchive& a);
+
   // Largest distance between the two images of an anchor, m: how far the joints have come apart.
   double largest_gap_m() const;
 
@@ -28,6 +36,7 @@ class Joints {
     bool begun = false;
   };
   static void apply(Joint& joint, double step_s);
+  JointAxis* axis_of(const std::string& name, int axis);
 
   std::vector<Joint> joints_;
 };

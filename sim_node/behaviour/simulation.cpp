@@ -4,6 +4,7 @@
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/collision/closest_surface.h"
+#include "sim_node/state/fingerprint.h"
 
 namespace tactus::sim {
 
@@ -36,7 +37,9 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
       step_(sync::from_seconds(settings.step_s)),
       ids_(0),
       solver_(world, settings),
-      tracker_(surface_traits(world, settings), settings, ids_) {
+      tracker_(surface_traits(world, settings), settings, ids_),
+      game_(world.holes),
+      fingerprint_(fingerprint(world, settings)) {
   tools_.reserve(world.tools.size());
   const std::vector<double> reach_m = reaches(world);
   for (std::size_t i = 0; i < world.tools.size(); ++i) {
@@ -50,12 +53,24 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
 void Simulation::start(std::int64_t incarnation) {
   ids_.restart(incarnation);
   look();
+  begin_ = save();
 }
 
-void Simulation::step(std::span<const tool_state_t> messages) {
+void Simulation::sort_news(std::span<const tool_state_t> messages) {
   for (Tool& tool : tools_) tool.news.clear();
   for (const tool_state_t& m : messages)
     if (static_cast<std::size_t>(m.tool) < tools_.size()) tools_[static_cast<std::size_t>(m.tool)].news.push_back(m);
+}
+
+void Simulation::step(std::span<const tool_state_t> messages) {
+  if (held_) {
+    for (Tool& tool : tools_) tool.news.clear();
+    motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
+    place_tools();
+    held_ = false;
+  }
+  sort_news(messages);
+  apply_wrenches();
   for (Tool& tool : tools_)
     for (const Push& push : tool.push.step(now(), tool.news, motions_))
       solver_.add_force(push.body, push.force_N, push.point_m);
@@ -70,6 +85,7 @@ void Simulation::look() {
   tool_contacts_.clear();
   motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
   place_tools();
+  game_.step(now(), motions_);
   tracker_.update(now(), motions_, solver_.contacts(), solver_.solved(), events_);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     ToolTouch& touch = tools_[i].touch;
@@ -81,6 +97,43 @@ void Simulation::look() {
   }
   std::stable_sort(events_.begin(), events_.end(),
                    [](const contact_event_t& a, const contact_event_t& b) { return a.time_ns < b.time_ns; });
+}
+
+void Simulation::apply_wrenches() {
+  for (Wrench& w : wrenches_) {
+    solver_.add_force(w.body, w.force_N, solver_.bodies()[static_cast<std::size_t>(w.body)].centre_m);
+    solver_.add_torque(w.body, w.torque_N_m);
+    --w.steps;
+  }
+  std::erase_if(wrenches_, [](const Wrench& w) { return w.steps <= 0; });
+}
+
+bool Simulation::push(const Wrench& wrench) {
+  if (wrenches_.size() >= kMostWrenches) return false;
+  wrenches_.push_back(wrench);
+  return true;
+}
+
+void Simulation::set_friction(int body, double friction) {
+  solver_.set_friction(body, friction);
+  for (Tool& tool : tools_) tool.touch.set_friction(body, friction);
+}
+
+void Simulation::hold(std::span<const tool_state_t> messages) {
+  sort_news(messages);
+  held_ = true;
+  tool_contacts_.clear();
+  motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
+  for (BodyMotion& m : motions_) m.velocity_m_s = m.spin_rad_s = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    tools_[i].touch.feel(now(), motions_, tools_[i].news);
+    tools_[i].push.hold(now(), tools_[i].news, motions_);
+    models_[i] = tools_[i].touch.model();
+    tools_[i].push.books(models_[i].applied, kMostBooks);
+    models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
+  }
+  place_tools();
+  for (Tool& tool : tools_) tool.touch.describe(motions_, tool_contacts_);
 }
 
 void Simulation::place_tools() {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <tactus/tool_state_t.hpp>
@@ -15,12 +16,21 @@
 #include "sim_node/behaviour/tool_touch.h"
 #include "sim_node/collision/contact_tracker.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/game/game.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
 
+struct Wrench {
+  int body = -1;
+  Eigen::Vector3d force_N{0, 0, 0}, torque_N_m{0, 0, 0};
+  std::int64_t steps = 0;  // still to act
+};
+
 class Simulation {
  public:
+  static constexpr std::size_t kMostWrenches = 64;
+
   // Throws std::runtime_error with one sentence when the world cannot be simulated.
   Simulation(const WorldDef& world, const Settings& settings);
   Simulation(const Simulation&) = delete;
@@ -28,6 +38,21 @@ class Simulation {
   // The world at its first instant. incarnation: of the process; prefixes the ids of events and contacts. Call once,
   // before the first step, which also gives the events of this instant.
   void start(std::int64_t incarnation);
+
+  // All of the world's state, as bytes of the form of sim_node/state/envelope.h.
+  std::vector<std::uint8_t> save();
+  // Puts a state back: what follows is the same to the bit, in this process or another of the same build. Returns why
+  // not, in one sentence, when the bytes are damaged or not of this world; then nothing has changed. Empty: it is done.
+  std::string restore(std::span<const std::uint8_t> bytes);
+  // The world as it was at start().
+  void reset() { restore(begin_); }
+  // A world that was put back lives anew under another incarnation: its contacts go on under new ids, and what the hands
+  // said before is forgotten, since they are where they are.
+  void begin_life(std::int64_t incarnation);
+
+  // In place of a step while the world stands still: hands feel the surfaces where they are, bodies do not yield, and
+  // everything is published at rest. tools: as for step().
+  void hold(std::span<const tool_state_t> tools);
 
   // Advances by one step. tools: all TOOL_STATE messages since the last call, in order of arrival.
   // Deterministic: the same messages give the same world to the bit.
@@ -43,7 +68,15 @@ class Simulation {
   // Contacts between bodies, into `out`, which is cleared.
   void body_contacts(std::vector<contact_t>& out) const;
   std::span<const BodyMotion> bodies() const { return motions_; }
+  Game& game() { return game_; }
   const Solver& solver() const { return solver_; }
+  // To set what may be set while the world runs. Of friction the tools are told here.
+  Solver& solver() { return solver_; }
+  void set_friction(int body, double friction);
+  // A force and a torque, world frame, on a body at its centre of mass, for so long from the next step on. False: as many
+  // act already as there may be.
+  bool push(const Wrench& wrench);
+  std::size_t wrenches() const { return wrenches_.size(); }
 
  private:
   struct Tool {
@@ -55,6 +88,9 @@ class Simulation {
   };
   void look();
   void place_tools();
+  void sort_news(std::span<const tool_state_t> messages);
+  void apply_wrenches();
+  void archive(StateArchive& a);
 
   Settings settings_;
   sync::Nanoseconds step_;
@@ -67,6 +103,11 @@ class Simulation {
   std::vector<contact_event_t> events_;
   std::vector<contact_t> tool_contacts_;
   std::vector<touch_model_t> models_;
+  std::vector<Wrench> wrenches_;
+  Game game_;
+  bool held_ = false;  // motions_ are shown at rest
+  std::uint64_t fingerprint_;
+  std::vector<std::uint8_t> begin_;  // the state at start()
 };
 
 }  // namespace tactus::sim

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
+#include "sim_node/state/state_archive.h"
 
 namespace tactus::sim {
 
@@ -24,6 +26,24 @@ class Solver {
 
   // Acts during the next step, N, at a point of the world, m. Bodies that never move ignore it.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
+
+  // The same for a torque about the centre of mass, N m.
+  void add_torque(int body, const Eigen::Vector3d& torque_N_m);
+
+  // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
+  // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
+  void set_gravity(const Eigen::Vector3d& gravity_m_s2);
+  bool set_mass(int body, double mass_kg);  // the inertia in proportion
+  bool set_pose(int body, const Eigen::Isometry3d& pose);
+  bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s);  // of the centre of mass
+  bool set_spin(int body, const Eigen::Vector3d& spin_rad_s);
+  void set_friction(int body, double friction);
+  void set_restitution(int body, double restitution);
+  bool set_motor(const std::string& joint, int axis, double effort, double velocity);
+  bool set_joint_friction(const std::string& joint, int axis, double friction);
+
+  // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
+  void archive(StateArchive& a);
 
   // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses.
   // Deterministic: the same steps from the same world are the same to the bit. Not for two threads at once.
@@ -54,6 +74,8 @@ class Solver {
   std::unique_ptr<Engine> engine_;
   Settings settings_;
   std::vector<double> friction_, restitution_;  // per shape
+  std::vector<int> body_of_;                    // per shape
+  std::vector<bool> falls_;                     // per body: gravity acts on it
   std::vector<Inert> inert_;
   std::vector<Eigen::Vector3d> fall_m_s_;  // what gravity and forces add to each body's speed in the next step
   std::vector<Eigen::Vector3d> shift_m_;   // by which each body was put back in this step

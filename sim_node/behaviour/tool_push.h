@@ -14,6 +14,7 @@
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/collision/ids.h"
 #include "sim_node/settings.gen.h"
+#include "sim_node/state/state_archive.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
@@ -36,8 +37,14 @@ class ToolPush {
   // no message or two, is made up for over 5 steps. Without news the force is held, then fades. A new haptic process
   // counts its impulses from zero; forces on contacts that this simulation never named are ignored.
   const std::vector<Push>& step(sync::SimTime now, std::span<const tool_state_t> news, std::span<const BodyMotion> bodies);
+  // The same while the world stands still: what is felt meanwhile pushes nothing, then or later.
+  void hold(sync::SimTime now, std::span<const tool_state_t> news, std::span<const BodyMotion> bodies);
   // After the step: books the work that the pushes did.
   void settle(std::span<const BodyMotion> bodies);
+
+  void archive(StateArchive& a, std::size_t bodies);
+  // The world began anew under new ids: what the hand said before is of another life. The next message begins new books.
+  void forget();
 
   // What was applied for each contact, the latest first, at most `most`.
   void books(std::vector<touch_applied_t>& out, std::size_t most) const;

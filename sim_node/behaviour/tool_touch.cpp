@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lcmtypes/bump.h"
+#include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/triangles.h"
 
@@ -35,14 +36,15 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   tool_material_ = def.material;
   radius_m_ = def.radius_m;
   tool_mass_kg_ = def.mass_kg;
-  double own_static = 1, own_dynamic = 1, own_compliance = 1 / settings.default_youngs_modulus_Pa;
+  double own_compliance = 1 / settings.default_youngs_modulus_Pa;
   if (tool_material_ >= 0) {
     const material_def_t& m = world.materials[static_cast<std::size_t>(tool_material_)];
-    own_static = m.friction_static, own_dynamic = m.friction_dynamic;
+    own_static_ = m.friction_static, own_dynamic_ = m.friction_dynamic;
     own_compliance = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
-  for (std::size_t i = 0; i < world.shapes.size(); ++i) {
+  const bool points = steered_light(def, world.lights) >= 0;
+  for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
     TriangleMesh ground;
@@ -54,11 +56,11 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     }
     ClosestSurface surface(s, mesh, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
-    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static),
-                         std::sqrt(traits[i].friction_dynamic * own_dynamic), traits[i].compliance_1_Pa + own_compliance,
+    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
+                         std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
                          s.material >= 0 ? world.materials[static_cast<std::size_t>(s.material)].bump_asset : 0});
   }
-  model_.tool = tool;
+  model_.tool = points ? -1 : tool;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
 }
 

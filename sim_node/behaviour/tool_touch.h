@@ -14,6 +14,7 @@
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
 #include "sim_node/settings.gen.h"
+#include "sim_node/state/state_archive.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
@@ -28,13 +29,23 @@ class ToolTouch {
   void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
               std::vector<contact_event_t>& events);
 
-  // The planes, nearest first; header and clock are the publisher's.
+  // The same while the world stands still: the planes near where the hand is now. Nothing begins, hits or ends.
+  void feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news);
+
+  // The planes, nearest first; header and clock are the publisher's. Tool -1: it only points, and there is none to send.
   const touch_model_t& model() const { return model_; }
   // Where the tool is: its proxy, as last heard of.
   const Eigen::Vector3d& proxy() const { return proxy_; }
   const Eigen::Vector3d& proxy_velocity() const { return proxy_velocity_; }
   // Contacts of the tool.
   void describe(std::span<const BodyMotion> bodies, std::vector<contact_t>& out) const;
+
+  // The friction of a body's shapes against other bodies has been set: that of the tool against them follows.
+  void set_friction(int body, double friction);
+
+  void archive(StateArchive& a);
+  // The ids have been renamed.
+  void rename();
 
  private:
   struct Surface {
@@ -78,6 +89,7 @@ class ToolTouch {
 
   int tool_, tool_body_, tool_material_;
   double radius_m_, tool_mass_kg_;
+  double own_static_ = 1, own_dynamic_ = 1;  // friction of the tool's material
   Settings settings_;
   Ids& ids_;
   std::vector<Surface> surfaces_;

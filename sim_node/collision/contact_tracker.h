@@ -12,6 +12,7 @@
 #include "sim_node/collision/ids.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/settings.gen.h"
+#include "sim_node/state/state_archive.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
@@ -47,6 +48,11 @@ class ContactTracker {
   std::span<const LiveContact> live() const { return live_; }
   // The contact as a message.
   void describe(const LiveContact& contact, std::span<const BodyMotion> bodies, contact_t& out) const;
+
+  // bodies: how many the world has.
+  void archive(StateArchive& a, std::size_t bodies);
+  // The ids have been renamed.
+  void rename();
 
  private:
   struct Approach {

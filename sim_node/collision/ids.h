@@ -1,6 +1,7 @@
 // Numbers for events and contacts: unique over restarts, so that receivers discard repetitions by them.
 #pragma once
 
+#include "sim_node/state/state_archive.h"
 #include "sync/identity.h"
 
 namespace tactus::sim {
@@ -16,6 +17,15 @@ class Ids {
   }
   // Another incarnation from here on.
   void restart(std::int64_t incarnation) { *this = Ids(incarnation); }
+  // The world goes on in a new life: numbers are counted on, under another name.
+  void rename(std::int64_t incarnation) { incarnation_ = incarnation; }
+  // What a number given before is called now.
+  std::int64_t renamed(std::int64_t id) const { return sync::prefixed_id(incarnation_, id); }
+
+  void archive(StateArchive& a) {
+    a(incarnation_), a(next_);
+    a.require(next_ >= 0, "the state holds a number out of range");
+  }
 
  private:
   std::int64_t incarnation_;

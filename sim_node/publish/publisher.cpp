@@ -1,12 +1,14 @@
 #include "sim_node/publish/publisher.h"
 
+#include <algorithm>
+
 #include "sim_node/publish/paging.h"
 
 namespace tactus::sim {
 
 void Publisher::publish_events(const StepView& view, const sim_clock_t& clock) {
-  young_.add(*view.events, view.time);
-  const std::vector<contact_event_t>& due = young_.due(view.time);
+  young_.add(*view.events, pace_);
+  const std::vector<contact_event_t>& due = young_.due(pace_);
   if (due.empty()) return;
   const auto pages = paged(due, empty_size<contact_events_t>());
   for (std::size_t page = 0; page < pages.size(); ++page) {
@@ -39,9 +41,23 @@ void Publisher::publish_tool_contacts(const StepView& view, const sim_clock_t& c
   }
 }
 
+void Publisher::publish_game(const StepView& view, const sim_clock_t& clock) {
+  if (view.game == nullptr || !view.game->any()) return;
+  const bool changed = view.game->take_change();
+  if (!changed && ++game_ticks_ < kGameTicks) return;
+  game_ticks_ = 0;
+  game_state_t m{};
+  m.header.sim_time_ns = sync::to_ns(view.time);
+  m.clock = clock;
+  view.game->describe(m);
+  bus_.publish(channels::kGameState, m);
+}
+
 void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
   const sim_clock_t clock{sync::to_ns(map.sim), sync::to_ns(map.host), map.rate};
+  pace_ = std::max(pace_ + step_, view.time);
   for (touch_model_t& m : *view.touch_models) {
+    if (m.tool < 0) continue;
     m.header.sim_time_ns = sync::to_ns(view.time);
     m.clock = clock;
     bus_.publish(channels::kTouchModel, m);
@@ -52,8 +68,9 @@ void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
     m.clock = clock;
     bus_.publish(channel, m);
   };
-  snapshots_.tick(view.time, view.state, [&](contact_frame_t& m) { send(channels::kContacts, m); },
+  snapshots_.tick(view.time, pace_, view.state, [&](contact_frame_t& m) { send(channels::kContacts, m); },
                   [&](world_state_t& m) { send(channels::kWorldState, m); });
+  publish_game(view, clock);
 }
 
 }  // namespace tactus::sim

@@ -7,6 +7,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
+#include "sim_node/game/game.h"
 #include "sim_node/publish/snapshots.h"
 #include "sim_node/publish/young_events.h"
 #include "sync/bus.h"
@@ -20,12 +21,13 @@ struct StepView {
   const std::vector<contact_event_t>* events = nullptr;        // that became known in this step
   const std::vector<contact_t>* tool_contacts = nullptr;
   StateSource state;
+  Game* game = nullptr;  // null: the scene has none
 };
 
 class Publisher {
  public:
   Publisher(sync::Bus& bus, double state_rate_Hz, double pages_per_second, std::size_t event_pages, sync::Nanoseconds step)
-      : bus_(bus), young_(event_pages), snapshots_(state_rate_Hz, pages_per_second, step) {}
+      : bus_(bus), step_(step), young_(event_pages), snapshots_(state_rate_Hz, pages_per_second, step) {}
 
   void publish(const StepView& view, const sync::TimeMap& map);
   // Somebody new is listening: every body goes out as soon as the budget allows.
@@ -34,8 +36,15 @@ class Publisher {
  private:
   void publish_events(const StepView& view, const sim_clock_t& clock);
   void publish_tool_contacts(const StepView& view, const sim_clock_t& clock);
+  void publish_game(const StepView& view, const sim_clock_t& clock);
+
+  static constexpr int kGameTicks = 250;  // 4 Hz for who joins late or missed a change
 
   sync::Bus& bus_;
+  sync::Nanoseconds step_;
+  // The world's time, and a step for every tick in which it stands still; before the first of either.
+  sync::SimTime pace_{-std::chrono::hours(1)};
+  int game_ticks_ = 0;  // since it was told last
   YoungEvents young_;
   Snapshots snapshots_;
 };

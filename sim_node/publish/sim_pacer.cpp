@@ -7,6 +7,10 @@ namespace tactus::sim {
 sync::TimeMap SimPacer::tick(sync::SimTime sim, sync::HostTime due) {
   const std::int64_t measured = sync::to_ns(due) - sync::to_ns(sim);
   double rate = 1;
+  if (held_) {
+    held_.reset();
+    offset_ns_.reset();
+  }
   if (!offset_ns_) {
     base_ns_ = measured;
     offset_ns_ = 0;
@@ -24,7 +28,12 @@ sync::TimeMap SimPacer::tick(sync::SimTime sim, sync::HostTime due) {
     factor_ = sync::to_seconds(sim - window_sim_) / window_s;
     window_host_ = due, window_sim_ = sim;
   }
-  return {sim, sync::host_time(sync::to_ns(sim) + base_ns_ + std::llround(*offset_ns_)), rate};
+  return {sim, host_of(sim), rate};
+}
+
+sync::TimeMap SimPacer::hold(sync::SimTime sim, sync::HostTime due) {
+  if (!held_) held_ = offset_ns_ ? host_of(sim) : due;
+  return {sim, *held_, 0};
 }
 
 }  // namespace tactus::sim

@@ -5,6 +5,7 @@
 // says how fast.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -19,10 +20,18 @@ class SimPacer {
 
   // One tick: the world is at `sim` at the deadline `due` of the loop. Call with ever later times.
   sync::TimeMap tick(sync::SimTime sim, sync::HostTime due);
-  // Simulated seconds per host second over the last whole second.
-  double realtime_factor() const { return factor_; }
+  // One tick in which the world stands still at `sim`: the map has rate 0 and moves no more until the next tick(), which
+  // begins a new one.
+  sync::TimeMap hold(sync::SimTime sim, sync::HostTime due);
+  // Simulated seconds per host second over the last whole second; 0 while the world stands still.
+  double realtime_factor() const { return held_ ? 0 : factor_; }
 
  private:
+  sync::HostTime host_of(sync::SimTime sim) const {
+    return sync::host_time(sync::to_ns(sim) + base_ns_ + std::llround(*offset_ns_));
+  }
+
+  std::optional<sync::HostTime> held_;
   std::optional<double> offset_ns_;  // host - sim, since base_
   std::int64_t base_ns_ = 0;
   sync::SimTime last_sim_{};

@@ -38,12 +38,12 @@ void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& fr
 
 }  // namespace
 
-void Snapshots::take_bodies(sync::SimTime now, const StateSource& source, bool full) {
+void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full) {
   bodies_time_ = now;
   full_ = full;
   if (full) {
     full_wanted_ = false;
-    last_full_ = now;
+    last_full_ = pace;
   }
   const bool first = told_.size() != source.bodies.size();
   if (first) told_.assign(source.bodies.begin(), source.bodies.end());
@@ -87,14 +87,14 @@ void Snapshots::fill(contact_frame_t& m) {
   copy(m, &contact_frame_t::contacts, contacts_, contact_pages_[sent_contacts_++]);
 }
 
-void Snapshots::tick(sync::SimTime now, const StateSource& source, const std::function<void(contact_frame_t&)>& send_contacts,
+void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& source, const std::function<void(contact_frame_t&)>& send_contacts,
                      const std::function<void(world_state_t&)>& send_world) {
-  scheduler_.tick(now);
+  scheduler_.tick(pace);
   if (scheduler_.due(Lane::kWorld)) {
-    take_bodies(now, source, full_wanted_ || !last_full_ || now - *last_full_ >= kFullPeriod);
+    take_bodies(now, pace, source, full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod);
     scheduler_.begin(Lane::kWorld, body_pages_.size());
   } else if (full_wanted_) {
-    take_bodies(now, source, true);
+    take_bodies(now, pace, source, true);
     scheduler_.begin_urgent_world(body_pages_.size());
   }
   if (scheduler_.due(Lane::kContacts)) {

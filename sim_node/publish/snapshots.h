@@ -29,14 +29,15 @@ class Snapshots {
       : scheduler_(rate_Hz, pages_per_second, step) {}
 
   // One tick at `now`: hands the pages that go out now to one of the two, in order; their clock is not set yet. Bodies
-  // that move are in every snapshot, all bodies in one a second.
-  void tick(sync::SimTime now, const StateSource& source, const std::function<void(contact_frame_t&)>& send_contacts,
+  // that move are in every snapshot, all bodies in one a second. pace: goes on by a step with every tick, also while the
+  // world stands still; all rates are in it.
+  void tick(sync::SimTime now, sync::SimTime pace, const StateSource& source, const std::function<void(contact_frame_t&)>& send_contacts,
             const std::function<void(world_state_t&)>& send_world);
   // Somebody new is listening: every body goes out as soon as the budget allows.
   void want_full() { full_wanted_ = true; }
 
  private:
-  void take_bodies(sync::SimTime now, const StateSource& source, bool full);
+  void take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full);
   void take_contacts(sync::SimTime now, const StateSource& source);
   void fill(world_state_t& page);
   void fill(contact_frame_t& page);

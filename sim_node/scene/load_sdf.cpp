@@ -8,6 +8,7 @@
 #include "sim_node/scene/lights.h"
 #include "sim_node/scene/sdf_eigen.h"
 #include "sim_node/scene/sdf_read.h"
+#include "sim_node/scene/tactus_holes.h"
 #include "sim_node/scene/tactus_materials.h"
 #include "sim_node/scene/tactus_profile.h"
 #include "sim_node/scene/tactus_settings.h"
@@ -70,6 +71,7 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
   if (context.world.lights.empty()) context.world.lights.push_back(sun());
   read_view(context, world, element);
   read_tools(context, element);
+  read_holes(context, element);
   read_settings(context, element);
   read_profile(context, element);
 }

@@ -14,7 +14,7 @@ using Names = std::set<std::string>;
 const std::map<std::string, Names> kSupported{
     {"sdf", {"world", "model"}},
     {"world", {"gravity", "physics", "scene", "gui", "light", "model", "frame", "tactus:material", "tactus:tool",
-               "tactus:camera", "tactus:listener", "tactus:profile"}},
+               "tactus:camera", "tactus:listener", "tactus:profile", "tactus:hole"}},
     {"physics", {"max_step_size", "real_time_factor", "real_time_update_rate"}},
     {"scene", {"ambient", "background"}},
     {"gui", {"camera"}},

@@ -84,6 +84,15 @@ struct VisualDef {
   double alpha = 1;
 };
 
+// A hole of a game: a cylinder that opens upwards, and the body that belongs into it.
+struct HoleDef {
+  std::string name;
+  Eigen::Vector3d position_m{0, 0, 0};  // centre of its rim, world
+  double radius_m = 0;
+  double depth_m = 0.2;
+  int ball = -1;
+};
+
 struct WorldDef {
   std::string name;
   Eigen::Vector3d gravity_m_s2{0, 0, -9.8};
@@ -97,6 +106,7 @@ struct WorldDef {
   std::vector<sync::Asset> images;  // the height maps that materials name by their hash, each once
   std::vector<light_def_t> lights;
   std::vector<tool_def_t> tools;
+  std::vector<HoleDef> holes;
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
   double camera_fov_rad = 1.05;
   Eigen::Vector3d ambient{0.1, 0.1, 0.1}, background{0.02, 0.02, 0.03};

@@ -215,6 +215,23 @@ class Samples {
   }
   void fill(playout_t& m) { fill_policy(m), m.lockstep_Hz = real(0, 60); }
   void fill(playout_request_t& m) { fill_policy(m); }
+  void fill(double& value) { value = real(-9, 9); }
+  void fill(sim_command_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.kind = static_cast<std::int8_t>(whole(0, 7)), m.steps = whole(0, 9);
+    m.name = name(), m.property = name(), fill_list(m.count, m.values, 0, 6);
+    fill(m.force_N), fill(m.torque_N_m), m.duration_ns = whole(0, 1 << 30), m.to_file = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(sim_reply_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.done = static_cast<std::int8_t>(whole(0, 1)), m.text = name(200);
+    m.paused = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(hole_state_t& h) {
+    h.name = name(), h.ball = whole(0, 9), h.inside = whole(-1, 9), h.filled = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(game_state_t& m) {
+    fill(m.header), fill(m.clock), m.won = static_cast<std::int8_t>(whole(0, 1)), m.won_ns = whole(-1, 999);
+    fill_list(m.count, m.holes, 0, 6);
+  }
   void fill(log_info_t& m) {
     fill(m.header), m.header.sim_time_ns = -1;
     m.version = name(), m.git = name(), m.scene = name(), m.seed = whole(0, 99), m.seconds = real(0, 99);

@@ -77,6 +77,8 @@ def scene_arguments(root, program):
         return [os.path.join(root, "LICENSE")]  # a file that is there; it is not read before the options are
     if name_of(program) == "degrade":
         return ["off"]
+    if name_of(program) == "simulation":
+        return ["pause"]
     if name_of(program) == "sim_node":
         return [os.path.join(root, "sim_node", "scenes", "dark_room.sdf")]
     return []

@@ -131,6 +131,33 @@ TEST_CASE(
   CHECK(inside(std::acos((std::cos(0.3) + std::cos(0.5)) / 2)) == Approx(0.5).margin(1e-4));
 }
 
+TEST_CASE("A spot of the name of a tool shines at where the tool is, with its shadow; while nobody holds it as the scene says") {
+  scene_t scene = test::empty_scene();
+  scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};
+  scene.lights[0].casts_shadow = 0;
+  scene.lights[1].name = "lamp";
+  test::add_tool(scene, 0.005);
+  scene.tools[0].name = "lamp";
+  const SceneView view(scene, {}, Settings{});
+  std::vector<ToolPose> tools(1);
+  const std::vector<Eigen::Isometry3d> bodies(1, Eigen::Isometry3d::Identity());
+  const auto unmoved = view.draw(bodies, tools);
+  CHECK(unmoved.instances.empty());
+  CHECK(unmoved.lighting.lights[1].direction == view.lighting().lights[1].direction);
+  tools[0].known = true;
+  tools[0].device.translation() = Eigen::Vector3d(3, 1, 0.5);
+  const auto aimed = view.draw(bodies, tools).lighting;
+  const Eigen::Vector3f wanted = Eigen::Vector3f(3, 1, -1.5).normalized();
+  CHECK((aimed.lights[1].direction.head<3>() - wanted).norm() < 1e-6f);
+  CHECK(aimed.lights[0].direction == unmoved.lighting.lights[0].direction);
+  REQUIRE(aimed.shadow_light == 1);
+  const Eigen::Vector4f c = aimed.shadow_clip * Eigen::Vector4f(3, 1, 0.5, 1);
+  CHECK(std::max(std::abs(c.x()), std::abs(c.y())) / c.w() < 1e-5f);
+  // At the lamp itself there is no direction.
+  tools[0].device.translation() = Eigen::Vector3d(0, 0, 2);
+  CHECK(view.draw(bodies, tools).lighting.lights[1].direction == unmoved.lighting.lights[1].direction);
+}
+
 TEST_CASE("The first spot that casts shadows gets the shadow map, and a map covers its cone") {
   scene_t scene = test::empty_scene();
   light_def_t sun = test::spot({0, 0, 2}, 1, 1);

@@ -20,6 +20,8 @@ constexpr double kWidestShadowCone_rad = 160 * std::numbers::pi / 180;
 constexpr double kFarthestShadow_m = 30;
 // Depth precision is lost with the ratio of far to near.
 constexpr double kShadowFarToNear = 500;
+// Nearer to the lamp than this a hand names no direction.
+constexpr double kNearestAim_m = 0.01;
 
 Eigen::Matrix4f shadow_clip(const light_def_t& lamp) {
   const double far_m = std::min<double>(std::max(lamp.range_m, 0.1f), kFarthestShadow_m);
@@ -46,6 +48,15 @@ Light make_light(const light_def_t& lamp) {
     l.cone = {factor, -outer * factor, lamp.falloff > 0 ? lamp.falloff : 1, 0};
   }
   return l;
+}
+
+void aim(Lighting& lighting, std::size_t light, const light_def_t& lamp, const Eigen::Vector3d& at) {
+  const Eigen::Vector3d to = at - to_eigen(lamp.pose.position_m);
+  if (light >= lighting.lights.size() || !(to.norm() > kNearestAim_m)) return;
+  light_def_t aimed = lamp;
+  aimed.direction = to_vec3(to.normalized());
+  lighting.lights[light] = make_light(aimed);
+  if (lighting.shadow_light == static_cast<int>(light)) lighting.shadow_clip = shadow_clip(aimed);
 }
 
 Lighting make_lighting(const scene_t& scene, const Settings& settings) {

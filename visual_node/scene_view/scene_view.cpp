@@ -4,6 +4,7 @@
 #include <array>
 #include <tuple>
 
+#include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "visual_node/scene_view/lighting.h"
 
@@ -93,8 +94,10 @@ void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool) {
   ball.look.emissive << 0.12f * kToolColour, 0;
   const bool has_visual =
       std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.body == tool.body; });
-  if (!has_visual && tool.body < static_cast<int>(scene.bodies.size())) parts_.push_back(ball);
-  tools_.push_back({tool.body, ball});
+  const int light = steered_light(tool, scene.lights);
+  // One that only points is seen when somebody holds it.
+  if (!has_visual && light < 0 && tool.body < static_cast<int>(scene.bodies.size())) parts_.push_back(ball);
+  tools_.push_back({tool.body, ball, light, light >= 0 ? scene.lights[static_cast<std::size_t>(light)] : light_def_t{}});
 }
 
 bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, Part& part) {
@@ -194,6 +197,9 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
   }
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
     if (tools[i].known) add(tools_[i].ghost, tools[i].device);
+  for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
+    if (tools[i].known && tools_[i].light >= 0)
+      aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation());
 
   // Planes and boxes have the lowest numbers and are mostly floors and walls: last, so that little is drawn twice.
   std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {

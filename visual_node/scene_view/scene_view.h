@@ -83,6 +83,8 @@ class SceneView {
   struct Tool {
     int body;
     Part ghost;
+    int light = -1;  // that it steers
+    light_def_t lamp{};
   };
   std::vector<Tool> tools_;
   int missing_meshes_ = 0;

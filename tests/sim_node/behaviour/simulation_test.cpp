@@ -6,74 +6,13 @@
 
 #include "lcmtypes/vectors.h"
 #include "sync/identity.h"
+#include "tests/sim_node/simple_hand.h"
 #include "tests/sim_node/small_worlds.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
-
-namespace {
-
-WorldDef& add_tool(WorldDef& w, const Vector3d& place, double radius = 0.01) {
-  const int body = add_body(w, "hand", 0, Eigen::Matrix3d::Identity(), at(place.x(), place.y(), place.z()));
-  w.bodies.back().tool = static_cast<int>(w.tools.size());
-  w.bodies.back().is_static = false;
-  tool_def_t t{};
-  t.name = "hand";
-  t.body = body;
-  t.radius_m = radius;
-  t.mass_kg = 0.1;
-  t.material = -1;
-  w.tools.push_back(t);
-  return w;
-}
-
-// A haptic loop as simple as can be: the device goes where it is told, the proxy stays outside the planes (one at a time),
-// spring force between them.
-struct Hand {
-  double radius, stiffness = 1000;
-  std::int64_t seq = 0, incarnation = 40;
-  Vector3d last;
-  std::map<std::int64_t, Vector3d> impulses{};
-
-  tool_state_t tick(const touch_model_t& model, const Vector3d& device, std::int64_t time_ns) {
-    tool_state_t m{};
-    m.header.sim_time_ns = time_ns;
-    m.header.publish_time_ns = 1'000'000'000 + time_ns;
-    m.header.incarnation = incarnation;
-    m.header.seq = seq++;
-    Vector3d proxy = device;
-    for (int round = 0; round < 4; ++round)
-      for (const touch_plane_t& p : model.planes) {
-        const Vector3d n = to_eigen(p.normal).normalized();
-        const double gap = (proxy - to_eigen(p.point_m)).dot(n) - radius;
-        if (gap < 0) proxy -= gap * n;
-      }
-    for (const touch_plane_t& p : model.planes) {
-      const Vector3d n = to_eigen(p.normal).normalized();
-      const double depth = radius - (device - to_eigen(p.point_m)).dot(n);
-      if (depth > 0) impulses.try_emplace(p.contact_id, Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
-      if (!impulses.count(p.contact_id)) continue;
-      tool_constraint_t c{};
-      c.contact_id = p.contact_id;
-      c.body = p.body;
-      c.point_m = to_vec3f(proxy - radius * n);
-      c.force_N = to_vec3f(Vector3d(stiffness * std::max(0.0, depth) * n));
-      c.impulse_N_s = to_vec3f(impulses[p.contact_id]);
-      m.constraints.push_back(c);
-    }
-    m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
-    m.device.position_m = to_vec3(device);
-    m.proxy.position_m = to_vec3(proxy);
-    m.device.orientation.w = m.proxy.orientation.w = 1;
-    m.device_velocity_m_s = to_vec3f(seq > 1 ? Vector3d((device - last) / 0.001) : Vector3d(0, 0, 0));
-    last = device;
-    return m;
-  }
-};
-
-}  // namespace
 
 TEST_CASE("A tool that presses on the floor begins and hits at the instant when it meets it, and ends when it leaves") {
   WorldDef w = empty_world();
@@ -267,4 +206,27 @@ TEST_CASE("The same messages give the same world, to the bit") {
     return sync::fnv1a_64(bytes.data(), bytes.size());
   };
   CHECK(digest() == digest());
+}
+
+TEST_CASE("A tool that bears the name of a spot light points through everything and feels nothing") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  add_tool(w, {0, 0, 0.05});
+  w.lights.resize(1);
+  w.lights[0].name = w.tools[0].name;
+  w.lights[0].kind = light_def_t::SPOT;
+  Simulation s(w, {});
+  s.start(11);
+  Hand hand{.radius = 0.01, .last = {0, 0, 0.05}};
+  for (int i = 0; i < 300; ++i) {
+    s.step(std::vector{hand.tick(s.touch_models()[0], {0, 0, 0.05 - 0.001 * i}, sync::to_ns(s.now()))});
+    CHECK(s.touch_models()[0].tool == -1);  // is not sent
+    CHECK(s.touch_models()[0].planes.empty());
+    CHECK(s.events().empty());
+  }
+  CHECK(s.bodies().back().position_m.z() == Approx(0.05 - 0.298));  // as told the step before
+  w.lights[0].kind = light_def_t::POINT;
+  Simulation touches(w, {});
+  touches.start(11);
+  CHECK(touches.touch_models()[0].tool == 0);
 }

@@ -187,7 +187,7 @@ TEST_CASE("Only what moves is told, its rest once, and everything once a second 
   const auto run = [&](int ticks) {
     for (int i = 0; i < ticks; ++i, ++tick) {
       if (bodies[7].velocity_m_s.x() > 0) bodies[7].position_m.x() += 0.0005;
-      snapshots.tick(sync::sim_time(tick * std::int64_t{1'000'000}), {bodies, [](auto& out) { out.clear(); }}, [](contact_frame_t&) {},
+      snapshots.tick(sync::sim_time(tick * std::int64_t{1'000'000}), sync::sim_time(tick * std::int64_t{1'000'000}), {bodies, [](auto& out) { out.clear(); }}, [](contact_frame_t&) {},
                      [&](world_state_t& m) {
                        full[m.header.sim_time_ns] = m.full;
                        auto& list = told[m.header.sim_time_ns];
@@ -226,4 +226,40 @@ TEST_CASE("Only what moves is told, its rest once, and everything once a second 
   int fulls = 0;
   for (const auto& [time, is_full] : full) fulls += is_full;
   CHECK(fulls == 2);
+}
+
+TEST_CASE("A world that stands still is told of as often as ever, and its events are not repeated for ever") {
+  Wire wire;
+  Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
+  const std::vector<BodyMotion> bodies(20);
+  std::vector<touch_model_t> models(1);
+  const std::vector<contact_t> tool;
+  const auto contacts = [](std::vector<contact_t>& out) { out.assign(1, contact(1, 1)); };
+  const auto publish = [&](std::int64_t time_ns, const std::vector<contact_event_t>& events) {
+    publisher.publish({.time = sync::sim_time(time_ns), .touch_models = &models, .events = &events, .tool_contacts = &tool,
+                       .state = {bodies, contacts}},
+                      {});
+  };
+  for (int i = 0; i < 500; ++i) publish(i * std::int64_t{1'000'000}, {});
+  publish(500'000'000, {event(7, 499'500'000)});
+  wire.bus.drain({});
+  const auto count = [&](auto& queue) {
+    int n = 0;
+    while (queue.pop()) ++n;
+    return n;
+  };
+  for (const auto& forget : {count(wire.touch), count(wire.world), count(wire.contacts), count(wire.events)}) (void)forget;
+  for (int i = 0; i < 2000; ++i) publish(500'000'000, {});
+  wire.bus.drain({});
+  CHECK(count(wire.touch) == 2000);
+  CHECK(count(wire.events) <= 50);
+  CHECK(count(wire.contacts) >= 2000 + 110);  // the tool's with each tick, the others 60 times a second
+  std::int64_t full = 0, snapshots = 0;
+  while (const auto m = wire.world.pop()) {
+    full += m->message.full && m->message.page == 0;
+    snapshots += m->message.page == 0;
+    CHECK(m->message.header.sim_time_ns == 500'000'000);
+  }
+  CHECK(snapshots >= 115);
+  CHECK(full >= 1);
 }

@@ -58,3 +58,26 @@ TEST_CASE("The map never runs backwards, even over a stop") {
     last = sync::to_ns(map.host);
   }
 }
+
+TEST_CASE("A world that stands still has a map that stands still, and a new one when it goes on") {
+  SimPacer pacer;
+  sync::TimeMap map{};
+  for (int i = 1; i < 100; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + i * kMs));
+  const sync::TimeMap before = map;
+  for (int i = 100; i < 5000; ++i) {
+    map = pacer.hold(before.sim, sync::host_time(kStart + i * kMs));
+    CHECK(map.rate == 0);
+    CHECK(map.sim == before.sim);
+    CHECK(map.host == before.host);  // what happened just before keeps its instant
+  }
+  CHECK(pacer.realtime_factor() == 0);
+  map = pacer.tick(before.sim + sync::Nanoseconds(kMs), sync::host_time(kStart + 5000 * kMs));
+  CHECK(map.rate == 1);
+  CHECK(sync::to_ns(map.host) == kStart + 5000 * kMs);
+}
+
+TEST_CASE("A world that stands still from the first has a map as well") {
+  SimPacer pacer;
+  CHECK(sync::to_ns(pacer.hold(sync::sim_time(5), sync::host_time(kStart)).host) == kStart);
+  CHECK(pacer.hold(sync::sim_time(5), sync::host_time(kStart + kMs)).rate == 0);
+}

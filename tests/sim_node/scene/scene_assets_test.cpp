@@ -41,7 +41,7 @@ TEST_CASE("The assets of a world decode to what they were made from") {
     CHECK((scene->bodies[i].mass_kg == 0) == w.bodies[i].is_static);
   }
   CHECK(scene->visuals.size() == w.visuals.size());
-  CHECK(scene->tools.size() == 1);
+  CHECK(scene->tools.size() == 2);
   CHECK(scene->tools[0].waypoints.size() == w.tools[0].waypoints.size());
   CHECK(scene->materials.size() == w.materials.size());
   CHECK(scene->lights.size() == w.lights.size());

@@ -3,6 +3,7 @@
 #include <random>
 #include <sstream>
 
+#include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "scene_file.h"
 #include "sim_node/scene/scene_assets.h"
@@ -50,7 +51,9 @@ TEST_CASE("The fan of the dark room settles where its friction balances its torq
 TEST_CASE("The path of the hand ends where it begins, stays in the room, and no leg is faster than a person moves") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
-  REQUIRE(w.tools.size() == 1);
+  REQUIRE(w.tools.size() == 2);
+  CHECK(steered_light(w.tools[0], w.lights) == -1);
+  CHECK(steered_light(w.tools[1], w.lights) >= 0);  // the other hand points the lamp
   const auto& path = w.tools[0].waypoints;
   CHECK((to_eigen(path.front().position_m) - to_eigen(path.back().position_m)).norm() < 1e-9);
   const Eigen::AlignedBox3d room(Vector3d(-0.45, -0.6, -0.003), Vector3d(0.45, 0.6, 0.5));

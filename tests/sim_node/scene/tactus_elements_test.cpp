@@ -97,6 +97,25 @@ TEST_CASE("A tool is a body after all others, at the first point of its path") {
   CHECK(t.waypoints[1].position_m.z == 2);
 }
 
+TEST_CASE("A hole names the body that belongs into it, by its own name or that of its model") {
+  const std::string ball = "<model name='ball'><link name='l'/></model><model name='two'><link name='a'/><link name='b'/></model>"
+                           "<model name='rock'><static>true</static><link name='l'/></model>";
+  const WorldDef w = SceneFile(world(ball + "<tactus:hole name='h' position='1 2 3' radius='30mm' depth='10cm' ball='ball'/>"
+                                            "<tactus:hole name='i' position='0 0 0' radius='0.1m' ball='two::b'/>"))
+                         .load();
+  REQUIRE(w.holes.size() == 2);
+  CHECK(w.bodies[static_cast<std::size_t>(w.holes[0].ball)].name == "ball::l");
+  CHECK(w.bodies[static_cast<std::size_t>(w.holes[1].ball)].name == "two::b");
+  CHECK(w.holes[0].position_m == Eigen::Vector3d(1, 2, 3));
+  CHECK(w.holes[0].radius_m == Approx(0.03));
+  CHECK(w.holes[0].depth_m == Approx(0.1));
+  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='two'/>"), Catch::Contains("no such body"));
+  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='rock'/>"), Catch::Contains("cannot fall"));
+  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' ball='ball'/>"), Catch::Contains("\"radius\""));
+  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0' radius='1cm' ball='ball'/>"), Catch::Contains("3 finite"));
+  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='0m' ball='ball'/>"), Catch::Contains("between"));
+}
+
 TEST_CASE("A tool that cannot be is refused with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
   CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));

@@ -1,0 +1,26 @@
+#include "sim_node/collision/contact_tracker.h"
+#include "sim_node/state/archive_motion.h"
+
+namespace tactus::sim {
+namespace {
+
+// More contacts than a step can solve points.
+constexpr std::size_t kMostContacts = 1 << 16;
+
+}  // namespace
+
+void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
+  a(now_);
+  a.list(live_, kMostContacts, [&](LiveContact& c) {
+    a(c.id);
+    sim::archive(a, c.manifold, bodies, surfaces_.size());
+    a(c.a_body_m), a(c.b_body_m), a(c.touching), a(c.gap_m), a(c.normal_force_N), a(c.impulse_N_s);
+    a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.apart_since), a(c.place_m), a(c.rolling_m_s);
+  });
+}
+
+void ContactTracker::rename() {
+  for (LiveContact& c : live_) c.id = ids_.renamed(c.id);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,75 @@
+#include "sim_node/command/state_store.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "sync/realtime.h"
+
+namespace tactus::sim {
+namespace {
+
+StateStore::Done write(const std::filesystem::path& file, const StateStore::Bytes& bytes) {
+  const std::filesystem::path fresh = file.string() + ".new";
+  std::ofstream out(fresh, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(fresh, file, error);
+  if (!out || error) return {{}, "the file " + file.string() + " cannot be written"};
+  return {};
+}
+
+StateStore::Done read(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  std::ifstream in(file, std::ios::binary);
+  if (error || !in) return {{}, "nothing is kept under this name, and there is no file " + file.string()};
+  if (size > StateStore::kLargest) return {{}, "the file " + file.string() + " is too large to be a state"};
+  StateStore::Done done;
+  done.bytes.resize(size);
+  in.read(reinterpret_cast<char*>(done.bytes.data()), static_cast<std::streamsize>(size));
+  if (!in) return {{}, "the file " + file.string() + " cannot be read"};
+  return done;
+}
+
+}  // namespace
+
+bool StateStore::good_name(const std::string& name) {
+  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+bool StateStore::keep(const std::string& name, Bytes bytes) {
+  if (!kept_.contains(name) && kept_.size() >= kMost) return false;
+  kept_[name] = std::make_shared<const Bytes>(std::move(bytes));
+  return true;
+}
+
+const StateStore::Bytes* StateStore::find(const std::string& name) const {
+  const auto it = kept_.find(name);
+  return it == kept_.end() ? nullptr : it->second.get();
+}
+
+void StateStore::begin_write(const std::string& name) {
+  work_.emplace([file = file_of(name), bytes = kept_.at(name)] {
+    sync::leave_realtime();
+    return std::make_unique<Done>(write(file, *bytes));
+  });
+}
+
+void StateStore::begin_read(const std::string& name) {
+  work_.emplace([file = file_of(name)] {
+    sync::leave_realtime();
+    return std::make_unique<Done>(read(file));
+  });
+}
+
+std::optional<StateStore::Done> StateStore::poll() {
+  if (!work_ || !work_->done()) return std::nullopt;
+  Done done = std::move(*work_->take());
+  work_.reset();
+  return done;
+}
+
+}  // namespace tactus::sim
