@@ -36,6 +36,9 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
   return settings;
 }
 
+// A flood of commands holds no step back; who is not answered repeats.
+constexpr int kCommandsPerTick = 4;
+
 // How the world is told of; made anew with each of its lives.
 struct Telling {
   Telling(sync::Bus& bus, const sim::Settings& s, sync::Nanoseconds step)
@@ -96,8 +99,8 @@ int main(int argc, char** argv) try {
       if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
     while (const auto m = healths.pop())
       if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.welcome();
-    while (const auto m = commands.pop())
-      if (m->message.header.run_id == options.run_id) commander.take(m->message);
+    for (int left = kCommandsPerTick; left > 0; --left)
+      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.take(m->message);
     for (sim_reply_t& answer : commander.answers()) {
       answer.header.sim_time_ns = -1;
       node.bus().publish(channels::kSimReply, answer);

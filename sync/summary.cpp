@@ -109,6 +109,9 @@ void RunSummary::add(const LogEvent& e) {
   feed.template operator()<contact_events_t>(channels::kContactEvents, match);
   feed.template operator()<presented_t>(channels::kPresented, match);
   feed.template operator()<playout_t>(channels::kPlayout, match);
+  feed.template operator()<game_state_t>(channels::kGameState, [&](const game_state_t& m) {
+    if (!info_ || m.header.run_id == info_->header.run_id) game_ = m;
+  });
   feed.template operator()<degraded_t>(channels::kDegraded, match);
   if (header && e.channel == channels::kWorldState) observe_course(*header);
   matcher_.advance(now);

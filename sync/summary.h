@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tactus/game_state_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <vector>
@@ -84,6 +85,8 @@ class RunSummary {
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;
   std::int64_t damaged_regions() const { return damaged_regions_; }
+  // How the game of the scene stood last; nothing: it has none.
+  const std::optional<game_state_t>& game() const { return game_; }
   // For so long in all nothing was recorded, though something was sent: nobody knows who was dead or stalled then.
   double holes_seconds() const { return to_seconds(holes_); }
 
@@ -128,6 +131,7 @@ class RunSummary {
   std::map<std::string, std::vector<std::int64_t>> quality_;           // by node
   std::map<std::string, Channel, std::less<>> channels_;
   std::map<std::int64_t, Course> courses_;
+  std::optional<game_state_t> game_;
   std::optional<HostTime> begin_;
   HostTime now_{};
   Nanoseconds recorded_{0};

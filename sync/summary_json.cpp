@@ -61,6 +61,15 @@ std::vector<std::string> senses(const PresentationMatcher& m) {
   return out;
 }
 
+Json game(const RunSummary& s) {
+  if (!s.game()) return nullptr;
+  const game_state_t& g = *s.game();
+  const auto filled = std::count_if(g.holes.begin(), g.holes.end(), [](const hole_state_t& h) { return h.filled != 0; });
+  Json won_at = nullptr;
+  if (g.won) won_at = rounded(static_cast<double>(g.won_ns) * 1e-9, 1000);
+  return {{"holes", g.count}, {"filled", filled}, {"won_at_s", won_at}};
+}
+
 Json contacts(const PresentationMatcher& m) {
   Json presented = Json::object(), by_modality = Json::object();
   DebtTally sum;
@@ -131,6 +140,7 @@ std::string to_json(const RunSummary& s) {
                     {"warnings", s.warnings()},
                     {"absent", s.absent()},
                     {"nodes", nodes(s)},
+                    {"game", game(s)},
                     {"contacts", contacts(s.matcher())},
                     {"asynchrony_ms", asynchrony(s.matcher())},
                     {"bus", bus}};

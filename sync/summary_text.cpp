@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -31,6 +32,14 @@ std::string nodes(const RunSummary& s) {
     out += line("  %.180s", n.scheduling.c_str());
   }
   return out;
+}
+
+std::string game(const RunSummary& s) {
+  if (!s.game()) return "";
+  const game_state_t& g = *s.game();
+  const auto filled = std::count_if(g.holes.begin(), g.holes.end(), [](const hole_state_t& h) { return h.filled != 0; });
+  if (!g.won) return line("game: %d of %d holes filled", static_cast<int>(filled), g.count);
+  return line("game: all %d holes filled, at %.2f s of the world", g.count, static_cast<double>(g.won_ns) * 1e-9);
 }
 
 std::string contacts(const PresentationMatcher& m) {
@@ -92,7 +101,7 @@ std::string to_text(const RunSummary& s) {
     out +=
         line("the log has a hole of %.1f s; who seems stalled or dead then may not have been", s.holes_seconds());
   for (const std::string& warning : s.warnings()) out += line("%.380s", warning.c_str());
-  return out + "\n" + nodes(s) + "\n" + contacts(s.matcher()) + absent(s) + "\n" + asynchrony(s.matcher()) + "\n" +
+  return out + "\n" + nodes(s) + "\n" + game(s) + contacts(s.matcher()) + absent(s) + "\n" + asynchrony(s.matcher()) + "\n" +
          bus(s);
 }
 

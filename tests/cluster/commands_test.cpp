@@ -71,7 +71,9 @@ TEST_CASE("A world that is paused stands still while every process lives on, tak
   }
 }
 
-TEST_CASE("A world that is reset or put back is another one to every sense, and none holds on to contacts that are no more") {
+TEST_CASE(
+    "A world that is reset or put back is another one to every sense, and none holds on to contacts that are no "
+    "more") {
   Commanded c;
   c.start();
   c.listen(1);
@@ -123,7 +125,8 @@ TEST_CASE("What is set and pushed moves the world of a running cluster; what can
   CHECK_THAT(c.ask({"set", "nothing", "1"}, 1), Catch::Contains("names no property"));
   CHECK_THAT(c.ask({"push", "nobody", "1", "0", "0"}, 1), Catch::Contains("nobody"));
   CHECK_THAT(c.ask({"set", "world.gravity", "0", "0", "-1.62"}), Catch::Contains("world.gravity"));
-  CHECK_THAT(c.ask({"push", "steel_ball", "0", "0", "-1", "--torque", "0", "0.001", "0", "--seconds", "0.3"}), Catch::Contains("pushed"));
+  CHECK_THAT(c.ask({"push", "steel_ball", "0", "0", "-1", "--torque", "0", "0.001", "0", "--seconds", "0.3"}),
+             Catch::Contains("pushed"));
   CHECK_THAT(c.ask({"push", "steel_ball", "0", "0", "12", "--seconds", "0.2"}), Catch::Contains("pushed"));
   double highest = 0;
   CHECK(c.ear.wait_until(

@@ -25,8 +25,8 @@ inline WorldDef& add_tool(WorldDef& w, const Eigen::Vector3d& place, double radi
   return w;
 }
 
-// A haptic loop as simple as can be: the device goes where it is told, the proxy stays outside the planes (one at a time),
-// spring force between them.
+// A haptic loop as simple as can be: the device goes where it is told, the proxy stays outside the planes (one at
+// a time), spring force between them.
 struct Hand {
   double radius, stiffness = 1000;
   std::int64_t seq = 0, incarnation = 40;
@@ -49,7 +49,8 @@ struct Hand {
     for (const touch_plane_t& p : model.planes) {
       const Eigen::Vector3d n = to_eigen(p.normal).normalized();
       const double depth = radius - (device - to_eigen(p.point_m)).dot(n);
-      if (depth > 0) impulses.try_emplace(p.contact_id, Eigen::Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
+      if (depth > 0)
+        impulses.try_emplace(p.contact_id, Eigen::Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
       if (!impulses.count(p.contact_id)) continue;
       tool_constraint_t c{};
       c.contact_id = p.contact_id;
@@ -63,7 +64,8 @@ struct Hand {
     m.device.position_m = to_vec3(device);
     m.proxy.position_m = to_vec3(proxy);
     m.device.orientation.w = m.proxy.orientation.w = 1;
-    m.device_velocity_m_s = to_vec3f(seq > 1 ? Eigen::Vector3d((device - last) / 0.001) : Eigen::Vector3d(0, 0, 0));
+    m.device_velocity_m_s =
+        to_vec3f(seq > 1 ? Eigen::Vector3d((device - last) / 0.001) : Eigen::Vector3d(0, 0, 0));
     last = device;
     return m;
   }

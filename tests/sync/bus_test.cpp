@@ -53,6 +53,26 @@ TEST_CASE("What is published arrives once, stamped, in order") {
   CHECK(queue.count().sequence.gaps() == 0);
 }
 
+TEST_CASE("A process that begins anew is another incarnation to who hears it, not one that lost messages") {
+  sync::Bus bus(me(), memory());
+  auto& queue = bus.queue<asset_request_t>("A", 100);
+  const std::int64_t before = bus.identity().incarnation;
+  asset_request_t m = request(0);
+  for (int i = 0; i < 5; ++i) bus.publish("A", m);
+  bus.renew();
+  for (int i = 0; i < 3; ++i) bus.publish("A", m);
+  bus.drain(kNow);
+  for (int i = 0; i < 8; ++i) {
+    const auto r = queue.pop();
+    REQUIRE(r);
+    CHECK(r->message.header.seq == (i < 5 ? i : i - 5));
+    CHECK((r->message.header.incarnation == before) == (i < 5));
+    CHECK((r->order == sync::Arrival::kNewIncarnation) == (i == 0 || i == 5));
+  }
+  CHECK(bus.identity().incarnation > 0);
+  CHECK(queue.count().sequence.gaps() == 0);
+}
+
 TEST_CASE("Channels are numbered apart, and a channel hears only its own") {
   sync::Bus bus(me(), memory());
   auto& a = bus.latest<asset_request_t>("A");

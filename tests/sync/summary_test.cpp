@@ -52,6 +52,30 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   CHECK_THAT(to_text(s), Catch::Contains("audio to visual"));
 }
 
+TEST_CASE("The summary says how the game of the scene stood last, and that a scene without has none") {
+  const SummaryOptions as_logged;
+  RunLog log;
+  ordinary_run(log);
+  CHECK(Json::parse(to_json(log.summary(as_logged)))["game"].is_null());
+  game_state_t m{};
+  m.header = header_of("sim_node", 1, 0, MatcherFixture::kBase);
+  m.won_ns = -1;
+  m.holes.resize(2);
+  m.holes[0].name = "a", m.holes[1].name = "b";
+  m.holes[0].filled = 1;
+  m.count = 2;
+  log.send(channels::kGameState, m, 9000);
+  const RunSummary half = log.summary(as_logged);
+  CHECK(Json::parse(to_json(half))["game"] == Json({{"holes", 2}, {"filled", 1}, {"won_at_s", nullptr}}));
+  CHECK_THAT(to_text(half), Catch::Contains("game: 1 of 2 holes filled"));
+  m.holes[1].filled = m.won = 1;
+  m.won_ns = 7'250'000'000;
+  log.send(channels::kGameState, m, 9100);
+  const RunSummary won = log.summary(as_logged);
+  CHECK(Json::parse(to_json(won))["game"] == Json({{"holes", 2}, {"filled", 2}, {"won_at_s", 7.25}}));
+  CHECK_THAT(to_text(won), Catch::Contains("all 2 holes filled, at 7.25 s"));
+}
+
 TEST_CASE("What the caller knows better replaces what the log says") {
   RunLog log;
   ordinary_run(log);

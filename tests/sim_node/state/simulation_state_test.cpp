@@ -86,9 +86,9 @@ struct World {
   Path path = [](double) { return Vector3d(0, 0, 1); };
 };
 
-WorldDef room() {
+WorldDef scene(const std::string& name) {
   std::vector<std::string> warnings;
-  return load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", warnings);
+  return load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/" + name + ".sdf", warnings);
 }
 
 // Presses and pushes among the balls and the boxes.
@@ -124,18 +124,29 @@ WorldDef motor() {
   return w;
 }
 
-std::vector<World> worlds() {
+std::vector<World> made_worlds() {
   const Path along = [](double t) { return Vector3d(-0.12 + 0.1 * t, 0.01 * std::sin(20 * t), 0.2); };
   return {{"a stack that a hand pushes over", stack(), {}, along},
           {"the same, solved exactly", stack(), exact(), along},
           {"a chain with springs, and a ball", springs()},
-          {"a motor and bouncing balls", motor()},
-          {"the dark room", room(), {}, about_the_room}};
+          {"a motor and bouncing balls", motor()}};
+}
+
+std::vector<World> worlds() {
+  std::vector<World> all = made_worlds();
+  all.push_back({"the dark room", scene("dark_room"), {}, about_the_room});
+  all.push_back(
+      {"a mesh in a mesh", scene("peg_in_hole"), {}, [](double t) { return Vector3d(0, 0, 0.12 - 0.08 * t); }});
+  all.push_back({"a cradle", scene("newtons_cradle")});
+  all.push_back({"many bodies", scene("many_bodies"), {}, about_the_room});
+  all.push_back(
+      {"bowls and bars", scene("materials_bench"), {}, [](double t) { return Vector3d(0.16, 0.35 - t, 0.03); }});
+  return all;
 }
 
 // The world that a child process goes on with.
 World world_named(const std::string& name) {
-  for (World& w : worlds())
+  for (World& w : made_worlds())
     if (w.name == name) return w;
   throw std::runtime_error("no such world");
 }
