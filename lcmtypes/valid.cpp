@@ -205,7 +205,8 @@ bool valid(const degradation_t& m) {
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
-  return sane(m.header) && sane_policy(m) && sane_not_negative(m.lockstep_Hz);
+  // A turn takes a minute at the most.
+  return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || between(m.lockstep_Hz, 1.0 / 60, 1e4));
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
 bool valid(const sim_command_t& m) {

@@ -3,7 +3,7 @@
 namespace tactus::sync {
 
 bool MessageBatch::add(HostTime arrival, const ChannelBytes& m, std::size_t max_bytes) {
-  if (bytes_.size() + m.channel.size() + m.data.size() > max_bytes) return false;
+  if (bytes() + sizeof(Entry) + m.channel.size() + m.data.size() > max_bytes) return false;
   entries_.push_back({arrival, static_cast<std::uint32_t>(m.channel.size()),
                       static_cast<std::uint32_t>(m.data.size()), bytes_.size(), m.whole});
   bytes_.insert(bytes_.end(), m.channel.begin(), m.channel.end());

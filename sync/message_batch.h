@@ -11,20 +11,6 @@
 namespace tactus::sync {
 
 class MessageBatch {
- public:
-  // Refers to the batch.
-  struct Message : ChannelBytes {
-    HostTime arrival;
-  };
-
-  // False, and nothing is added, when the batch would hold more than max_bytes.
-  bool add(HostTime arrival, const ChannelBytes& message, std::size_t max_bytes);
-  void clear();
-  std::size_t size() const { return entries_.size(); }
-  std::size_t bytes() const { return bytes_.size(); }
-  Message operator[](std::size_t i) const;
-
- private:
   struct Entry {
     HostTime arrival;
     std::uint32_t channel_bytes;
@@ -32,6 +18,22 @@ class MessageBatch {
     std::size_t at;
     bool whole;
   };
+
+ public:
+  // Refers to the batch.
+  struct Message : ChannelBytes {
+    HostTime arrival;
+  };
+
+  // False, and nothing is added, when the batch would take more than max_bytes.
+  bool add(HostTime arrival, const ChannelBytes& message, std::size_t max_bytes);
+  void clear();
+  std::size_t size() const { return entries_.size(); }
+  // What it takes of memory.
+  std::size_t bytes() const { return bytes_.size() + entries_.size() * sizeof(Entry); }
+  Message operator[](std::size_t i) const;
+
+ private:
   std::vector<Entry> entries_;
   std::vector<std::uint8_t> bytes_;
 };

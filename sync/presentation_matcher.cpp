@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxReportsPerEvent = 64;
 
 std::size_t place(const std::string& modality) {
-  static const std::array<std::string, 4> known = {"haptic", "audio", "visual", "thermal"};
+  static const std::array<std::string, 5> known = {"haptic_push", "haptic", "audio", "visual", "thermal"};
   return static_cast<std::size_t>(std::distance(known.begin(), std::find(known.begin(), known.end(), modality)));
 }
 
@@ -23,7 +23,8 @@ bool was_presented(std::int8_t outcome) {
 }
 
 // What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
-constexpr Nanoseconds kMostHeld{61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
+constexpr Nanoseconds kMostHeld{
+    61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
 constexpr Nanoseconds kMostUncertain{60'000'000'000};
 
 // Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
@@ -62,6 +63,11 @@ SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) 
 void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
   const bool any_run = own_.run_id == 0;
   const bool ours = any_run || m.header.run_id == own_.run_id;
+  if (ours && has_room(simulations_, m.header.source, kMaxSenses)) simulations_.insert(m.header.source);
+  if (!ours && simulation_heard_ && arrival - *simulation_heard_ < kSettleAfter) {
+    ++foreign_;
+    return;
+  }
   TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
   if (!any_run) map.host = clock_of(m.header, arrival).to_host(m.clock.host_ns, arrival);
   for (const contact_event_t& e : m.events) {
@@ -95,6 +101,7 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
   r.owes = m.owes;
   r.tool = m.tool;
   const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
+  if (simulations_.contains(m.header.source)) simulation_heard_ = arrival;
   const bool returned = r.life.observe(m.header.incarnation, m.state, sent);
   std::erase_if(last_debts_,
                 [&](const LastDebt& d) { return d.source == m.header.source || d.simulation == m.header.source; });
@@ -130,7 +137,8 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
     }
     if (p.ready_ns >= 0 && event->known && needs_.size() < kMaxNeeds) {
       const SenderClock::Reading ready = clock.read(p.ready_ns, arrival);
-      if (ready.uncertainty >= Nanoseconds(0)) needs_.push_back({p.event_id, m.modality, ready.time - event->time});
+      if (ready.uncertainty >= Nanoseconds(0))
+        needs_.push_back({p.event_id, m.modality, ready.time - event->time});
     }
     event->reports.push_back(std::move(report));
     if (event->settled) ++late_reports_;
@@ -146,10 +154,10 @@ std::map<std::string, bool> PresentationMatcher::senses() const {
 
 void PresentationMatcher::observe(const playout_t& m, HostTime) {
   if (m.header.run_id != own_.run_id) return;
-  const Nanoseconds turn = m.lockstep_Hz > 0 ? from_seconds(std::min(1 / m.lockstep_Hz, 60.0)) : Nanoseconds(0);
+  turn_ = m.lockstep_Hz > 0 ? from_seconds(1 / m.lockstep_Hz) : Nanoseconds(0);
   for (const playout_entry_t& e : m.entries)
     if (has_room(playout_, e.modality, kMaxSenses))
-      playout_[e.modality] = std::max(playout_[e.modality], Nanoseconds(e.delay_ns) + turn);
+      playout_.try_emplace(e.modality, e.modality).first->second.take(m);
 }
 
 void PresentationMatcher::observe(const degraded_t& m, HostTime) {
@@ -164,7 +172,7 @@ void PresentationMatcher::observe(const degraded_t& m, HostTime) {
 Nanoseconds PresentationMatcher::on_purpose(const Event& e, const std::string& modality) const {
   const auto playout = playout_.find(modality);
   const auto held = e.held.find(modality);
-  return (playout == playout_.end() ? Nanoseconds(0) : playout->second) +
+  return turn_ + (playout == playout_.end() ? Nanoseconds(0) : playout->second.delay()) +
          (held == e.held.end() ? Nanoseconds(0) : held->second);
 }
 
@@ -175,6 +183,7 @@ Nanoseconds PresentationMatcher::longest_on_purpose(const Event& e) const {
 }
 
 void PresentationMatcher::advance(HostTime now) {
+  for (auto& [modality, follower] : playout_) follower.step(now);
   while (!due_.empty() && due_.begin()->first <= now) {
     const std::int64_t id = due_.begin()->second;
     Event& event = events_.at(id);
@@ -271,7 +280,7 @@ void PresentationMatcher::count_asynchrony(const Event& e) {
   std::map<std::string, const Report*> onset;
   for (const Report& r : e.reports) {
     if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;
-    const Report*& first = onset[r.modality];
+    const Report*& first = onset[r.part == presentation_t::CONSTRAINT ? r.modality + "_push" : r.modality];
     if (first == nullptr || r.presented_ns < first->presented_ns) first = &r;
   }
   for (const auto& [a, report_a] : onset)

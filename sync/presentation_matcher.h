@@ -2,7 +2,8 @@
 // Pure.
 //
 // A node declares in NODE_HEALTH what it owes. An event is settled 1 s after its time (half a second after it was
-// first heard of, if that is later; so much later as a sense is to present it late on purpose): nothing waits for a dead sense. Every debt has exactly one outcome:
+// first heard of, if that is later; so much later as a sense is to present it late on purpose): nothing waits for
+// a dead sense. Every debt has exactly one outcome:
 //   presented           the node reported so, also late or inaudible
 //   dropped_by_profile  the node reported so: its degradation asked for it
 //   dropped_late        the node reported so
@@ -11,12 +12,15 @@
 //   0.1 s
 //                       after the event; or the simulation died before it could repeat the event for its 50 ms
 //   lost                no report from a node that was there
-// A node that never ran owes nothing. A report of what is not owed is no outcome, but counts for the asynchrony.
+// While a simulation of this run is there, the events of other runs, as of a log that is played beside it, are
+// owed by nobody. A node that never ran owes nothing. A report of what is not owed is no outcome, but counts for
+// the asynchrony.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/degraded_t.hpp>
@@ -27,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "sync/playout/follower.h"
 #include "sync/presentation_matcher_life.h"
 #include "sync/presentation_matcher_soa.h"
 #include "sync/sender_clock.h"
@@ -75,8 +80,8 @@ class PresentationMatcher {
   // Each keeps a histogram of 160 kB.
   static constexpr std::size_t kMaxPairs = 256;
 
-  // All times are put on this clock. Health and reports of another run are ignored and counted. Run 0: run and clock of the
-  // first health that arrives.
+  // All times are put on this clock. Health and reports of another run are ignored and counted. Run 0: run and
+  // clock of the first health that arrives.
   explicit PresentationMatcher(OwnClock own) : own_(own) {}
 
   void observe(const contact_events_t&, HostTime arrival);
@@ -85,8 +90,8 @@ class PresentationMatcher {
   // How late a sense presents on purpose, all events or single ones: they are settled so much later.
   void observe(const playout_t&, HostTime arrival);
   void observe(const degraded_t&, HostTime arrival);
-  // How long senses needed, from an event to its earliest possible presentation with nothing degraded, by what was observed since
-  // the last call.
+  // How long senses needed, from an event to its earliest possible presentation with nothing degraded, by what was
+  // observed since the last call.
   std::vector<Need> take_needs() { return std::exchange(needs_, {}); }
   // Settles what is due.
   void advance(HostTime now);
@@ -100,11 +105,12 @@ class PresentationMatcher {
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }
   const std::map<std::string, DebtTally>& modalities() const { return tallies_; }
-  // soa(a, b) = t_present(b) - t_present(a), a named before b.
+  // soa(a, b) = t_present(b) - t_present(a), a named before b. What answers a begin with a push at once, whatever
+  // the policy, is apart from what answers a hit when it is due: "haptic_push" beside "haptic".
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
 
-  // Reports of a time on a clock that nobody has mapped: they count as presented, but not for the asynchrony, for nobody
-  // knows how uncertain it would be.
+  // Reports of a time on a clock that nobody has mapped: they count as presented, but not for the asynchrony, for
+  // nobody knows how uncertain it would be.
   std::int64_t unmapped_reports() const { return unmapped_reports_; }
   // Reports of events that were settled already, of events never heard of, and messages of other runs.
   std::int64_t late_reports() const { return late_reports_; }
@@ -132,8 +138,8 @@ class PresentationMatcher {
     std::string modality;
     std::int8_t part = 0;
     std::int8_t outcome = 0;
-    std::int64_t presented_ns = -1;   // on our clock; -1: not, or not known
-    Nanoseconds uncertainty{0};       // half width
+    std::int64_t presented_ns = -1;  // on our clock; -1: not, or not known
+    Nanoseconds uncertainty{0};      // half width
   };
   struct Event {
     bool known = false;  // false: so far only reports of it came
@@ -158,14 +164,18 @@ class PresentationMatcher {
   void count_asynchrony(const Event&);
 
   OwnClock own_;
-  std::map<std::int32_t, Renderer> renderers_;       // by source
+  std::map<std::int32_t, Renderer> renderers_;  // by source
   std::map<std::int32_t, SenderClock> clocks_;  // by source
   std::map<std::int64_t, Event> events_;
   std::multimap<HostTime, std::int64_t> due_;
   std::multimap<HostTime, std::int64_t> forget_;
   std::vector<LastDebt> last_debts_;
   std::vector<Need> needs_;
-  std::map<std::string, Nanoseconds> playout_;  // the longest delay so far, by modality
+  std::map<std::string, PlayoutFollower> playout_;  // by modality: each follows as its sense does
+  Nanoseconds turn_{0};                             // of a lock-step
+  // Simulations of this run that have told of events, and when one was last heard of.
+  std::set<std::int32_t> simulations_;
+  std::optional<HostTime> simulation_heard_;
   std::map<std::string, DebtTally> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;

@@ -5,9 +5,21 @@
 
 namespace tactus::sync {
 
+Nanoseconds SoaHistogram::begin_of(std::int64_t bin) {
+  if (bin < kWide) return bin * kWideBin - kWideRange;
+  if (bin < kWide + kNarrow) return (bin - kWide) * kBin - kRange;
+  return (bin - kWide - kNarrow) * kWideBin + kRange;
+}
+
+std::int64_t SoaHistogram::bin_of(Nanoseconds soa) {
+  const Nanoseconds inside = std::clamp(soa, -kWideRange, kWideRange - Nanoseconds(1));
+  if (inside < -kRange) return (inside + kWideRange) / kWideBin;
+  if (inside < kRange) return kWide + (inside + kRange) / kBin;
+  return kWide + kNarrow + (inside - kRange) / kWideBin;
+}
+
 void SoaHistogram::add(Nanoseconds soa, Nanoseconds uncertainty) {
-  const Nanoseconds inside = std::clamp(soa, -kRange, kRange - Nanoseconds(1));
-  ++bins_[static_cast<std::size_t>((inside + kRange) / kBin)];
+  ++bins_[static_cast<std::size_t>(bin_of(soa))];
   ++count_;
   uncertainty_ = std::max(uncertainty_, uncertainty);
 }
@@ -24,13 +36,14 @@ Nanoseconds SoaHistogram::quantile(double q) const {
   }
   const double here = std::max(1, bins_[static_cast<std::size_t>(bin)]);
   const double within = std::clamp((target - below) / here, 0.0, 1.0);
-  return bin * kBin - kRange + Nanoseconds(std::llround(within * static_cast<double>(kBin.count())));
+  const auto width = static_cast<double>((begin_of(bin + 1) - begin_of(bin)).count());
+  return begin_of(bin) + Nanoseconds(std::llround(within * width));
 }
 
 std::int64_t SoaHistogram::beyond(Nanoseconds before, Nanoseconds after) const {
   std::int64_t count = 0;
   for (std::int64_t bin = 0; bin < kBins; ++bin) {
-    const Nanoseconds middle = bin * kBin - kRange + kBin / 2;
+    const Nanoseconds middle = (begin_of(bin) + begin_of(bin + 1)) / 2;
     if (middle < -before || middle > after) count += bins_[static_cast<std::size_t>(bin)];
   }
   return count;

@@ -1,4 +1,4 @@
-// Onset asynchronies of one pair of senses, in bins of fixed width: bounded memory, quantiles good to half a bin.
+// Onset asynchronies of one pair of senses, in bins: bounded memory, quantiles good to half a bin.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,12 @@ namespace tactus::sync {
 
 class SoaHistogram {
  public:
-  // 0.1 ms is a tenth of a haptic tick; 2 s is beyond what anyone would call one event. What is beyond counts at the edge.
+  // 0.1 ms is a tenth of a haptic tick; beyond 2 s, which nobody would call one event, 10 ms will do. A delay and
+  // a playout delay are at most 60 s each; what is beyond both counts at the edge.
   static constexpr Nanoseconds kBin{100'000};
   static constexpr Nanoseconds kRange{2'000'000'000};
+  static constexpr Nanoseconds kWideBin{10'000'000};
+  static constexpr Nanoseconds kWideRange{122'000'000'000};
 
   void add(Nanoseconds soa, Nanoseconds uncertainty);
   std::int64_t count() const { return count_; }
@@ -24,7 +27,11 @@ class SoaHistogram {
   Nanoseconds quantile(double q) const;
 
  private:
-  static constexpr std::int64_t kBins = 2 * kRange / kBin;
+  // Wide ones, narrow ones, wide ones.
+  static constexpr std::int64_t kWide = (kWideRange - kRange) / kWideBin, kNarrow = 2 * kRange / kBin;
+  static constexpr std::int64_t kBins = 2 * kWide + kNarrow;
+  static Nanoseconds begin_of(std::int64_t bin);
+  static std::int64_t bin_of(Nanoseconds soa);
   std::vector<std::int32_t> bins_ = std::vector<std::int32_t>(kBins, 0);
   std::int64_t count_ = 0;
   Nanoseconds uncertainty_{0};

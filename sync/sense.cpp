@@ -78,8 +78,10 @@ void Sense::take_control(HostTime) {
   const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
-      if (const auto whole = receiver_.take(m->message); whole && whole->hash != profile_hash_)
-        put_in_force(*whole);
+      // Also the same text once more: its times count from when it is put in force.
+      if (const auto whole = receiver_.take(m->message)) put_in_force(*whole);
+  if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
+    std::cerr << node_.declaration().node << ": refused: " << refusal << std::endl;
   while (const auto m = playouts_.pop())
     if (ours(m->message.header)) playout_.take(m->message);
 }

@@ -101,6 +101,11 @@ int main(int argc, char** argv) try {
     profile = {text, sync::fnv1a_64(text.data(), text.size()), 0, sync::SimTime{}};
     profiles.set_generation(0);
   }
+  if (auto kept = sync::kept_profile(options.out, options.run_id)) {
+    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
+    profiles.set_generation(kept->generation);
+    profile = std::move(kept);
+  }
   node.set_state(node_health_t::RUNNING);
 
   sync::HostTime next_report = start + kReportPeriod, next_maps = start + kMapPeriod;
@@ -119,7 +124,10 @@ int main(int argc, char** argv) try {
     feed(matcher, degraded);
     while (const auto m = degradations.pop())
       if (m->message.header.run_id == options.run_id)
-        if (auto newer = profiles.take(m->message)) profile = std::move(newer);
+        if (auto newer = profiles.take(m->message)) {
+          sync::keep_profile(options.out, *newer, options.run_id);
+          profile = std::move(newer);
+        }
     matcher.advance(now);
     while (const auto m = requests.pop())
       if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);

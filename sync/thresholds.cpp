@@ -54,11 +54,13 @@ std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const st
 }
 
 Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa) {
-  const auto after = thresholds_of(a, b), before = thresholds_of(b, a);
+  // A push is felt by the same sense as a vibration.
+  const auto sense = [](const std::string& name) { return name.substr(0, name.rfind("_push")); };
+  const auto after = thresholds_of(sense(a), sense(b)), before = thresholds_of(sense(b), sense(a));
   if (!after && !before) return {};
   const auto count = [&](auto limit) {
-    return soa.beyond(before ? limit(*before) : SoaHistogram::kRange,
-                      after ? limit(*after) : SoaHistogram::kRange);
+    return soa.beyond(before ? limit(*before) : SoaHistogram::kWideRange,
+                      after ? limit(*after) : SoaHistogram::kWideRange);
   };
   return {count([](const ThresholdRange& r) { return r.least; }),
           count([](const ThresholdRange& r) { return r.largest; })};

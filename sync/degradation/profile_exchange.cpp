@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -11,7 +12,8 @@
 namespace tactus::sync {
 namespace {
 constexpr std::size_t kPageBytes = 1200;
-}
+constexpr const char* kFile = "profile.in_force";
+}  // namespace
 
 void send_profile(Bus& bus, const ProfileInForce& profile) {
   const std::size_t pages = std::max<std::size_t>(1, (profile.text.size() + kPageBytes - 1) / kPageBytes);
@@ -30,19 +32,61 @@ void send_profile(Bus& bus, const ProfileInForce& profile) {
 }
 
 std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
-  if (page.generation <= generation_ || page.generation < partial_generation_) return std::nullopt;
+  if (page.generation <= generation_) return std::nullopt;
   if (static_cast<std::size_t>(page.pages) > kMaxProfileBytes / kPageBytes + 1) return std::nullopt;
-  if (page.generation > partial_generation_) pages_.clear();
-  partial_generation_ = page.generation;
-  pages_[page.page] = page.text;
-  if (static_cast<int>(pages_.size()) < page.pages) return std::nullopt;
-  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};
-  for (const auto& [number, text] : pages_) whole.text += text;
-  pages_.clear();
-  if (static_cast<int>(whole.text.size()) != page.size || fnv1a_64(whole.text.data(), whole.text.size()) != page.hash)
+  const auto same = [&](const Partial& p) { return p.generation == page.generation && p.hash == page.hash; };
+  const auto known = std::find_if(partials_.begin(), partials_.end(), same);
+  Partial partial{page.generation, page.hash, {}};
+  if (known != partials_.end()) {
+    partial = std::move(*known);
+    partials_.erase(known);
+  }
+  partial.pages[page.page] = page.text;
+  if (static_cast<int>(partial.pages.size()) < page.pages) {
+    partials_.push_back(std::move(partial));
+    if (partials_.size() > kMostOnTheirWay) partials_.pop_front();
     return std::nullopt;
+  }
+  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};
+  for (const auto& [number, text] : partial.pages) whole.text += text;
+  if (static_cast<int>(whole.text.size()) != page.size ||
+      fnv1a_64(whole.text.data(), whole.text.size()) != page.hash)
+    return std::nullopt;
+  try {
+    parse_profile(whole.text, "profile");
+  } catch (const std::invalid_argument& e) {
+    refusal_ = e.what();
+    return std::nullopt;
+  }
   generation_ = page.generation;
   return whole;
+}
+
+void keep_profile(const std::filesystem::path& folder, const ProfileInForce& p, std::int64_t run_id) {
+  const std::filesystem::path file = folder / kFile, fresh = folder / (std::string(kFile) + ".new");
+  std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
+  out << run_id << " " << p.generation << " " << to_ns(p.start) << " " << p.hash << "\n" << p.text;
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(fresh, file, error);
+}
+
+std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, std::int64_t run_id) {
+  std::ifstream in(folder / kFile, std::ios::binary);
+  std::int64_t run = 0, start_ns = 0;
+  ProfileInForce p;
+  if (!(in >> run >> p.generation >> start_ns >> p.hash) || run != run_id || p.generation <= 0 || start_ns < 0)
+    return std::nullopt;
+  in.get();
+  p.text.assign(std::istreambuf_iterator<char>(in), {});
+  p.start = sim_time(start_ns);
+  if (fnv1a_64(p.text.data(), p.text.size()) != p.hash) return std::nullopt;
+  try {
+    parse_profile(p.text, "profile");
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+  return p;
 }
 
 std::string read_profile_file(const std::string& path) {

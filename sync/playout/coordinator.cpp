@@ -45,6 +45,9 @@ void PlayoutCoordinator::take(const playout_t& m, HostTime now) {
   if (m.header.clock == own_clock_) return;
   if (m.header.clock < own_clock_) heard_ = now;
   if (m.generation > generation_) put_in_force(m.generation, plan_of(m));
+  // Of several pages the one with the asynchronies may have come later.
+  if (m.generation == generation_ && m.header.clock < own_clock_ && plan_.policy == Policy::kExperiment)
+    plan_.soa.merge(plan_of(m).soa);
 }
 
 Nanoseconds PlayoutCoordinator::settled(const std::string& modality, Nanoseconds delay) {

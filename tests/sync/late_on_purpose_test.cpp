@@ -20,10 +20,11 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
   const bool by_policy = GENERATE(true, false);
   if (by_policy) {
     playout_t m{};
-    m.header = MatcherFixture::health_message("sync_node", "", 0, 900).header;
+    m.header = MatcherFixture::health_message("sync_node", "", 0, -70'000).header;
     m.entries = {{"audio", 3'000'000'000, 0, -1}};
     m.count = 1;
-    f.matcher.observe(m, f.at(900));
+    f.matcher.observe(m, f.at(-70'000));
+    for (double ms = -70'000; ms < 1000; ms += 500) f.matcher.advance(f.at(ms));  // a minute to slew it in
   }
   if (!by_policy) {
     degraded_t m{};
@@ -57,4 +58,26 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
     CHECK(f.tally("visual").presented == 1);
   }
   CHECK(f.tally("visual").lost == 0);
+}
+
+TEST_CASE("When a long delay is taken back, events are settled as soon as before once it is out again") {
+  MatcherFixture f;
+  const auto say = [&](double ms, double delay_ms) {
+    playout_t m{};
+    m.header = MatcherFixture::health_message("sync_node", "", 0, ms).header;
+    m.entries = {{"audio", static_cast<std::int64_t>(delay_ms * 1e6), 0, -1}};
+    m.count = 1;
+    f.matcher.observe(m, f.at(ms));
+  };
+  const auto pass = [&](double from, double to) {
+    for (double ms = from; ms < to; ms += 100) f.matcher.advance(f.at(ms));
+  };
+  f.healths("audio_node", "audio", kHit, 0, 300'000);
+  say(0, 20'000);
+  pass(0, 10'000);  // half a second of it by now
+  say(10'000, 0);
+  pass(10'000, 25'000);
+  f.event(1, 25'000);
+  f.matcher.advance(f.at(26'100));
+  CHECK(f.tally("audio").owed == 1);
 }

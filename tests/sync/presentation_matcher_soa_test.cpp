@@ -31,9 +31,20 @@ TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin
 TEST_CASE("An empty list of asynchronies has no quantiles, and what is beyond the range counts at its edge") {
   SoaHistogram histogram;
   CHECK(histogram.quantile(0.5) == Nanoseconds(0));
-  histogram.add(Nanoseconds(-9'000'000'000), Nanoseconds(0));
-  CHECK(histogram.quantile(0.5) <= -SoaHistogram::kRange + SoaHistogram::kBin);
-  for (int i = 0; i < 3; ++i) histogram.add(Nanoseconds(9'000'000'000), Nanoseconds(0));
-  CHECK(histogram.quantile(0.9) >= SoaHistogram::kRange - SoaHistogram::kBin);
+  histogram.add(Nanoseconds(-900'000'000'000), Nanoseconds(0));
+  CHECK(histogram.quantile(0.5) <= -SoaHistogram::kWideRange + SoaHistogram::kWideBin);
+  for (int i = 0; i < 3; ++i) histogram.add(Nanoseconds(900'000'000'000), Nanoseconds(0));
+  CHECK(histogram.quantile(0.9) >= SoaHistogram::kWideRange - SoaHistogram::kWideBin);
   CHECK(histogram.count() == 4);
+}
+
+TEST_CASE("Asynchronies of many seconds are told as what they are, to 10 ms") {
+  for (const std::int64_t ms : {-60'000, -3'026, -2'001, -1'999, 1'999, 2'001, 3'026, 60'000, 121'000}) {
+    SoaHistogram histogram;
+    for (int i = 0; i < 5; ++i) histogram.add(Nanoseconds(ms * 1'000'000), Nanoseconds(0));
+    const Nanoseconds wide = std::abs(ms) < 2000 ? SoaHistogram::kBin : SoaHistogram::kWideBin;
+    CHECK(std::abs(histogram.quantile(0.5).count() - ms * 1'000'000) <= wide.count());
+    CHECK(histogram.beyond(Nanoseconds(0), Nanoseconds(0)) == 5);
+    CHECK(histogram.beyond(SoaHistogram::kWideRange, SoaHistogram::kWideRange) == 0);
+  }
 }

@@ -37,3 +37,14 @@ TEST_CASE("Asynchronies are counted beyond the least and beyond every threshold 
   CHECK(beyond_thresholds("haptic", "audio", soa).least == 2);
   CHECK(beyond_thresholds("haptic", "audio", soa).all == 0);
 }
+
+TEST_CASE("What is published of touch holds of its push too") {
+  SoaHistogram late;
+  for (int i = 0; i < 4; ++i) late.add(Nanoseconds(900'000'000), Nanoseconds(0));
+  const Beyond vibration = beyond_thresholds("haptic", "audio", late),
+               push = beyond_thresholds("haptic_push", "audio", late);
+  REQUIRE(vibration.all);
+  CHECK(*vibration.all == 4);
+  CHECK(push.all == vibration.all);
+  CHECK(push.least == vibration.least);
+}

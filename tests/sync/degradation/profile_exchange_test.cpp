@@ -1,0 +1,112 @@
+#include "sync/degradation/profile_exchange.h"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "sync/identity.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+// With so many remarks, which make it long.
+std::string profile(int remarks) {
+  std::string text = "<profile><degrade modality=\"audio\" delay=\"40ms\"/>";
+  for (int i = 0; i < remarks; ++i)
+    text += "<!-- remark number " + std::to_string(i) + ", of no meaning to anyone -->";
+  return text + "</profile>";
+}
+
+std::vector<degradation_t> pages(const std::string& text, std::int64_t generation) {
+  constexpr std::size_t kPage = 1200;
+  std::vector<degradation_t> out;
+  for (std::size_t at = 0; at < text.size(); at += kPage) {
+    degradation_t m{};
+    m.generation = generation;
+    m.start_sim_ns = 5;
+    m.hash = fnv1a_64(text.data(), text.size());
+    m.size = static_cast<std::int32_t>(text.size());
+    m.page = static_cast<std::int32_t>(out.size());
+    m.text = text.substr(at, kPage);
+    out.push_back(m);
+  }
+  for (degradation_t& m : out) m.pages = static_cast<std::int32_t>(out.size());
+  return out;
+}
+
+std::optional<ProfileInForce> take_all(ProfileReceiver& r, const std::vector<degradation_t>& messages) {
+  std::optional<ProfileInForce> whole;
+  for (const degradation_t& m : messages)
+    if (auto w = r.take(m)) whole = std::move(w);
+  return whole;
+}
+
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("tactus_profile_" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "A profile of many pages is put together in whatever order they come, and only a newer one replaces it") {
+  ProfileReceiver r;
+  auto messages = pages(profile(100), 3);
+  REQUIRE(messages.size() > 3);
+  std::swap(messages[0], messages[2]);
+  messages.insert(messages.begin(), messages[1]);
+  const auto whole = take_all(r, messages);
+  REQUIRE(whole);
+  CHECK(whole->text == profile(100));
+  CHECK(whole->generation == 3);
+  CHECK(whole->start == sim_time(5));
+  CHECK_FALSE(take_all(r, messages));
+  CHECK_FALSE(take_all(r, pages(profile(1), 2)));
+  CHECK(take_all(r, pages(profile(100), 4)));  // the same text, asked for anew
+}
+
+TEST_CASE("A wrong profile is refused whole and takes nobody's turn") {
+  ProfileReceiver r;
+  CHECK_FALSE(take_all(r, pages("<profile><degrade modality=\"audio\" delay=\"-40ms\"/></profile>", 7)));
+  CHECK(r.generation() == -1);
+  CHECK_FALSE(r.take_refusal().empty());
+  CHECK(r.take_refusal().empty());
+  CHECK(take_all(r, pages(profile(1), 5)));
+}
+
+TEST_CASE("A page of a profile that never becomes whole holds up no other") {
+  ProfileReceiver r;
+  degradation_t forged = pages(profile(100), std::numeric_limits<std::int64_t>::max()).front();
+  CHECK_FALSE(r.take(forged));
+  auto messages = pages(profile(80), 9);
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const auto whole = r.take(messages[i]);
+    CHECK(whole.has_value() == (i + 1 == messages.size()));
+    forged.hash += 1;
+    if (i % 2 == 0) CHECK_FALSE(r.take(forged));
+  }
+}
+
+TEST_CASE("The profile in force is kept for the one that comes back, of the same run and undamaged") {
+  const Folder folder;
+  CHECK_FALSE(kept_profile(folder.path, 4));
+  const std::string text = profile(3);
+  const ProfileInForce p{text, fnv1a_64(text.data(), text.size()), 12, sim_time(34)};
+  keep_profile(folder.path, p, 4);
+  const auto kept = kept_profile(folder.path, 4);
+  REQUIRE(kept);
+  CHECK(kept->text == text);
+  CHECK(kept->hash == p.hash);
+  CHECK(kept->generation == 12);
+  CHECK(kept->start == sim_time(34));
+  CHECK_FALSE(kept_profile(folder.path, 5));
+  std::ofstream(folder.path / "profile.in_force", std::ios::app) << " ";
+  CHECK_FALSE(kept_profile(folder.path, 4));
+}
