@@ -16,6 +16,12 @@ Triangle moved(const Triangle& t, const Eigen::Isometry3d& motion) {
   return m;
 }
 
+void to_world(const Eigen::Isometry3d& pose, PointPair& p) {
+  p.on_a_m = pose * p.on_a_m;
+  p.on_b_m = pose * p.on_b_m;
+  p.normal = pose.linear() * p.normal;
+}
+
 }  // namespace
 
 ContactMesh::ContactMesh(std::span<const Eigen::Vector3d> vertices, std::span<const int> indices)
@@ -63,25 +69,35 @@ void MeshContact::query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, c
     case DuplicateRemover::kBruteForce: Duplicates::remove_brute_force(out.pairs); break;
     case DuplicateRemover::kAdjacency: layer3_.remove_adjacent(a.check, b.check, out.pairs); break;
   }
-  for (PointPair& p : out.pairs) {
-    p.on_a_m = pose_b * p.on_a_m;
-    p.on_b_m = pose_b * p.on_b_m;
-    p.normal = pose_b.linear() * p.normal;
-  }
+  for (PointPair& p : out.pairs) to_world(pose_b, p);
 }
 
-double MeshContact::distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
-                               const Eigen::Isometry3d& pose_b, double beyond_m) {
+bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
+                          const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out) {
   const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
   double least = beyond_m;
+  bool found = false;
   layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, [&](int i, int j) {
     search_.clear();
     complete_contact(moved(a.tree.triangles()[static_cast<std::size_t>(i)], b_from_a),
                      b.tree.triangles()[static_cast<std::size_t>(j)], {least, least}, search_);
-    for (const PointPair& p : search_) least = std::min(least, p.gap_m);
+    for (const PointPair& p : search_) {
+      if (found && p.gap_m >= least) continue;
+      found = true;
+      least = p.gap_m;
+      out = p;
+      out.triangle_a = i, out.triangle_b = j;
+    }
     return least;
   });
-  return least;
+  if (found) to_world(pose_b, out);
+  return found;
+}
+
+double MeshContact::distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
+                               const Eigen::Isometry3d& pose_b, double beyond_m) {
+  PointPair pair;
+  return nearest(a, pose_a, b, pose_b, beyond_m, pair) ? pair.gap_m : beyond_m;
 }
 
 }  // namespace tactus::sim

@@ -50,6 +50,10 @@ class MeshContact {
   // that is, the faster.
   double distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
                     const Eigen::Isometry3d& pose_b, double beyond_m);
+  // The same with where it is, world; false when there is nothing within `beyond_m`. Costs as much as a few
+  // contacts do, whatever `beyond_m` is, while a query() with a wide tolerance lists all that is within.
+  bool nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
+               const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out);
 
  private:
   MeshContactOptions options_;

@@ -173,6 +173,12 @@ TEST_CASE("The distance of two meshes is the least of all their triangles") {
         if (pa.boxes[k].squaredExteriorDistance(pb.boxes[l]) < least * least)
           least = std::min(least, exact_distance(pa.triangles[k], pb.triangles[l]));
     CHECK(contact.distance_m(a, Isometry3d::Identity(), b, pose, 1) == Approx(least).margin(1e-9));
+    PointPair at;
+    REQUIRE(contact.nearest(a, Isometry3d::Identity(), b, pose, 1, at));
+    CHECK((at.on_b_m - at.on_a_m).norm() == Approx(least).margin(1e-9));
+    CHECK(exact_distance(at.on_a_m, pa.triangles[static_cast<std::size_t>(at.triangle_a)]) < 1e-9);
+    CHECK(exact_distance(at.on_b_m, pb.triangles[static_cast<std::size_t>(at.triangle_b)]) < 1e-9);
+    if (least > 1e-5) CHECK_FALSE(contact.nearest(a, Isometry3d::Identity(), b, pose, least / 2, at));
     if (least > 1e-5) CHECK(contact.distance_m(a, Isometry3d::Identity(), b, pose, least / 2) == least / 2);
   }
 }
