@@ -12,8 +12,16 @@
 namespace tactus::sim {
 namespace {
 
-typedef float Floats __attribute__((vector_size(4 * kLanes), may_alias));
-typedef int Ints __attribute__((vector_size(4 * kLanes), may_alias));
+// As many lanes at once as a register holds.
+#if defined(__AVX__)
+constexpr int kStep = 8;
+#else
+constexpr int kStep = 4;
+#endif
+static_assert(kLanes % kStep == 0);
+
+typedef float Floats __attribute__((vector_size(4 * kStep), may_alias));
+typedef int Ints __attribute__((vector_size(4 * kStep), may_alias));
 
 inline __attribute__((always_inline)) void load(const float* from, Floats& to) {
   to = *reinterpret_cast<const Floats*>(from);
@@ -27,33 +35,32 @@ inline __attribute__((always_inline)) unsigned signs(const Ints& m) {
 #if defined(__AVX__)
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(m)));
 #elif defined(__SSE2__)
-  const __m128* half = reinterpret_cast<const __m128*>(&m);
-  return static_cast<unsigned>(_mm_movemask_ps(half[0]) | _mm_movemask_ps(half[1]) << 4);
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(m)));
 #else
   unsigned bits = 0;
-  for (int i = 0; i < kLanes; ++i) bits |= (m[i] < 0 ? 1u : 0u) << i;
+  for (int i = 0; i < kStep; ++i) bits |= (m[i] < 0 ? 1u : 0u) << i;
   return bits;
 #endif
 }
 
-inline __attribute__((always_inline)) unsigned overlap(const WideNode& n, const BoxQuery& q) {
+inline __attribute__((always_inline)) unsigned overlap_from(const WideNode& n, const BoxQuery& q, int first) {
   Floats d[3], t[3], c[3][3], ac[3][3], h[3], at, x;
   for (int k = 0; k < 3; ++k) {
-    load(n.centre[k], x);
+    load(n.centre[k] + first, x);
     d[k] = q.centre[k] - x;
   }
   Ints apart{};
   for (int i = 0; i < 3; ++i) {
     Floats a0, a1, a2;
-    load(n.axis[i][0], a0);
-    load(n.axis[i][1], a1);
-    load(n.axis[i][2], a2);
+    load(n.axis[i][0] + first, a0);
+    load(n.axis[i][1] + first, a1);
+    load(n.axis[i][2] + first, a2);
     t[i] = a0 * d[0] + a1 * d[1] + a2 * d[2];
     for (int j = 0; j < 3; ++j) {
       c[i][j] = a0 * q.axis[j][0] + a1 * q.axis[j][1] + a2 * q.axis[j][2];
       magnitude(c[i][j], ac[i][j]);
     }
-    load(n.half[i], h[i]);
+    load(n.half[i] + first, h[i]);
     h[i] += q.grow;
     magnitude(t[i], at);
     apart |= at > h[i] + q.half[0] * ac[i][0] + q.half[1] * ac[i][1] + q.half[2] * ac[i][2];
@@ -63,7 +70,8 @@ inline __attribute__((always_inline)) unsigned overlap(const WideNode& n, const 
     magnitude(x, at);
     apart |= at > q.half[j] + h[0] * ac[0][j] + h[1] * ac[1][j] + h[2] * ac[2][j];
   }
-  const unsigned used = (1u << n.count) - 1;
+  const int count = n.count - first < kStep ? n.count - first : kStep;
+  const unsigned used = (1u << count) - 1;
   if ((signs(apart) & used) == used) return 0;
   for (int i = 0; i < 3; ++i) {
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
@@ -77,6 +85,12 @@ inline __attribute__((always_inline)) unsigned overlap(const WideNode& n, const 
     }
   }
   return ~signs(apart) & used;
+}
+
+inline __attribute__((always_inline)) unsigned overlap(const WideNode& n, const BoxQuery& q) {
+  unsigned hit = overlap_from(n, q, 0);
+  for (int first = kStep; first < n.count; first += kStep) hit |= overlap_from(n, q, first) << first;
+  return hit;
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ Settings with(const std::string& detector) {
 TEST_CASE(
     "With the layers, a box of triangles comes to rest on a table of triangles without ever overlapping it") {
   const int fineness = GENERATE(1, 6);
+  const std::string mode = GENERATE("complete", "itouch2005");
+  INFO(mode << ", fineness " << fineness);
   WorldDef w = empty_world();
   const int table = add_mesh(w, [&] {
     Soup s = plate(0.4, 0.4, fineness, fineness + 1);
@@ -47,7 +49,8 @@ TEST_CASE(
   const int cube = add_mesh(w, box(size));
   add_mesh_body(w, table, 0, Eigen::Matrix3d::Identity(), at(0, 0, 0));
   const int body = add_mesh_body(w, cube, 1, box_inertia(1, size), at(0.01, 0.02, 0.034));
-  const Settings settings = with("layers");
+  Settings settings = with("layers");
+  settings.contact_mode = mode;
   Solver solver(w, settings);
   double lowest = 1;
   for (int i = 0; i < 1000; ++i) {
@@ -85,4 +88,11 @@ TEST_CASE(
   add_mesh_body(w, add_mesh(w, comb(3, 0.1)), 1, Eigen::Matrix3d::Identity() * 1e-3, at(0, 0, 1));
   CHECK_THROWS_WITH(Solver(w, with("ccd")), Catch::Contains("convex meshes only"));
   CHECK_NOTHROW(Solver(w, with("layers")));
+
+  // What its options cannot do is refused as well: a plate is no closed mesh.
+  Settings adjacency = with("layers");
+  adjacency.duplicate_remover = "adjacency";
+  CHECK_NOTHROW(Solver(w, adjacency));
+  add_mesh_body(w, add_mesh(w, plate(0.1, 0.1, 1, 1)), 0, Eigen::Matrix3d::Identity(), at(0, 0, 0));
+  CHECK_THROWS_WITH(Solver(w, adjacency), Catch::Contains("choose the hashed remover"));
 }
