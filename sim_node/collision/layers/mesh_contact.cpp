@@ -1,6 +1,7 @@
 #include "sim_node/collision/layers/mesh_contact.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 namespace tactus::sim {
@@ -77,7 +78,7 @@ bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a,
   const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
   double least = beyond_m;
   bool found = false;
-  layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, [&](int i, int j) {
+  const auto leaf = [&](int i, int j) {
     search_.clear();
     complete_contact(moved(a.tree.triangles()[static_cast<std::size_t>(i)], b_from_a),
                      b.tree.triangles()[static_cast<std::size_t>(j)], {least, least}, search_);
@@ -89,7 +90,9 @@ bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a,
       out.triangle_a = i, out.triangle_b = j;
     }
     return least;
-  });
+  };
+  // By reference: a copy in a std::function would be allocated.
+  layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, std::ref(leaf));
   if (found) to_world(pose_b, out);
   return found;
 }
