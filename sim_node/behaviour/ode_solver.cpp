@@ -103,7 +103,7 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
   engine_->joints =
       std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
-  engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies);
+  engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
   engine_->feedback.resize(kMostPoints);
   engine_->joined.reserve(kMostPoints);
   for (const ShapeDef& s : world.shapes) {

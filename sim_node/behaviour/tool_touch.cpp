@@ -22,6 +22,8 @@ constexpr sync::Nanoseconds kForget{50'000'000};
 // A begin is not dated back further than a message can be late before it counts as lost.
 constexpr sync::Nanoseconds kLatestNews{20'000'000};
 constexpr double kFelt_N = 1e-4;  // below, a force is rounding
+// Of places in the world, m.
+constexpr double kRounding_m = 1e-9;
 // Samples of a heightfield along one side that a tool feels; finer ones are thinned.
 constexpr int kMostSamples = 1025;
 
@@ -60,6 +62,16 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
                          s.material >= 0 ? world.materials[static_cast<std::size_t>(s.material)].bump_asset : 0});
   }
+  std::vector<SphereTree::Sphere> fixed;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const Surface& s = surfaces_[i];
+    const BodyDef& body = world.bodies[static_cast<std::size_t>(s.traits.body)];
+    if (body.is_static)
+      fixed.push_back({body.pose * s.centre_in_body, s.shape.bound_m(), static_cast<int>(i)});
+    else
+      moving_.push_back({static_cast<int>(i), s.traits.body, s.shape.bound_m() + s.centre_in_body.norm()});
+  }
+  fixed_ = SphereTree(std::move(fixed));
   model_.tool = points ? -1 : tool;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
 }
@@ -83,11 +95,23 @@ void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surfa
 
 void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
   const double reach = radius_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * velocity_.norm();
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+  candidates_.clear();
+  fixed_.near(proxy_, reach + kRounding_m, candidates_);
+  for (const Moving& m : moving_) {
+    // The position alone first: there may be a thousand of them.
+    const BodyMotion& body = bodies[static_cast<std::size_t>(m.body)];
+    const double about = m.bound_m + reach + kRounding_m;
+    if ((proxy_ - body.position_m).squaredNorm() > about * about) continue;
+    const Surface& s = surfaces_[static_cast<std::size_t>(m.surface)];
+    const double within = s.shape.bound_m() + reach;
+    if ((proxy_ - body.to_world(s.centre_in_body)).squaredNorm() <= within * within) candidates_.push_back(m.surface);
+  }
+  // As the scene has them, so that numbers are given out in one order.
+  std::sort(candidates_.begin(), candidates_.end());
+  for (const int candidate : candidates_) {
+    const auto i = static_cast<std::size_t>(candidate);
     const Surface& s = surfaces_[i];
     const BodyMotion& body = bodies[static_cast<std::size_t>(s.traits.body)];
-    const double within = s.shape.bound_m() + reach;
-    if ((proxy_ - body.to_world(s.centre_in_body)).squaredNorm() > within * within) continue;
     const Vector3d place = s.from_body * body.to_body(proxy_);
     s.shape.query(place, reach, found_);
     for (SurfacePlane plane : found_) {

@@ -13,6 +13,7 @@
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/sphere_tree.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/state/state_archive.h"
 #include "sync/time.h"
@@ -93,6 +94,14 @@ class ToolTouch {
   Settings settings_;
   Ids& ids_;
   std::vector<Surface> surfaces_;
+  // Where to look: the surfaces of bodies that never move, and those of all others.
+  SphereTree fixed_;
+  struct Moving {
+    int surface, body;
+    double bound_m;  // about the origin of its body
+  };
+  std::vector<Moving> moving_;
+  std::vector<int> candidates_;
   std::vector<Near> near_;
   std::vector<SurfacePlane> found_;
   touch_model_t model_{};

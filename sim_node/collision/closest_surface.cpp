@@ -104,11 +104,7 @@ bool ClosestSurface::nearest_around(std::size_t candidate) const {
 void ClosestSurface::mesh_planes(const Vector3d& place, double reach_m, std::vector<SurfacePlane>& out) const {
   auto& triangles = near_;
   const auto nearer = [](const NearTriangle& a, const NearTriangle& b) { return a.distance_m < b.distance_m; };
-  tree_.near(place, reach_m, triangles);
-  if (triangles.size() > kMostNear) {
-    std::nth_element(triangles.begin(), triangles.begin() + kMostNear, triangles.end(), nearer);
-    triangles.resize(kMostNear);
-  }
+  tree_.near(place, reach_m, kMostNear, triangles);
   std::sort(triangles.begin(), triangles.end(), nearer);
   // At an edge or corner several triangles are equally near; the one that faces the place most tells inside from outside.
   const auto facing = [&](const NearTriangle& t) { return std::abs((place - t.point).dot(t.face_normal)); };

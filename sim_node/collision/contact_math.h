@@ -5,14 +5,12 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/collision/contact_kind.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
 
 namespace tactus::sim {
-
-// Values of contact_t::kind.
-enum class ContactKind : std::int8_t { kPoint = 0, kEdge = 1, kSurface = 2 };
 
 // By the points that are left of it: one, two or all on a line, or a patch.
 ContactKind kind_of(const Manifold& contact);

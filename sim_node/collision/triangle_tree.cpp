@@ -73,19 +73,34 @@ bool TriangleTree::on_triangle(const Vector3d& point, int triangle, double toler
   return (closest_on_triangle(point, t.a, t.b, t.c) - point).squaredNorm() <= tolerance_m * tolerance_m;
 }
 
-void TriangleTree::near(const Vector3d& place, double reach_m, std::vector<NearTriangle>& out) const {
+void TriangleTree::near(const Vector3d& place, double reach_m, std::size_t most, std::vector<NearTriangle>& out) const {
   out.clear();
   if (nodes_.empty()) return;
-  int stack[64];  // deeper than any tree of 2^31 triangles halved at each level
+  // Keeps the nearest, and looks no further than the last of them from then on.
+  const auto cut = [&] {
+    const auto last = out.begin() + static_cast<std::ptrdiff_t>(most - 1);
+    std::nth_element(out.begin(), last, out.end(),
+                     [](const NearTriangle& a, const NearTriangle& b) { return a.distance_m < b.distance_m; });
+    reach_m = last->distance_m;
+    out.resize(most);
+  };
+  const auto far = [&](int index) { return nodes_[static_cast<std::size_t>(index)].box.squaredExteriorDistance(place); };
+  struct Open {
+    int node;
+    double squared_m2;
+  };
+  Open stack[64];  // deeper than any tree of 2^31 triangles halved at each level
   int top = 0;
-  stack[top++] = 0;
+  stack[top++] = {0, far(0)};
   while (top > 0) {
-    const int index = stack[--top];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (node.box.squaredExteriorDistance(place) > reach_m * reach_m) continue;
+    const Open open = stack[--top];
+    if (open.squared_m2 > reach_m * reach_m) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(open.node)];
     if (node.right >= 0) {
-      stack[top++] = node.right;
-      stack[top++] = index + 1;
+      const Open left{open.node + 1, far(open.node + 1)}, right{node.right, far(node.right)};
+      const bool left_first = left.squared_m2 <= right.squared_m2;
+      stack[top++] = left_first ? right : left;
+      stack[top++] = left_first ? left : right;
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
@@ -94,7 +109,9 @@ void TriangleTree::near(const Vector3d& place, double reach_m, std::vector<NearT
       const double distance = (place - point).norm();
       if (distance <= reach_m) out.push_back({point, t.normal, distance, i});
     }
+    if (out.size() >= 2 * most) cut();
   }
+  if (out.size() > most) cut();
 }
 
 }  // namespace tactus::sim

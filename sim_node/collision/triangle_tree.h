@@ -23,8 +23,8 @@ class TriangleTree {
   // Degenerate triangles are left out.
   TriangleTree(const std::vector<Eigen::Vector3d>& vertices, const std::vector<int>& indices);
 
-  // All triangles within reach, in no order, into `out` (cleared first).
-  void near(const Eigen::Vector3d& place, double reach_m, std::vector<NearTriangle>& out) const;
+  // The triangles within reach, or the `most` nearest of them, in no order, into `out` (cleared first).
+  void near(const Eigen::Vector3d& place, double reach_m, std::size_t most, std::vector<NearTriangle>& out) const;
   // Whether that point lies on the triangle, within a tolerance.
   bool on_triangle(const Eigen::Vector3d& point, int triangle, double tolerance_m) const;
   bool empty() const { return triangles_.empty(); }

@@ -1,0 +1,11 @@
+// What two surfaces have in common where they touch.
+#pragma once
+
+#include <cstdint>
+
+namespace tactus::sim {
+
+// Values of contact_t::kind.
+enum class ContactKind : std::int8_t { kPoint = 0, kEdge = 1, kSurface = 2 };
+
+}  // namespace tactus::sim

@@ -1,0 +1,47 @@
+#include "sim_node/collision/detector.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace tactus::sim {
+namespace {
+
+constexpr std::array<std::string_view, 5> kNames{"ode", "ccd", "ccd_mpr", "fcl", "layers"};
+
+std::string_view word(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::kBox: return "box";
+    case ShapeKind::kSphere: return "sphere";
+    case ShapeKind::kCylinder: return "cylinder";
+    case ShapeKind::kCapsule: return "capsule";
+    case ShapeKind::kPlane: return "plane";
+    case ShapeKind::kMesh: return "mesh";
+    case ShapeKind::kHeightfield: break;
+  }
+  return "heightfield";
+}
+
+}  // namespace
+
+std::string Detector::refusal(ShapeKind a, ShapeKind b) const {
+  if (takes(a, b)) return "";
+  return "sim_node: the detector \"" + std::string(abilities().name) + "\" cannot take a " + std::string(word(a)) +
+         " against a " + std::string(word(b)) + "; choose \"ode\", which takes every pair";
+}
+
+std::span<const std::string_view> detector_names() { return kNames; }
+
+std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers) {
+  if (name == "ode") return make_ode_detector();
+  if (name == "ccd" || name == "ccd_mpr") return make_ccd_detector(name == "ccd_mpr");
+  if (name == "layers") return make_layers_detector(layers);
+  if (name == "fcl") {
+    if (auto fcl = make_fcl_detector()) return fcl;
+    throw std::runtime_error(
+        "sim_node: the detector \"fcl\" was not built in; install libfcl-dev and build again, or choose \"ode\"");
+  }
+  throw std::runtime_error("sim_node: the detector \"" + std::string(name) +
+                           "\" is unknown; choose ode, ccd, ccd_mpr, fcl or layers");
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,97 @@
+// The test of one box against eight, for whatever instruction set the including file is compiled for. GCC's
+// vectors: where the machine's are narrower they are split, with the same results to the bit, since nothing is
+// contracted.
+#pragma once
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "sim_node/collision/layers/wide_node.h"
+
+namespace tactus::sim {
+namespace {
+
+// As many lanes at once as a register holds.
+#if defined(__AVX__)
+constexpr int kStep = 8;
+#else
+constexpr int kStep = 4;
+#endif
+static_assert(kLanes % kStep == 0);
+
+typedef float Floats __attribute__((vector_size(4 * kStep), may_alias));
+typedef int Ints __attribute__((vector_size(4 * kStep), may_alias));
+
+inline __attribute__((always_inline)) void load(const float* from, Floats& to) {
+  to = *reinterpret_cast<const Floats*>(from);
+}
+
+inline __attribute__((always_inline)) void magnitude(const Floats& x, Floats& out) {
+  out = reinterpret_cast<const Floats&>(static_cast<const Ints&>(reinterpret_cast<const Ints&>(x) & 0x7fffffff));
+}
+
+inline __attribute__((always_inline)) unsigned signs(const Ints& m) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(m)));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(m)));
+#else
+  unsigned bits = 0;
+  for (int i = 0; i < kStep; ++i) bits |= (m[i] < 0 ? 1u : 0u) << i;
+  return bits;
+#endif
+}
+
+inline __attribute__((always_inline)) unsigned overlap_from(const WideNode& n, const BoxQuery& q, int first) {
+  Floats d[3], t[3], c[3][3], ac[3][3], h[3], at, x;
+  for (int k = 0; k < 3; ++k) {
+    load(n.centre[k] + first, x);
+    d[k] = q.centre[k] - x;
+  }
+  Ints apart{};
+  for (int i = 0; i < 3; ++i) {
+    Floats a0, a1, a2;
+    load(n.axis[i][0] + first, a0);
+    load(n.axis[i][1] + first, a1);
+    load(n.axis[i][2] + first, a2);
+    t[i] = a0 * d[0] + a1 * d[1] + a2 * d[2];
+    for (int j = 0; j < 3; ++j) {
+      c[i][j] = a0 * q.axis[j][0] + a1 * q.axis[j][1] + a2 * q.axis[j][2];
+      magnitude(c[i][j], ac[i][j]);
+    }
+    load(n.half[i] + first, h[i]);
+    h[i] += q.grow;
+    magnitude(t[i], at);
+    apart |= at > h[i] + q.half[0] * ac[i][0] + q.half[1] * ac[i][1] + q.half[2] * ac[i][2];
+  }
+  for (int j = 0; j < 3; ++j) {
+    x = d[0] * q.axis[j][0] + d[1] * q.axis[j][1] + d[2] * q.axis[j][2];
+    magnitude(x, at);
+    apart |= at > q.half[j] + h[0] * ac[0][j] + h[1] * ac[1][j] + h[2] * ac[2][j];
+  }
+  const int count = n.count - first < kStep ? n.count - first : kStep;
+  const unsigned used = (1u << count) - 1;
+  if ((signs(apart) & used) == used) return 0;
+  for (int i = 0; i < 3; ++i) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      // These axes are shorter than one, so a bound in metres holds for them too.
+      x = t[i2] * c[i1][j] - t[i1] * c[i2][j];
+      magnitude(x, at);
+      apart |=
+          at > h[i1] * ac[i2][j] + h[i2] * ac[i1][j] + q.half[j1] * ac[i][j2] + q.half[j2] * ac[i][j1] + q.slack;
+    }
+  }
+  return ~signs(apart) & used;
+}
+
+inline __attribute__((always_inline)) unsigned overlap(const WideNode& n, const BoxQuery& q) {
+  unsigned hit = overlap_from(n, q, 0);
+  for (int first = kStep; first < n.count; first += kStep) hit |= overlap_from(n, q, first) << first;
+  return hit;
+}
+
+}  // namespace
+}  // namespace tactus::sim

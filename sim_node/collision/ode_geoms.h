@@ -1,0 +1,34 @@
+// A shape as ODE's geometry. Only files named ode_*.cpp include this.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "sim_node/behaviour/ode_handles.h"
+#include "sim_node/scene/world_def.h"
+
+namespace tactus::sim::ode {
+
+// Makes geometries and keeps what they point to: it must outlive them.
+class Geoms {
+ public:
+  // is_static: a plane is infinite then, at `pose` in the world; else it is a plate.
+  dGeomID make(const WorldDef& world, const ShapeDef& shape, bool is_static, const Eigen::Isometry3d& pose);
+  // Where ODE wants a geometry for a shape that is at `pose`: its heightfields have y up, and a plate lies below
+  // its plane.
+  static Eigen::Isometry3d placed(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);
+
+ private:
+  struct Triangles {  // ODE keeps pointers to them
+    std::vector<double> vertices;
+    std::vector<dTriIndex> indices;
+    Owned<dTriMeshDataID> data;
+  };
+  dGeomID make_mesh(const TriangleMesh& mesh);
+  dGeomID make_heightfield(const Heightfield& field);
+
+  std::deque<Triangles> triangles_;
+  std::vector<Owned<dHeightfieldDataID>> heightfields_;
+};
+
+}  // namespace tactus::sim::ode
