@@ -95,8 +95,12 @@ int main(int argc, char** argv) try {
   }
   std::set<std::string> taken, missing;
   for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
+  if (senses.empty())
+    throw std::runtime_error("nothing is heard any more of " + joined(modalities) +
+                             " since it was sent; it may still take effect when they go on");
   if (taken.empty())
-    throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+    throw std::runtime_error(joined(missing) +
+                             " did not take it; it may not be what they can use, see their logs");
   std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
             << joined(taken) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");
