@@ -69,7 +69,9 @@ int main(int argc, char** argv) try {
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
   }
-  if (modalities.empty()) throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+  if (modalities.empty())
+    throw std::runtime_error(
+        "no sense is heard on this bus, nothing was changed; run it inside the cluster: scripts/degrade");
   for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
     if (!modalities.contains(rule.modality))
       throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
