@@ -69,7 +69,9 @@ int main(int argc, char** argv) try {
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
   }
-  if (modalities.empty()) throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+  if (modalities.empty())
+    throw std::runtime_error(
+        "no sense is heard on this bus, nothing was changed; run it inside the cluster: scripts/degrade");
   for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
     if (!modalities.contains(rule.modality))
       throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
@@ -95,8 +97,12 @@ int main(int argc, char** argv) try {
   }
   std::set<std::string> taken, missing;
   for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
+  if (senses.empty())
+    throw std::runtime_error("nothing is heard any more of " + joined(modalities) +
+                             " since it was sent; it may still take effect when they go on");
   if (taken.empty())
-    throw std::runtime_error("no sense is heard on this bus; run it inside the cluster: scripts/degrade");
+    throw std::runtime_error(joined(missing) +
+                             " did not take it; it may not be what they can use, see their logs");
   std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
             << joined(taken) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include "sync/bus.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 100 ms
 constexpr sync::Nanoseconds kListen{500'000'000};     // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
+constexpr sync::Nanoseconds kPages{300'000'000};       // many senses come in several messages, three times in this
 
 std::int64_t realtime_ns() {
   return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -76,9 +78,10 @@ int main(int argc, char** argv) try {
     if (!senses.contains(name))
       throw std::runtime_error("no sense \"" + sync::printable(name) + "\" is heard in this cluster; nothing was changed");
   playout_request_t request = sync::request_for(plan, realtime_ns());
-  const sync::HostTime begin = sync::host_now();
-  for (sync::HostTime next = begin; sync::host_now() < begin + kPatience;) {
-    if (asks && sync::host_now() >= next) {
+  std::optional<playout_t> answer;
+  sync::HostTime until = sync::host_now() + kPatience;
+  for (sync::HostTime next = sync::host_now(); sync::host_now() < until;) {
+    if (asks && !answer && sync::host_now() >= next) {
       bus.publish(channels::kPlayoutRequest, request);
       next += kRepeat;
     }
@@ -86,11 +89,21 @@ int main(int argc, char** argv) try {
     bus.drain(sync::host_now());
     while (const auto m = playouts.pop()) {
       if (m->message.header.run_id != run_id || (asks && m->message.generation != request.generation)) continue;
-      print(m->message);
-      return 0;
+      if (answer) {
+        sync::add_page(*answer, m->message);
+      } else {
+        answer = m->message;
+        until = sync::host_now() + kPages;
+      }
     }
   }
-  throw std::runtime_error("no sync_node answers on this bus; run it inside the cluster: scripts/playout");
+  if (!answer)
+    throw std::runtime_error(asks ? "no sync_node answers on this bus yet; the request may still take effect when "
+                                    "one goes on. Where there is "
+                                    "none, run it inside the cluster: scripts/playout"
+                                  : "no sync_node speaks on this bus; run it inside the cluster: scripts/playout");
+  print(*answer);
+  return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("playout", e);
 }

@@ -128,6 +128,8 @@ def strangers(plan):
             named |= {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
     except (xml.etree.ElementTree.ParseError, OSError):
         pass  # the nodes say what is wrong with it, with the line
+    except (LookupError, ValueError):
+        raise Refusal(f"--degrade {plan.degrade}: says an encoding in which it cannot be read; save it as UTF-8") from None
     return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 

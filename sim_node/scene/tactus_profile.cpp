@@ -1,8 +1,10 @@
 #include "sim_node/scene/tactus_profile.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "sim_node/scene/attributes.h"
+#include "sync/degradation/known_senses.h"
 #include "sync/degradation/profile.h"
 #include "sync/degradation/profile_exchange.h"
 
@@ -30,9 +32,42 @@ std::string tag(const std::string& name, const sdf::Element& element) {
   return text;
 }
 
-void check(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
+// A hint for who named a model and left its link away; "": there is no such model.
+std::string body_meant(const WorldDef& world, const std::string& name) {
+  for (const BodyDef& body : world.bodies)
+    if (body.name.starts_with(name + "::")) return "; is \"" + body.name + "\" meant?";
+  return "";
+}
+
+// What a profile names must be in the scene that brings it. file: where its rules stand; "": in the element
+// itself.
+void check_names(const LoadContext& context, const sdf::Element& element, const sync::Profile& profile,
+                 const std::string& file) {
+  const WorldDef& world = context.world;
+  for (const sync::Rule& rule : profile.rules) {
+    const std::string at = file.empty() ? "" : file + ":" + std::to_string(rule.line) + ": ";
+    if (!sync::is_known_sense(rule.modality))
+      context.warn(element, at + "nobody here is called \"" + rule.modality + "\"; a sense of one's own may be");
+    if (!rule.material.empty() && !context.material_of.contains(rule.material))
+      context.refuse(element, "does not hold: " + at + "material=\"" + rule.material +
+                                  "\": there is no such material in this scene");
+    for (const std::string& name : {rule.body_a, rule.body_b})
+      if (!name.empty() && std::none_of(world.bodies.begin(), world.bodies.end(),
+                                        [&](const BodyDef& body) { return body.name == name; }))
+        context.refuse(element, "does not hold: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
+                                    "\": there is no body \"" + name + "\" in this scene" +
+                                    body_meant(world, name));
+  }
+}
+
+void refuse_text(const LoadContext& context, const sdf::Element& element) {
+  if (element.GetValue() && !element.GetValue()->GetAsString().empty())
+    context.refuse(element, "has text in it, which means nothing here: leave it away");
+}
+
+sync::Profile checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
   try {
-    sync::parse_profile(xml, "");
+    return sync::parse_profile(xml, "");
   } catch (const std::invalid_argument& e) {
     const std::string what = e.what();  // ":1: reason"
     context.refuse(element, "does not hold: " + what.substr(what.find(": ") + 2));
@@ -46,7 +81,9 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
   if (element->GetFirstElement())
     context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
   try {
-    return sync::read_profile_file(file.string());
+    const std::string text = sync::read_profile_file(file.string());
+    check_names(context, *element, sync::parse_profile(text, file.string()), file.filename().string());
+    return text;
   } catch (const std::invalid_argument& e) {
     context.refuse(*element, std::string("does not hold: ") + e.what());
   }
@@ -64,17 +101,21 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     context.world.profile = from_file(context, element);
     return;
   }
-  check(context, *element, tag("profile", *element) + "/>");
+  refuse_text(context, *element);
+  checked(context, *element, tag("profile", *element) + "/>");
   std::string rules;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (child->GetName() != "tactus:degrade")
       context.refuse(*child, "is not known in a profile: it holds <tactus:degrade>");
     const std::string rule = tag("degrade", *child) + "/>";
-    check(context, *child, "<profile>" + rule + "</profile>");
+    refuse_text(context, *child);
+    if (child->GetFirstElement())
+      context.refuse(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
+    check_names(context, *child, checked(context, *child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
-  check(context, *element, context.world.profile);
+  checked(context, *element, context.world.profile);
   if (context.world.profile.size() > sync::kMaxProfileBytes)
     context.refuse(*element, "is longer than 64 kB: leave out what it does not need");
 }

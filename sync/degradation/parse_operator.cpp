@@ -1,7 +1,9 @@
 // The attributes of <degrade>: a value with its unit, then words and name=value pairs in any order.
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -11,6 +13,19 @@
 namespace tactus::sync {
 namespace {
 
+// A profile is written for others to read: what has a dimension says its unit, unless it is 0.
+double quantity(std::string_view text, std::string_view unit) {
+  const double x = parse_quantity(text, unit);
+  double bare = 0;
+  const bool has_unit =
+      std::from_chars(text.data(), text.data() + text.size(), bare).ptr != text.data() + text.size();
+  if (unit != "1" && !has_unit && x != 0)
+    throw std::invalid_argument("\"" + std::string(text) +
+                                "\" lacks its unit; write it right behind the number, as in " + std::string(text) +
+                                std::string(unit));
+  return x;
+}
+
 // "5% burst=3 network" cut into its value, its words and its pairs; each may be taken once and none may be left.
 class Words {
  public:
@@ -19,10 +34,14 @@ class Words {
     std::string word;
     while (in >> word) {
       const std::size_t equals = word.find('=');
-      if (equals != std::string::npos)
-        pairs_[word.substr(0, equals)] = word.substr(equals + 1);
-      else
-        words_.push_back(word);
+      const std::string name = word.substr(0, equals);
+      const bool twice = equals == std::string::npos
+                             ? std::find(words_.begin(), words_.end(), word) != words_.end()
+                             : !pairs_.try_emplace(name, word.substr(equals + 1)).second;
+      if (twice)
+        throw std::invalid_argument("\"" + (equals == std::string::npos ? name : name + "=") +
+                                    "\" stands there twice; leave one away");
+      if (equals == std::string::npos) words_.push_back(word);
     }
   }
 
@@ -31,14 +50,14 @@ class Words {
     if (words_.empty()) throw std::invalid_argument("it needs a value in " + std::string(unit));
     const std::string first = words_.front();
     words_.erase(words_.begin());
-    return checked(parse_quantity(first, unit), first, unit, least, most);
+    return checked(quantity(first, unit), first, unit, least, most);
   }
   double pair(const std::string& name, std::string_view unit, double otherwise, double least, double most) {
     const auto it = pairs_.find(name);
     if (it == pairs_.end()) return otherwise;
     const std::string text = it->second;
     pairs_.erase(it);
-    return checked(parse_quantity(text, unit), name + "=" + text, unit, least, most);
+    return checked(quantity(text, unit), name + "=" + text, unit, least, most);
   }
   std::string pair(const std::string& name, const std::string& otherwise) {
     const auto it = pairs_.find(name);
@@ -47,14 +66,22 @@ class Words {
     pairs_.erase(it);
     return text;
   }
+  bool has(const std::string& name) const { return pairs_.contains(name); }
   // True when the word is there.
   bool word(const std::string& name) { return std::erase(words_, name) > 0; }
-  // Which of the words is there; `otherwise` when none is.
+  // Which of the words is there, if any.
   template <class Value>
-  Value one_of(const std::map<std::string, Value>& choices, Value otherwise) {
-    for (const auto& [name, value] : choices)
-      if (word(name)) return value;
-    return otherwise;
+  std::optional<Value> one_of(const std::map<std::string, Value>& choices) {
+    std::optional<Value> chosen;
+    std::string said;
+    for (const auto& [name, value] : choices) {
+      if (!word(name)) continue;
+      if (chosen)
+        throw std::invalid_argument("\"" + said + "\" and \"" + name + "\" contradict each other; leave one away");
+      chosen = value;
+      said = name;
+    }
+    return chosen;
   }
   void expect_end() const {
     if (!words_.empty()) throw std::invalid_argument("\"" + words_.front() + "\" means nothing here");
@@ -77,6 +104,8 @@ class Words {
 
 constexpr double kLongest_s = 60;  // design: what is later than a minute is another event
 constexpr double kLargest = 1e9;
+// An event is settled one second after it: a picture that comes less often would be called lost.
+constexpr double kLeastFrameRate_Hz = 2;
 
 const std::map<std::string, Quantity> kQuantities{
     {"force", Quantity::kForce}, {"velocity", Quantity::kVelocity}, {"position", Quantity::kPosition}};
@@ -84,6 +113,7 @@ const std::map<std::string, DelayKind> kDelayKinds{{"presentation", DelayKind::k
                                                    {"network", DelayKind::kNetwork}};
 const std::map<std::string, JitterShape> kShapes{
     {"uniform", JitterShape::kUniform}, {"normal", JitterShape::kNormal}, {"pareto", JitterShape::kPareto}};
+const std::map<std::string, bool> kTruths{{"true", true}, {"false", false}};
 const std::map<std::string, Conceal> kConceals{{"hold", Conceal::kHold}, {"zero", Conceal::kZero}};
 
 std::string_view unit_of(Quantity q) {
@@ -91,14 +121,13 @@ std::string_view unit_of(Quantity q) {
 }
 
 Conceal conceal_of(Words& w) {
-  for (const auto& [name, value] : kConceals)
-    if (w.word(name)) return value;
+  if (const auto chosen = w.one_of(kConceals)) return *chosen;
   throw std::invalid_argument("choose hold or zero");
 }
 
 QuantiseDef quantise(Words& w) {
   QuantiseDef d;
-  d.quantity = w.one_of(kQuantities, Quantity::kForce);
+  d.quantity = w.one_of(kQuantities).value_or(Quantity::kForce);
   if (w.word("log")) {
     d.ratio = 1 + w.value("1", 1e-6, 1e3);
     d.floor = w.pair("floor", unit_of(d.quantity), 1e-3, 1e-12, kLargest);
@@ -110,14 +139,14 @@ QuantiseDef quantise(Words& w) {
 
 ValueDef changed(Words& w, std::string_view unit, double least, double most) {
   ValueDef d;
-  d.quantity = w.one_of(kQuantities, Quantity::kForce);
+  d.quantity = w.one_of(kQuantities).value_or(Quantity::kForce);
   d.value = w.value(unit.empty() ? unit_of(d.quantity) : unit, least, most);
   return d;
 }
 
 DeadbandDef deadband(Words& w) {
   DeadbandDef d;
-  d.quantity = w.one_of(kQuantities, Quantity::kVelocity);
+  d.quantity = w.one_of(kQuantities).value_or(Quantity::kVelocity);
   d.fraction = w.value("1", 0, 10);
   d.floor = w.pair("floor", unit_of(d.quantity), 0, 0, kLargest);
   d.lowpass_Hz = w.pair("lowpass", "Hz", 0, 0, 1e4);
@@ -135,30 +164,38 @@ LossDef loss(Words& w) {
 
 DelayDef delay(Words& w) {
   DelayDef d;
-  d.kind = w.one_of(kDelayKinds, DelayKind::kPresentation);
+  d.kind = w.one_of(kDelayKinds).value_or(DelayKind::kPresentation);
   d.delay_s = w.value("s", 0, kLongest_s);
   return d;
 }
 
+std::vector<double> delays_of_trace(const std::string& trace) {
+  std::vector<double> delays_s;
+  std::istringstream values(trace + ",");
+  for (std::string value; std::getline(values, value, ',');) {
+    delays_s.push_back(quantity(value, "s"));
+    if (delays_s.back() < 0 || delays_s.back() > kLongest_s)
+      throw std::invalid_argument("the delays of a trace lie between 0 and 60 s");
+  }
+  return delays_s;
+}
+
 JitterDef jitter(Words& w) {
   JitterDef d;
-  d.shape = w.one_of(kShapes, JitterShape::kUniform);
+  const auto shape = w.one_of(kShapes);
+  d.shape = shape.value_or(JitterShape::kUniform);
   d.correlation = w.pair("correlation", "1", 0, 0, 0.999999);
   const std::string order = w.pair("order", "keep");
   if (order != "keep" && order != "free") throw std::invalid_argument("order=" + order + ": choose keep or free");
   d.keep_order = order == "keep";
-  const std::string trace = w.pair("trace", "");
-  if (trace.empty()) {
+  if (!w.has("trace")) {
     d.scale_s = w.value("s", 0, kLongest_s);
     return d;
   }
+  if (shape || d.correlation != 0)
+    throw std::invalid_argument("a trace is taken as it is; leave its shape and correlation away");
   d.shape = JitterShape::kTrace;
-  std::istringstream values(trace);
-  for (std::string value; std::getline(values, value, ',');) {
-    d.trace_s.push_back(parse_quantity(value, "s"));
-    if (d.trace_s.back() < 0 || d.trace_s.back() > kLongest_s)
-      throw std::invalid_argument("the delays of a trace lie between 0 and 60 s");
-  }
+  d.trace_s = delays_of_trace(w.pair("trace", ""));
   return d;
 }
 
@@ -170,8 +207,7 @@ ReorderDef reorder(Words& w) {
 }
 
 bool truth(Words& w) {
-  if (w.word("true")) return true;
-  if (w.word("false")) return false;
+  if (const auto chosen = w.one_of(kTruths)) return *chosen;
   throw std::invalid_argument("choose true or false");
 }
 
@@ -197,7 +233,7 @@ const std::map<std::string, Fill>& operators() {
       {"duplicate", [](Rule& r, Words& w) { r.duplicate = w.value("1", 0, 1); }},
       {"freeze", [](Rule& r, Words& w) { r.freeze = conceal_of(w); }},
       {"conceal", [](Rule& r, Words& w) { r.conceal = conceal_of(w); }},
-      {"frame_rate", [](Rule& r, Words& w) { r.output.frame_rate_Hz = w.value("Hz", 0.1, 240); }},
+      {"frame_rate", [](Rule& r, Words& w) { r.output.frame_rate_Hz = w.value("Hz", kLeastFrameRate_Hz, 240); }},
       {"resolution", [](Rule& r, Words& w) { r.output.resolution = w.value("1", 0.01, 1); }},
       {"dropout",
        [](Rule& r, Words& w) {
@@ -227,8 +263,8 @@ std::vector<std::string> output_operators(const OutputDef& o) {
 void parse_operator(Rule& rule, const std::string& name, const std::string& value) {
   const auto it = operators().find(name);
   if (it == operators().end()) throw std::invalid_argument("there is no operator \"" + name + "\"");
-  Words words(value);
   try {
+    Words words(value);
     it->second(rule, words);
     words.expect_end();
   } catch (const std::invalid_argument& e) {

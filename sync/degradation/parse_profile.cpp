@@ -1,8 +1,12 @@
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <sstream>
 #include <stdexcept>
 
+#include "sync/degradation/known_senses.h"
 #include "sync/degradation/profile.h"
 
 namespace tactus::sync {
@@ -10,6 +14,16 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 constexpr std::size_t kMaxRules = 64;  // design: a stack that one can still understand
+
+// A known sense says of its output what can be degraded; one of somebody's own may have what it likes.
+void refuse_what_it_has_not(const Rule& rule) {
+  if (!is_known_sense(rule.modality)) return;
+  const std::vector<std::string> has = known_output_operators(rule.modality);
+  for (const std::string& name : output_operators(rule.output))
+    if (std::find(has.begin(), has.end(), name) == has.end())
+      throw std::invalid_argument(rule.modality + " has no " + name + ", which only " + senses_with(name) +
+                                  " has");
+}
 
 Rule parse_rule(const Element& e) {
   Rule rule;
@@ -21,6 +35,7 @@ Rule parse_rule(const Element& e) {
       rule.modality = value;
     } else if (name == "material") {
       rule.material = value;
+      if (value.empty()) throw std::invalid_argument("material=\"\" names none; leave it away, or name one");
     } else if (name == "bodies") {
       std::istringstream two(value);
       std::string rest;
@@ -38,7 +53,46 @@ Rule parse_rule(const Element& e) {
   if (rule.until_s && *rule.until_s <= rule.from_s) throw std::invalid_argument("until must be after from");
   if (rule.output.dropout_s > 0 && rule.output.dropout_s >= rule.output.dropout_every_s)
     throw std::invalid_argument("a dropout must be shorter than the time between two of them (every=)");
+  refuse_what_it_has_not(rule);
   return rule;
+}
+
+std::uint64_t seed_of(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw std::invalid_argument("seed=\"" + text + "\" is no whole number from 0 to 18446744073709551615");
+  return seed;
+}
+
+// UTF-8 is what a profile is read as, whatever it says that it is.
+bool says_another_encoding(std::string declaration) {
+  std::transform(declaration.begin(), declaration.end(), declaration.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return declaration.find("encoding") != std::string::npos && declaration.find("utf-8") == std::string::npos &&
+         declaration.find("us-ascii") == std::string::npos;
+}
+
+// Elements and comments are all that may stand in an element.
+void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& what, int& line) {
+  for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
+    if (n->ToElement() || n->ToComment()) continue;
+    line = n->GetLineNum();
+    throw std::invalid_argument(what);
+  }
+}
+
+// Of a file: its declaration, comments and one root.
+void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2::XMLElement* root, int& line) {
+  for (const tinyxml2::XMLNode* n = document.FirstChild(); n; n = n->NextSibling()) {
+    line = n->GetLineNum();
+    if (n->ToDeclaration() && says_another_encoding(n->Value()))
+      throw std::invalid_argument("a profile is read as UTF-8; save it so, and leave its encoding away");
+    if (n == root || n->ToComment() || n->ToDeclaration()) continue;
+    throw std::invalid_argument(n->ToElement()
+                                    ? "a file holds one <profile> and nothing after it; put all <degrade> into it"
+                                    : "only <profile> may stand here; leave this away");
+  }
 }
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
@@ -48,6 +102,11 @@ Rule parse_rule(const Element& e) {
 }  // namespace
 
 Profile parse_profile(const std::string& xml, const std::string& file) {
+  // XML has none; what comes after it would be lost in silence.
+  if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
+    refuse(file,
+           1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
+           "there is a NUL byte here, so this is no text in UTF-8");
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
     refuse(file, document.ErrorLineNum(), std::string("this is no XML (") + document.ErrorName() + ")");
@@ -57,21 +116,25 @@ Profile parse_profile(const std::string& xml, const std::string& file) {
   Profile profile;
   int line = root->GetLineNum();
   try {
+    refuse_more_than_root(document, root, line);
+    line = root->GetLineNum();
     for (const tinyxml2::XMLAttribute* a = root->FirstAttribute(); a; a = a->Next()) {
       const std::string name = a->Name();
       if (name == "name")
         profile.name = a->Value();
       else if (name != "seed")
         throw std::invalid_argument("<profile> has a name and a seed, no \"" + name + "\"");
-      else if (a->QueryUnsigned64Value(&profile.seed) != tinyxml2::XML_SUCCESS)
-        throw std::invalid_argument(std::string("seed=\"") + a->Value() + "\" is no whole number");
+      else
+        profile.seed = seed_of(a->Value());
     }
+    refuse_other_than_elements(*root, "a <profile> holds <degrade .../>, no text; is a \"<\" missing?", line);
     for (const Element* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
       line = e->GetLineNum();
       if (std::string(e->Name()) != "degrade")
         throw std::invalid_argument(std::string("<") + e->Name() +
                                     "> is not known in a profile; it holds <degrade>");
       if (e->FirstChildElement()) throw std::invalid_argument("a <degrade> has attributes, no elements within");
+      refuse_other_than_elements(*e, "a <degrade> has attributes, no text within", line);
       if (profile.rules.size() == kMaxRules) throw std::invalid_argument("a profile has at most 64 <degrade>");
       profile.rules.push_back(parse_rule(*e));
     }

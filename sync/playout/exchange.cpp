@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/channels.h"
@@ -43,6 +44,23 @@ std::vector<playout_t> pages_of(const playout_t& whole) {
   }
   if (pages.empty()) pages.push_back(whole);
   return pages;
+}
+
+void add_page(playout_t& whole, const playout_t& page) {
+  if (page.generation < whole.generation) return;
+  if (page.generation > whole.generation) whole.entries.clear();
+  std::vector<playout_entry_t> entries = std::move(whole.entries);
+  for (const playout_entry_t& e : page.entries) {
+    const auto same = std::find_if(entries.begin(), entries.end(),
+                                   [&](const playout_entry_t& known) { return known.modality == e.modality; });
+    if (same == entries.end())
+      entries.push_back(e);
+    else
+      *same = e;
+  }
+  whole = page;
+  whole.entries = std::move(entries);
+  whole.count = static_cast<std::int32_t>(whole.entries.size());
 }
 
 void keep_request(const std::filesystem::path& folder, const playout_request_t& request) {

@@ -27,6 +27,9 @@ void write_plan(Message& m, std::int64_t generation, const PlayoutPlan& plan) {
 // A PLAYOUT in as many messages as its senses need; a sense looks for itself in each. Those with an asynchrony come first, so
 // that the first page holds the whole plan.
 std::vector<playout_t> pages_of(const playout_t& whole);
+// Puts a page to those before it; a sense that is in both is as the page says. What is of a newer generation
+// begins anew, of an older one is left out.
+void add_page(playout_t& whole, const playout_t& page);
 
 // Both are within range by lcmtypes/valid.h.
 template <class Message>

@@ -55,7 +55,7 @@ void PlayoutPlan::check() const {
     if (base + asynchrony < Nanoseconds(0))
       throw std::invalid_argument("the asynchrony of " + name +
                                   " reaches before the event; choose a base of at least " +
-                                  std::to_string(-asynchrony.count() / 1'000'000) + " ms");
+                                  std::to_string((-asynchrony.count() + 999'999) / 1'000'000) + " ms");
 }
 
 Nanoseconds parse_duration(const std::string& text) {

@@ -98,6 +98,16 @@ class Arguments(unittest.TestCase):
         with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
         self.assertEqual({*arguments.SENSES, "sync_node"}, set(with_it))
 
+    def test_a_profile_in_an_encoding_that_nobody_knows_is_refused_in_a_sentence(self):
+        for encoding in ("foo", "UTF-32"):
+            with tempfile.NamedTemporaryFile(suffix=".xml") as file:
+                file.write(f'<?xml version="1.0" encoding="{encoding}"?><profile/>'.encode())
+                file.flush()
+                plan = arguments.parse(["--degrade", file.name], os.getcwd())
+                with self.assertRaises(Refusal) as caught:
+                    arguments.strangers(plan)
+                self.assertIn("save it as UTF-8", str(caught.exception))
+
 
 class Checks(Folders):
     def check(self, stop=False, **programs):

@@ -211,3 +211,47 @@ TEST_CASE("A scene names the file of its profile") {
   file.write("late.xml", "<profile><degrade/></profile>");
   CHECK_THAT(file.refusal(), Catch::Contains("late.xml:1"));
 }
+
+TEST_CASE("A scene says that nobody here is called like the sense of its profile, with the line") {
+  SceneFile file(world("\n<tactus:profile>\n<tactus:degrade modality='smell' delay='1ms'/>\n</tactus:profile>"));
+  CHECK_FALSE(file.load().profile.empty());
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:5: ") &&
+                                           Catch::Contains("nobody here is called \"smell\"") &&
+                                           Catch::Contains("one's own may be"));
+}
+
+TEST_CASE("A profile in a scene names materials and bodies of this scene, or the scene is refused with the line") {
+  const std::string ball =
+      "<model name='ball'><link name='l'/></model><model name='floor'><link name='l'/></model>";
+  const auto at = [&](const std::string& what) {
+    return refusal(ball + "\n<tactus:profile>\n<tactus:degrade modality='audio' off='true' " + what +
+                   "/></tactus:profile>");
+  };
+  CHECK(at("material='steel' bodies='floor::l ball::l'").empty());
+  CHECK_THAT(at("material='stele'"), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no such material"));
+  CHECK_THAT(at("bodies='ball::l flor::l'"),
+             Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no body \"flor::l\""));
+  CHECK_THAT(at("bodies='ball floor::l'"),
+             Catch::Contains("no body \"ball\"") && Catch::Contains("is \"ball::l\" meant?"));
+
+  SceneFile file(world(ball + "<tactus:profile file='late.xml'/>"));
+  file.write("late.xml", "<profile>\n<degrade modality='audio' material='stele' off='true'/></profile>");
+  CHECK_THAT(file.refusal(), Catch::Contains("late.xml:2: material=\"stele\""));
+  file.write("late.xml", "<profile>\n\n<degrade modality='smell' delay='1ms'/></profile>");
+  CHECK_FALSE(file.load().profile.empty());
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.warnings[0], Catch::Contains("late.xml:3: nobody here is called \"smell\""));
+}
+
+TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its profile, are refused") {
+  CHECK_THAT(refusal("<tactus:profile>\ndegrade modality='audio' off='true'</tactus:profile>"),
+             Catch::Contains("has text in it"));
+  CHECK_THAT(
+      refusal(
+          "<tactus:profile><tactus:degrade modality='audio' off='true'>loss</tactus:degrade></tactus:profile>"),
+      Catch::Contains("has text in it"));
+  CHECK_THAT(refusal("<tactus:profile><tactus:degrade modality='audio' "
+                     "off='true'><tactus:x/></tactus:degrade></tactus:profile>"),
+             Catch::Contains("attributes alone"));
+}

@@ -6,8 +6,9 @@ using namespace tactus::sync;
 
 namespace {
 
-Rule rule_of(const std::string& attributes) {
-  return parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml").rules.at(0);
+Rule rule_of(const std::string& attributes, const std::string& modality = "audio") {
+  return parse_profile("<profile><degrade modality=\"" + modality + "\" " + attributes + "/></profile>", "p.xml")
+      .rules.at(0);
 }
 
 std::string refusal(const std::string& xml) {
@@ -58,7 +59,7 @@ TEST_CASE("Every operator is read") {
   CHECK((j.jitter->shape == JitterShape::kPareto && !j.jitter->keep_order && j.jitter->correlation == 0.5));
   CHECK(rule_of(R"(jitter="trace=1ms,2ms,0.5ms")").jitter->trace_s == std::vector<double>{0.001, 0.002, 0.0005});
   CHECK(rule_of(R"(rate="5Hz phase=20ms")").rate->phase_s == Approx(0.020));
-  const auto d = rule_of(R"(deadband="10% force floor=5mN lowpass=20Hz adaptive=0.2")").deadband;
+  const auto d = rule_of(R"(deadband="10% force floor=5mN lowpass=20Hz adaptive=0.2s/m")").deadband;
   CHECK((d->fraction == Approx(0.1) && d->quantity == Quantity::kForce && d->floor == Approx(0.005) &&
          d->lowpass_Hz == 20 && d->adaptive_s_m == 0.2));
   CHECK(rule_of(R"(quantise="1cm/s velocity")").quantise->step == Approx(0.01));
@@ -71,10 +72,10 @@ TEST_CASE("Every operator is read") {
   CHECK(rule_of(R"(reorder="5% by=10ms")").reorder->by_s == Approx(0.01));
   CHECK(rule_of(R"(skew="200ppm")").skew == Approx(200e-6));
   CHECK(rule_of(R"(wire_loss="2%")").wire_loss == Approx(0.02));
-  CHECK(rule_of(R"(frame_rate="20Hz" resolution="50%")").output.resolution == Approx(0.5));
+  CHECK(rule_of(R"(frame_rate="20Hz" resolution="50%")", "visual").output.resolution == Approx(0.5));
   CHECK(rule_of(R"(dropout="20ms every=1s")").output.dropout_s == Approx(0.02));
-  CHECK(rule_of(R"(force_step="0.1N")").output.force_step_N == Approx(0.1));
-  CHECK(rule_of(R"(response="2s")").output.response_s == 2);
+  CHECK(rule_of(R"(force_step="0.1N")", "haptic").output.force_step_N == Approx(0.1));
+  CHECK(rule_of(R"(response="2s")", "thermal").output.response_s == 2);
 }
 
 TEST_CASE("A wrong profile is refused whole, with line and reason") {

@@ -186,3 +186,32 @@ TEST_CASE("However many senses there are, each finds its delay in a message that
   CHECK(found == delays_ms(m));
   if (senses > 7) CHECK(plan_of(pages.front()).soa == wanted.soa);
 }
+
+TEST_CASE("Pages that come in any order, twice, beside those of older generations make the whole") {
+  playout_t whole{};
+  write_plan(whole, 7, plan(Policy::kExperiment));
+  for (int i = 0; i < 64; ++i) {
+    playout_entry_t e{};
+    e.modality = std::to_string(i) + std::string(60, 'z');
+    e.delay_ns = i * kMs.count();
+    whole.entries.push_back(e);
+  }
+  whole.count = 64;
+  auto pages = pages_of(whole);
+  REQUIRE(pages.size() > 2);
+  playout_t older = pages.front();
+  older.generation = 6;
+  older.entries.front().delay_ns = -1;
+
+  playout_t heard = older;
+  add_page(heard, pages.back());
+  CHECK(heard.entries.size() == pages.back().entries.size());
+  for (const playout_t& page : pages) add_page(heard, page);
+  add_page(heard, older);
+  CHECK(heard.generation == 7);
+  CHECK(heard.count == 64);
+  CHECK(delays_ms(heard) == delays_ms(whole));
+  pages.front().entries.front().delay_ns = 500 * kMs.count();
+  add_page(heard, pages.front());
+  CHECK(delays_ms(heard).at(pages.front().entries.front().modality) == 500);
+}

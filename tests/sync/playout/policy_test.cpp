@@ -86,6 +86,10 @@ TEST_CASE("What cannot be is refused with a remedy") {
   p.base = 50 * kMs;
   p.soa = parse_soa("audio=-80ms");
   CHECK_THROWS_WITH(p.check(), Contains("audio") && Contains("base of at least 80 ms"));
+  p.soa = parse_soa("audio=-200.5ms");
+  CHECK_THROWS_WITH(p.check(), Contains("base of at least 201 ms"));
+  p.base = 201 * kMs;
+  CHECK_NOTHROW(p.check());
   p.policy = Policy::kAligned;
   CHECK_THROWS_WITH(p.check(), Contains("experiment"));
   CHECK_THROWS_WITH(policy_named("serial"), Contains("itouch2005"));

@@ -1,0 +1,149 @@
+// What looks like a profile and is none: nothing of it may hold, and what it says may not be lost in silence.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "sync/degradation/known_senses.h"
+#include "sync/degradation/profile.h"
+
+using namespace tactus::sync;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+std::string refusal(const std::string& xml) {
+  try {
+    parse_profile(xml, "p.xml");
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+std::string refusal_of(const std::string& attributes, const std::string& modality = "audio") {
+  return refusal("<profile>\n<degrade modality=\"" + modality + "\" " + attributes + "/></profile>");
+}
+
+}  // namespace
+
+TEST_CASE("Text where elements belong is refused with its line") {
+  CHECK_THAT(refusal("<profile>\n\ndegrade modality=\"audio\" off=\"true\"\n</profile>"),
+             StartsWith("p.xml:3: ") && Contains("no text"));
+  CHECK_THAT(refusal("<profile>\n<degrade modality=\"audio\" off=\"true\"/>\n/>\n</profile>"),
+             StartsWith("p.xml:3: "));
+  CHECK_THAT(refusal("<profile>\n<degrade modality=\"audio\" off=\"true\">\nloss=\"5%\"</degrade></profile>"),
+             StartsWith("p.xml:3: ") && Contains("no text"));
+  CHECK_THAT(refusal("<profile><![CDATA[<degrade/>]]></profile>"), Contains("no text"));
+  CHECK_THAT(refusal("<profile><!ELEMENT degrade></profile>"), StartsWith("p.xml:1: "));
+  CHECK(refusal("\n<!-- before --><profile>\n<!-- within -->\n<degrade modality=\"audio\" off=\"true\">"
+                "<!-- and here --></degrade></profile>\n<!-- after -->\n")
+            .empty());
+}
+
+TEST_CASE("Nothing but comments may stand beside the one <profile> of a file") {
+  const std::string profile = "<profile/>\n";
+  CHECK_THAT(refusal(profile + profile), StartsWith("p.xml:2: ") && Contains("one <profile>"));
+  CHECK_THAT(refusal(profile + "<sdf/>"), StartsWith("p.xml:2: "));
+  CHECK_THAT(refusal(profile + "rest"), StartsWith("p.xml:2: "));
+  CHECK_THAT(refusal("rest" + profile), StartsWith("p.xml:1: "));
+  CHECK_THAT(refusal("<!DOCTYPE profile>" + profile), StartsWith("p.xml:1: "));
+  CHECK(refusal("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + profile).empty());
+}
+
+TEST_CASE("A profile that says that it is not UTF-8 is refused") {
+  for (const char* encoding : {"foo", "UTF-32", "utf-16", "ISO-8859-1"})
+    CHECK_THAT(refusal(std::string("<?xml version=\"1.0\" encoding=\"") + encoding + "\"?>\n<profile/>"),
+               StartsWith("p.xml:1: ") && Contains("UTF-8"));
+  CHECK(refusal("<?xml version='1.0' encoding='utf-8'?><profile/>").empty());
+}
+
+TEST_CASE("A seed is a whole number that fits, or it is refused") {
+  for (const char* seed : {"-1", "7abc", "1.5", "", " 7", "+7", "0x10", "18446744073709551616", "1e3"})
+    CHECK_THAT(refusal(std::string("<profile\nseed=\"") + seed + "\"/>"),
+               StartsWith("p.xml:1: seed=") && Contains("no whole number"));
+  CHECK(parse_profile("<profile seed=\"18446744073709551615\"/>", "p.xml").seed == UINT64_MAX);
+  CHECK(parse_profile("<profile seed=\"0\"/>", "p.xml").seed == 0);
+}
+
+TEST_CASE("What is said twice is refused") {
+  CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=9\""),
+             StartsWith("p.xml:2: loss=") && Contains("\"burst=\" stands there twice"));
+  CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=3\""), Contains("twice"));
+  CHECK_THAT(refusal_of("delay=\"40ms network network\""), Contains("\"network\" stands there twice"));
+  CHECK_THAT(refusal_of("delay=\"40ms 40ms\""), Contains("twice"));
+}
+
+TEST_CASE("Words that contradict each other are refused") {
+  CHECK_THAT(refusal_of("delay=\"40ms network presentation\""), Contains("contradict"));
+  CHECK_THAT(refusal_of("jitter=\"1ms normal uniform\""), Contains("contradict"));
+  CHECK_THAT(refusal_of("gain=\"2 force velocity\""), Contains("contradict"));
+  CHECK_THAT(refusal_of("freeze=\"hold zero\""), Contains("contradict"));
+  CHECK_THAT(refusal_of("off=\"true false\""), Contains("contradict"));
+  CHECK_THAT(refusal_of("jitter=\"normal trace=1ms,2ms\""), Contains("a trace is taken as it is"));
+  CHECK_THAT(refusal_of("jitter=\"trace=1ms,2ms correlation=0.5\""), Contains("a trace is taken as it is"));
+  CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" means nothing here"));
+}
+
+TEST_CASE("A trace without delays is refused") {
+  for (const char* trace : {"trace=", "3ms trace=", "trace=1ms,", "trace=,1ms", "trace=1ms,,2ms"})
+    CHECK_THAT(refusal_of(std::string("jitter=\"") + trace + "\""), Contains("no number"));
+}
+
+TEST_CASE("What has a dimension needs its unit, unless it is 0") {
+  for (const char* bare :
+       {"delay=\"40\"", "jitter=\"3 normal\"", "jitter=\"trace=1ms,2\"", "rate=\"5\"", "rate=\"5Hz phase=1\"",
+        "from=\"2\" off=\"true\"", "until=\"10\" off=\"true\"", "bias=\"0.1\"", "bias=\"-1e-1\"", "lowpass=\"20\"",
+        "quantise=\"0.1\"", "quantise=\"10% log floor=1\"", "deadband=\"10% floor=1\"",
+        "deadband=\"10% adaptive=0.2\"", "reorder=\"5% by=1\"", "dropout=\"1\"", "dropout=\"20ms every=1\"",
+        "delay=\"40 ms\""})
+    CHECK_THAT(refusal_of(bare), StartsWith("p.xml:2: ") && Contains("lacks its unit"));
+  CHECK_THAT(refusal_of("delay=\"40\""), Contains("as in 40s"));
+  for (const char* fine : {"delay=\"0\"", "delay=\"0.0 network\"", "from=\"0\" off=\"true\"", "gain=\"0.5\"",
+                           "loss=\"0.05 burst=3\"", "jitter=\"trace=0,1ms\"", "skew=\"0.001\""})
+    CHECK(refusal_of(fine) == "");
+}
+
+TEST_CASE("A profile with a NUL byte in it is refused with its line") {
+  const std::string cut{"<profile/>\n\0<!-- lost -->", 25};
+  CHECK_THAT(refusal(cut), StartsWith("p.xml:2: ") && Contains("NUL"));
+  CHECK_THAT(refusal("<profile/>" + std::string(1, '\0')), StartsWith("p.xml:1: ") && Contains("NUL"));
+}
+
+TEST_CASE("A material without a name is refused") {
+  CHECK_THAT(refusal_of("material=\"\" off=\"true\""), Contains("names none"));
+}
+
+TEST_CASE("A picture comes at least twice a second, or its events would be called lost") {
+  CHECK_THAT(refusal_of("frame_rate=\"1.9Hz\"", "visual"), Contains("between 2 and 240 Hz"));
+  CHECK(refusal_of("frame_rate=\"2Hz\"", "visual").empty());
+}
+
+TEST_CASE("What a known sense does not have is refused, and a sense of one's own may have anything") {
+  CHECK_THAT(refusal_of("frame_rate=\"20Hz\"", "audio"),
+             StartsWith("p.xml:2: audio has no frame_rate, which only visual has"));
+  CHECK_THAT(refusal_of("delay=\"1ms\" force_step=\"1N\"", "thermal"),
+             Contains("thermal has no force_step, which only haptic has"));
+  CHECK_THAT(refusal_of("dropout=\"20ms\"", "haptic"), Contains("which only audio has"));
+  CHECK_THAT(refusal_of("response=\"2s\"", "visual"), Contains("which only thermal has"));
+  CHECK(refusal_of("frame_rate=\"20Hz\" response=\"2s\"", "wind").empty());
+}
+
+TEST_CASE("The known senses have what their mains declare") {
+  for (const std::string sense : {"audio", "haptic", "thermal", "visual"}) {
+    INFO(sense);
+    std::stringstream main;
+    main << std::ifstream(std::string(TACTUS_SOURCE_DIR) + "/" + sense + "_node/main.cpp").rdbuf();
+    const std::string text = main.str();
+    std::smatch found;
+    REQUIRE(std::regex_search(text, found, std::regex("degradable = \\{([^}]*)\\}")));
+    std::string declared = found[1];
+    std::string known;
+    for (const std::string& name : known_output_operators(sense))
+      known += (known.empty() ? "\"" : ", \"") + name + "\"";
+    CHECK(declared == known);
+    CHECK(is_known_sense(sense));
+  }
+  CHECK_FALSE(is_known_sense("wind"));
+}
