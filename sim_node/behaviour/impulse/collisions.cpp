@@ -53,7 +53,8 @@ bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
     t = std::max(t, -h_);
   }
   out = {t, -(speed + 2 * bend * t)};
-  return out.speed_m_s > 0;
+  // What acts within a step, weight for one, is no collision.
+  return out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
 }
 
 double Collisions::approach(const ContactGroup& g) const {
@@ -66,7 +67,7 @@ double Collisions::approach(const ContactGroup& g) const {
     overlaps |= p.gap_m < 0;
   }
   // Without restitution, and ahead, the contact solver lets the gap close and no further.
-  return fastest > limits_.bounce_speed_m_s && (g.restitution > 0 || overlaps) ? fastest : 0;
+  return g.restitution > 0 || overlaps ? fastest : 0;
 }
 
 void Collisions::rebound(const ContactGroup& g) {
@@ -87,7 +88,7 @@ void Collisions::rebound(const ContactGroup& g) {
     const double gap = p.gap_m + rows_->velocity(p, *aside_).x() + t * mean;
     takes_part[k] = gap < limits_.touching_m;
     impulse[k].setZero();
-    wanted[k] = -speed > limits_.bounce_speed_m_s ? -g.restitution * speed : 0;
+    wanted[k] = std::max(0.0, -g.restitution * speed);
   }
   before_.clear();
   const auto keep = [this](double v, const double*) { before_.push_back(v); };

@@ -12,7 +12,7 @@ namespace tactus::sim::impulse {
 class Collisions {
  public:
   struct Limits {
-    double bounce_speed_m_s = 0.02;  // slower ones are left to the contact solver
+    double bounce_speed_m_s = 0.02;  // what is slower, beyond what a step adds, is left to the contact solver
     double touching_m = 1e-4;        // points this near to the first that meets collide with it
   };
   explicit Collisions(Limits limits) : limits_(limits) {}

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kFlies = 1 << 20;
 constexpr int kMostLayers = 256;  // what is higher counts as flying
-constexpr int kSweeps = 8;        // over the points of one group; design: four corners settle to 1 % in five
+constexpr int kSweeps = 5;        // over the points of one group; design: four corners settle to 1 %
 
 }  // namespace
 

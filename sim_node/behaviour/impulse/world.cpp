@@ -20,17 +20,23 @@ int World::add_free(const FreeBody& body) {
 }
 
 int World::add_system(articulated::ArticulatedSystem system) {
-  const int first = static_cast<int>(movers_.size()), links = static_cast<int>(system.tree().links.size());
+  std::vector<int> bodies;
+  for (std::size_t i = 0; i < system.tree().links.size(); ++i) bodies.push_back(add_fixed());
+  const int first = bodies.front();
+  make_system(bodies, std::move(system));
+  return first;
+}
+
+void World::make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system) {
   const std::size_t dofs = system.tree().dofs.size();
   system.dynamics();
-  for (int i = 0; i < links; ++i) {
-    movers_.push_back({Kind::kLink, static_cast<int>(systems_.size()), i});
-    motions_.push_back(system.motion(i));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    movers_[index(bodies[i])] = {Kind::kLink, static_cast<int>(systems_.size()), static_cast<int>(i)};
+    motions_[index(bodies[i])] = system.motion(static_cast<int>(i));
   }
   first_rate_.push_back(first_rate_.back() + dofs);
   const bool has_rows = needs_rows(system);
-  systems_.push_back({std::move(system), JointMemory(dofs), first, has_rows, false});
-  return first;
+  systems_.push_back({std::move(system), JointMemory(dofs), bodies, has_rows, false});
 }
 
 int World::add_surface(const Surface& surface) {
@@ -218,7 +224,7 @@ void World::finish(double h) {
     }
     system.system.step(h);
     for (std::size_t i = 0; i < system.system.tree().links.size(); ++i) {
-      BodyMotion& m = motions_[index(system.first_body) + i];
+      BodyMotion& m = motions_[index(system.bodies[i])];
       const BodyMotion before = m;
       m = system.system.motion(static_cast<int>(i));
       m.velocity_m_s = (m.centre_m - before.centre_m) / h;

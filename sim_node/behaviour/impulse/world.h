@@ -39,6 +39,8 @@ class World {
   int add_fixed();
   int add_free(const FreeBody& body);
   int add_system(articulated::ArticulatedSystem system);
+  // Bodies that were added as fixed become the links of a system, in their order.
+  void make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system);
   // Gives the next number of a shape.
   int add_surface(const Surface& surface);
 
@@ -68,7 +70,7 @@ class World {
   struct System {
     articulated::ArticulatedSystem system;
     JointMemory memory;
-    int first_body = 0;
+    std::vector<int> bodies;  // of its links
     bool has_rows = false, touched = false;
   };
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
