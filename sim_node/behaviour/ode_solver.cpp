@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/behaviour/impulse/build_world.h"
 #include "sim_node/behaviour/ode_handles.h"
 #include "sim_node/behaviour/ode_joints.h"
 #include "sim_node/behaviour/solver.h"
@@ -38,7 +39,9 @@ struct Solver::Engine {
   dJointGroupID contact_joints;
   std::vector<dBodyID> bodies;  // null: never moves
   std::vector<bool> jointed;
-  std::unique_ptr<ode::Joints> joints;
+  std::unique_ptr<ode::Joints> joints;     // null when impulses solve
+  std::unique_ptr<impulse::World> impulse;  // null when ODE solves; ODE then only finds the contacts
+  std::vector<Eigen::Quaterniond> at_rest;  // orientation of each body at the start
   std::unique_ptr<ode::Shapes> shapes;
   struct Joined {
     ManifoldPoint* point;
@@ -99,8 +102,11 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
   for (const JointDef& j : world.joints)
     for (const int body : {j.parent, j.child})
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
-  engine_->joints =
-      std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
+  if (settings.solver == "impulse")
+    engine_->impulse = impulse::build_world(world, settings);
+  else
+    engine_->joints =
+        std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies);
   engine_->feedback.resize(kMostPoints);
   engine_->joined.reserve(kMostPoints);
@@ -117,6 +123,7 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
     BodyMotion& m = motions_[i];
     m.position_m = b.pose.translation();
     m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
+    engine_->at_rest.push_back(m.orientation);
     m.centre_m = b.pose * b.centre_of_mass_m;
     m.inverse_mass_1_kg = moves ? 1 / b.mass_kg : 0;
     fall_m_s_.push_back(inert_[i].gravity_m_s);
@@ -144,10 +151,28 @@ void Solver::read_bodies() {
   }
 }
 
+// ODE's bodies are put where the impulse solver has moved them, so that it finds their contacts.
+void Solver::place_bodies() {
+  const auto moved = engine_->impulse->motions();
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const dBodyID id = engine_->bodies[i];
+    if (!id) continue;
+    const BodyMotion& m = moved[i];
+    dBodySetPosition(id, m.centre_m.x(), m.centre_m.y(), m.centre_m.z());
+    // A link's turn is counted from the start.
+    dQuaternion q;
+    ode::set_quaternion(engine_->jointed[i] ? m.orientation * engine_->at_rest[i] : m.orientation, q);
+    dBodySetQuaternion(id, q);
+    dBodySetLinearVel(id, m.velocity_m_s.x(), m.velocity_m_s.y(), m.velocity_m_s.z());
+    dBodySetAngularVel(id, m.spin_rad_s.x(), m.spin_rad_s.y(), m.spin_rad_s.z());
+  }
+}
+
 void Solver::add_force(int body, const Eigen::Vector3d& f, const Eigen::Vector3d& p) {
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id) return;
+  if (engine_->impulse) return engine_->impulse->add_force(body, f, p);
   dBodyAddForceAtPos(id, f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
   fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
 }
@@ -212,6 +237,14 @@ void Solver::join(Manifold& c) {
 }
 
 void Solver::step() {
+  if (engine_->impulse) {
+    engine_->impulse->step(contacts_, settings_.step_s);
+    place_bodies();
+    std::swap(contacts_, solved_);
+    read_bodies();
+    engine_->shapes->collide(contacts_);
+    return;
+  }
   // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
@@ -240,6 +273,6 @@ void Solver::step() {
 }
 
 std::int64_t Solver::complaints() const { return ode::message_count() - engine_->said_before; }
-double Solver::largest_joint_gap_m() const { return engine_->joints->largest_gap_m(); }
+double Solver::largest_joint_gap_m() const { return engine_->joints ? engine_->joints->largest_gap_m() : 0; }
 
 }  // namespace tactus::sim

@@ -48,6 +48,7 @@ class Solver {
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds in a step
   };
   void read_bodies();
+  void place_bodies();
   void back_off(Manifold& contact, bool is_new);
   void join(Manifold& contact);
 
