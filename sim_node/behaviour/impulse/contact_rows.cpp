@@ -54,14 +54,7 @@ void ContactRows::clear() {
   pool.clear();
 }
 
-Eigen::Vector3d ContactRows::velocity(const ContactPoint& p, const Velocities& v) const {
-  const Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-  Eigen::Vector3d world = b.linear_m_s + b.angular_rad_s.cross(p.arm_b);
-  if (p.a) {
-    const Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    world -= a.linear_m_s + a.angular_rad_s.cross(p.arm_a);
-  }
-  Eigen::Vector3d out = p.axes * world;
+void ContactRows::add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const {
   for (int c = 0; c < p.couplings; ++c) {
     const Coupling& k = couplings[static_cast<std::size_t>(p.first_coupling + c)];
     const double *j = pool.data() + k.jacobian, *rate = v.rates.data() + k.first_rate;
@@ -71,23 +64,9 @@ Eigen::Vector3d ContactRows::velocity(const ContactPoint& p, const Velocities& v
       out[r] += sum;
     }
   }
-  return out;
 }
 
-void ContactRows::apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const {
-  const Eigen::Vector3d world = p.axes.transpose() * impulse;
-  if (p.b) {
-    Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-    const Inertness& m = inert[static_cast<std::size_t>(p.b)];
-    b.linear_m_s += m.inverse_mass_1_kg * world;
-    b.angular_rad_s += m.inverse_inertia * p.arm_b.cross(world);
-  }
-  if (p.a) {
-    Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    const Inertness& m = inert[static_cast<std::size_t>(p.a)];
-    a.linear_m_s -= m.inverse_mass_1_kg * world;
-    a.angular_rad_s -= m.inverse_inertia * p.arm_a.cross(world);
-  }
+void ContactRows::apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const {
   for (int c = 0; c < p.couplings; ++c) {
     const Coupling& k = couplings[static_cast<std::size_t>(p.first_coupling + c)];
     const double* response = pool.data() + k.response;
@@ -125,15 +104,10 @@ void ContactRows::weigh(ContactPoint& p) const {
   p.sliding_mobility = mean + off;
 }
 
-Eigen::Vector3d ContactRows::solve(const ContactPoint& p, const Eigen::Vector3d& impulse,
-                                   const Eigen::Vector3d& v) {
-  const double alone = v.x() - p.mobility.row(0).dot(impulse);  // normal velocity without an impulse here
-  if (alone >= 0) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d stuck = impulse - p.inverse_mobility * v;
-  const double most = p.friction * stuck.x();
-  if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
+Eigen::Vector3d ContactRows::solve_sliding(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                           const Eigen::Vector3d& v, double alone) {
   const double y = impulse.y() - v.y() / p.sliding_mobility, z = impulse.z() - v.z() / p.sliding_mobility;
-  const double size = std::hypot(y, z);
+  const double size = std::sqrt(y * y + z * z);
   if (size == 0) return {-alone / p.mobility(0, 0), 0, 0};
   const double slope_y = p.friction * y / size, slope_z = p.friction * z / size;
   const double wedged = p.mobility(0, 0) + p.mobility(0, 1) * slope_y + p.mobility(0, 2) * slope_z;

@@ -2,7 +2,7 @@
 // velocity of its surfaces and what an impulse does to it. Contiguous, and built once a step.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 namespace tactus::sim::impulse {
@@ -41,6 +41,8 @@ struct ContactPoint {
   Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
   double blow_N_s = 0;                                // along the normal, of collisions before
+  int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
+  int visit = -1;                                     // the one of the sweep at which it was last solved
 };
 
 // The points of one manifold.
@@ -69,6 +71,54 @@ class ContactRows {
   // none where the surfaces part anyway, no sliding where the cone allows it, otherwise on the cone and against
   // the sliding. The cone is round: |tangential| <= friction * normal. Fixed points satisfy Coulomb's law exactly.
   static Eigen::Vector3d solve(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v);
+
+ private:
+  void add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const;
+  void apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  // alone: normal velocity without an impulse here.
+  static Eigen::Vector3d solve_sliding(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                       const Eigen::Vector3d& v, double alone);
 };
+
+// The innermost loop of a step is made of these three.
+
+inline Eigen::Vector3d ContactRows::velocity(const ContactPoint& p, const Velocities& v) const {
+  const Twist& b = v.twists[static_cast<std::size_t>(p.b)];
+  Eigen::Vector3d world = b.linear_m_s + b.angular_rad_s.cross(p.arm_b);
+  if (p.a) {
+    const Twist& a = v.twists[static_cast<std::size_t>(p.a)];
+    world -= a.linear_m_s + a.angular_rad_s.cross(p.arm_a);
+  }
+  Eigen::Vector3d out = p.axes * world;
+  if (p.couplings > 0) add_velocity(p, v, out);
+  return out;
+}
+
+inline void ContactRows::apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const {
+  const Eigen::Vector3d world = p.axes.transpose() * impulse;
+  if (p.b) {
+    Twist& b = v.twists[static_cast<std::size_t>(p.b)];
+    const Inertness& m = inert[static_cast<std::size_t>(p.b)];
+    b.linear_m_s += m.inverse_mass_1_kg * world;
+    b.angular_rad_s += m.inverse_inertia * p.arm_b.cross(world);
+  }
+  if (p.a) {
+    Twist& a = v.twists[static_cast<std::size_t>(p.a)];
+    const Inertness& m = inert[static_cast<std::size_t>(p.a)];
+    a.linear_m_s -= m.inverse_mass_1_kg * world;
+    a.angular_rad_s -= m.inverse_inertia * p.arm_a.cross(world);
+  }
+  if (p.couplings > 0) apply_to_joints(p, impulse, v);
+}
+
+inline Eigen::Vector3d ContactRows::solve(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                          const Eigen::Vector3d& v) {
+  const double alone = v.x() - p.mobility.row(0).dot(impulse);
+  if (alone >= 0) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d stuck = impulse - p.inverse_mobility * v;
+  const double most = p.friction * stuck.x();
+  if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
+  return solve_sliding(p, impulse, v, alone);
+}
 
 }  // namespace tactus::sim::impulse

@@ -17,6 +17,7 @@ struct JointRow {
   double softness = 0;         // a soft row asks for rate + softness * impulse = wanted
   double least = 0, most = 0;  // impulse, N m s or N s
   double impulse = 0;
+  int mover = 0;             // its system, numbered as for contacts
   double* memory = nullptr;  // where it is kept for the next step
 };
 

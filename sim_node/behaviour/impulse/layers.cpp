@@ -6,8 +6,9 @@ namespace tactus::sim::impulse {
 namespace {
 
 constexpr int kFlies = 1 << 20;
-constexpr int kMostLayers = 256;  // what is higher counts as flying
-constexpr int kSweeps = 5;        // over the points of one group; design: four corners settle to 1 %
+constexpr int kMostLayers = 256;   // what is higher counts as flying
+constexpr std::size_t kTurns = 8;  // groups that take turns; design: as many as hide the latency of one point
+constexpr int kSweeps = 5;         // over the points of one group; design: four corners settle to 1 %
 
 }  // namespace
 
@@ -34,6 +35,18 @@ void Layers::find(const ContactRows& rows, int movers) {
   };
   std::sort(order_.begin(), order_.end(),
             [&](int a, int b) { return height(a) != height(b) ? height(a) < height(b) : a < b; });
+  points_.clear();
+  for (std::size_t begin = 0; begin < order_.size(); begin += kTurns) {
+    const std::size_t end = std::min(order_.size(), begin + kTurns);
+    for (int point = 0;; ++point) {
+      const std::size_t before = points_.size();
+      for (std::size_t i = begin; i < end; ++i) {
+        const ContactGroup& g = rows.groups[static_cast<std::size_t>(order_[i])];
+        if (point < g.count) points_.push_back(g.first + point);
+      }
+      if (points_.size() == before) break;
+    }
+  }
 }
 
 void Layers::settle(ContactRows& rows, Velocities& v) {

@@ -14,8 +14,9 @@ class Layers {
  public:
   // movers: how many numbers of movers there are. Realtime-safe once its lists have grown.
   void find(const ContactRows& rows, int movers);
-  // All groups, the lowest layer first.
-  const std::vector<int>& order() const { return order_; }
+  // All points, the lowest layer first; within a layer the points of neighbouring groups take turns, so that a
+  // processor need not wait for the body that it has just moved.
+  const std::vector<int>& points() const { return points_; }
   // The last pass, over contacts between free bodies that stand on something; what flies keeps its momentum.
   void settle(ContactRows& rows, Velocities& v);
 
@@ -23,7 +24,8 @@ class Layers {
   int layer_of(int mover) const { return mover < 0 ? 0 : layer_[static_cast<std::size_t>(mover)]; }
 
   std::vector<int> layer_;  // per mover: steps from what never moves
-  std::vector<int> order_;
+  std::vector<int> order_;  // of groups, the lowest layer first
+  std::vector<int> points_;
   ContactRows above_;  // the points of one group with the lower body fixed
 };
 

@@ -128,6 +128,7 @@ void World::build(std::span<const Manifold> contacts, double h) {
       p.axes.row(1) = at.normal.unitOrthogonal();
       p.axes.row(2) = at.normal.cross(Eigen::Vector3d(p.axes.row(1)));
       p.friction = std::sqrt(sa.friction * sb.friction);
+      p.mover_a = g.mover_a + 1, p.mover_b = g.mover_b + 1;
       p.gap_m = -at.depth_m;
       p.first_coupling = static_cast<int>(rows_.couplings.size());
       if (a.kind == Kind::kFree) {
@@ -151,8 +152,12 @@ void World::build(std::span<const Manifold> contacts, double h) {
     rows_.groups.push_back(g);
   }
   for (std::size_t s = 0; s < systems_.size(); ++s)
-    if (systems_[s].has_rows)
+    if (systems_[s].has_rows) {
+      const std::size_t first = joints_.size();
       append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
+      for (std::size_t j = first; j < joints_.size(); ++j)
+        joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
+    }
 }
 
 // What each contact asks for: that its gap does not close beyond zero, that an overlap is taken back gently.
@@ -175,27 +180,42 @@ void World::sweep() {
   for (const ContactPoint& p : rows_.points)
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
+  // What has settled is left alone until something stirs one of its sides.
+  stirred_.assign(free_.size() + systems_.size() + 2, 0);
+  int visits = 0;
   const auto point = [&](ContactPoint& p) {
+    int &a = stirred_[index(p.mover_a)], &b = stirred_[index(p.mover_b)];
+    if (a <= p.visit && b <= p.visit) return 0.0;
+    p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
     const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, v), by = next - p.impulse;
-    if (by.isZero(0)) return 0.0;
+    const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
+    if (change == 0) return 0.0;
     p.impulse = next;
     rows_.apply(p, by, velocity_);
-    return by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
+    if (change >= law_.settled_m_s) {
+      ++visits;
+      if (p.mover_a) a = visits;
+      if (p.mover_b) b = visits;
+    }
+    return change;
+  };
+  const auto joint = [&](JointRow& row) {
+    const double change = impulse::sweep(row, rows_.pool, velocity_);
+    if (change >= law_.settled_m_s) stirred_[index(row.mover + 1)] = ++visits;
+    return change;
   };
   for (sweeps_ = 0; sweeps_ < law_.sweeps;) {
     double change = 0;
-    for (JointRow& row : joints_) change = std::max(change, impulse::sweep(row, rows_.pool, velocity_));
-    const auto group = [&](int number) {
-      const ContactGroup& g = rows_.groups[index(number)];
-      for (int i = g.first; i < g.first + g.count; ++i) change = std::max(change, point(rows_.points[index(i)]));
-    };
+    const auto visit = [&](int number) { change = std::max(change, point(rows_.points[index(number)])); };
+    for (JointRow& row : joints_) change = std::max(change, joint(row));
+    const auto& order = layers_.points();
     // Up and down, so that neither end of a stack is always the last to hear of the other.
     if (sweeps_++ % 2 == 0)
-      for (const int number : layers_.order()) group(number);
+      for (auto number = order.begin(); number != order.end(); ++number) visit(*number);
     else
-      for (auto number = layers_.order().rbegin(); number != layers_.order().rend(); ++number) group(*number);
+      for (auto number = order.rbegin(); number != order.rend(); ++number) visit(*number);
     if (change < law_.settled_m_s) break;
   }
 }

@@ -97,6 +97,7 @@ class World {
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
   Velocities velocity_, drift_, aside_;
   std::vector<double> scratch_;
+  std::vector<int> stirred_;  // per mover plus one: the visit that last changed it
   int sweeps_ = 0;
 };
 
