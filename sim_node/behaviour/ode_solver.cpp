@@ -3,19 +3,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim_node/behaviour/ode_handles.h"
-#include "sim_node/behaviour/ode_joints.h"
-#include "sim_node/behaviour/solver.h"
-#include "sim_node/collision/ode_shapes.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/behaviour/ode_engine.h"
 
 namespace tactus::sim {
 namespace {
 
 using ode::to_eigen;
-
-// Contacts that one step may solve, and storage for their feedback: it must outlive the step.
-constexpr std::size_t kMostPoints = 16384;
 
 // Below this a tangential speed has no direction, m/s.
 constexpr double kStill_m_s = 1e-9;
@@ -33,55 +26,29 @@ dMass mass_of(const BodyDef& body) {
 
 }  // namespace
 
-struct Solver::Engine {
-  ode::Library library;
-  ode::Owned<dWorldID> world;
-  dJointGroupID contact_joints;
-  std::vector<dBodyID> bodies;  // null: never moves
-  std::vector<bool> jointed;
-  std::unique_ptr<ode::Joints> joints;
-  std::unique_ptr<ode::Shapes> shapes;
-  struct Joined {
-    ManifoldPoint* point;
-    bool first_is_b;
-  };
-  std::vector<Joined> joined;
-  std::vector<dJointFeedback> feedback;
-  bool exact = false;
-  long long said_before = 0;  // messages up to the end of the construction
-
-  Engine() : world(dWorldCreate()), contact_joints(dJointGroupCreate(0)) {}
-  ~Engine() {
-    joints.reset();
-    shapes.reset();
-    dJointGroupDestroy(contact_joints);
-  }
-
-  static void archive(StateArchive& a, dBodyID id);
-  dBodyID make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s) {
-    if (def.is_static || def.tool >= 0) return nullptr;
-    const dMass mass = mass_of(def);
-    const dBodyID id = dBodyCreate(world.get());
-    dBodySetMass(id, &mass);
-    const Eigen::Vector3d p = def.pose * def.centre_of_mass_m;
-    dBodySetPosition(id, p.x(), p.y(), p.z());
-    dQuaternion q;
-    ode::set_quaternion(Eigen::Quaterniond(def.pose.linear()).normalized(), q);
-    dBodySetQuaternion(id, q);
-    // ODE's step, v += g h then x += v h, lies exactly on the parabola when the speed belongs to the middle of the step
-    // before: half a step of gravity earlier.
-    Eigen::Vector3d v = def.velocity_m_s;
-    if (def.gravity) v -= gravity_m_s2 * (step_s / 2);
-    dBodySetLinearVel(id, v.x(), v.y(), v.z());
-    dBodySetGravityMode(id, def.gravity);
-    dBodySetAutoDisableFlag(id, 0);
-    dBodySetLinearDamping(id, std::min(1.0, def.linear_damping_1_s * step_s));
-    dBodySetAngularDamping(id, std::min(1.0, def.angular_damping_1_s * step_s));
-    dBodySetLinearDampingThreshold(id, 0);
-    dBodySetAngularDampingThreshold(id, 0);
-    return id;
-  }
-};
+dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s) {
+  if (def.is_static || def.tool >= 0) return nullptr;
+  const dMass mass = mass_of(def);
+  const dBodyID id = dBodyCreate(world.get());
+  dBodySetMass(id, &mass);
+  const Eigen::Vector3d p = def.pose * def.centre_of_mass_m;
+  dBodySetPosition(id, p.x(), p.y(), p.z());
+  dQuaternion q;
+  ode::set_quaternion(Eigen::Quaterniond(def.pose.linear()).normalized(), q);
+  dBodySetQuaternion(id, q);
+  // ODE's step, v += g h then x += v h, lies exactly on the parabola when the speed belongs to the middle of the step
+  // before: half a step of gravity earlier.
+  Eigen::Vector3d v = def.velocity_m_s;
+  if (def.gravity) v -= gravity_m_s2 * (step_s / 2);
+  dBodySetLinearVel(id, v.x(), v.y(), v.z());
+  dBodySetGravityMode(id, def.gravity);
+  dBodySetAutoDisableFlag(id, 0);
+  dBodySetLinearDamping(id, std::min(1.0, def.linear_damping_1_s * step_s));
+  dBodySetAngularDamping(id, std::min(1.0, def.angular_damping_1_s * step_s));
+  dBodySetLinearDampingThreshold(id, 0);
+  dBodySetAngularDampingThreshold(id, 0);
+  return id;
+}
 
 Solver::Solver(const WorldDef& world, const Settings& settings)
     : engine_(std::make_unique<Engine>()), settings_(settings), motions_(world.bodies.size()) {
@@ -101,8 +68,11 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
   for (const JointDef& j : world.joints)
     for (const int body : {j.parent, j.child})
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
-  engine_->joints =
-      std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
+  if (settings.solver == "impulse")
+    engine_->impulse = impulse::build_world(world, settings);
+  else
+    engine_->joints =
+        std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
   engine_->feedback.resize(kMostPoints);
   engine_->joined.reserve(kMostPoints);
@@ -121,6 +91,7 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
     BodyMotion& m = motions_[i];
     m.position_m = b.pose.translation();
     m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
+    engine_->at_rest.push_back(m.orientation);
     m.centre_m = b.pose * b.centre_of_mass_m;
     m.inverse_mass_1_kg = moves ? 1 / b.mass_kg : 0;
     fall_m_s_.push_back(inert_[i].gravity_m_s);
@@ -148,15 +119,34 @@ void Solver::read_bodies() {
   }
 }
 
+// ODE's bodies are put where the impulse solver has moved them, so that it finds their contacts.
+void Solver::place_bodies() {
+  const auto moved = engine_->impulse->motions();
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const dBodyID id = engine_->bodies[i];
+    if (!id) continue;
+    const BodyMotion& m = moved[i];
+    dBodySetPosition(id, m.centre_m.x(), m.centre_m.y(), m.centre_m.z());
+    // A link's turn is counted from the start.
+    dQuaternion q;
+    ode::set_quaternion(engine_->jointed[i] ? m.orientation * engine_->at_rest[i] : m.orientation, q);
+    dBodySetQuaternion(id, q);
+    dBodySetLinearVel(id, m.velocity_m_s.x(), m.velocity_m_s.y(), m.velocity_m_s.z());
+    dBodySetAngularVel(id, m.spin_rad_s.x(), m.spin_rad_s.y(), m.spin_rad_s.z());
+  }
+}
+
 void Solver::add_force(int body, const Eigen::Vector3d& f, const Eigen::Vector3d& p) {
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id) return;
+  if (engine_->impulse) return engine_->impulse->add_force(body, f, p);
   dBodyAddForceAtPos(id, f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
   fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
 }
 
 void Solver::add_torque(int body, const Eigen::Vector3d& t) {
+  if (engine_->impulse) return engine_->impulse->add_torque(body, t);
   if (const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)]) dBodyAddTorque(id, t.x(), t.y(), t.z());
 }
 
@@ -220,6 +210,14 @@ void Solver::join(Manifold& c) {
 }
 
 void Solver::step() {
+  if (engine_->impulse) {
+    engine_->impulse->step(contacts_, settings_.step_s);
+    place_bodies();
+    std::swap(contacts_, solved_);
+    read_bodies();
+    engine_->shapes->collide(contacts_);
+    return;
+  }
   // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
@@ -248,128 +246,6 @@ void Solver::step() {
 }
 
 std::int64_t Solver::complaints() const { return ode::message_count() - engine_->said_before; }
-double Solver::largest_joint_gap_m() const { return engine_->joints->largest_gap_m(); }
-
-void Solver::set_gravity(const Eigen::Vector3d& g) {
-  dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
-  for (std::size_t i = 0; i < inert_.size(); ++i) {
-    if (!falls_[i]) continue;
-    fall_m_s_[i] += g * settings_.step_s - inert_[i].gravity_m_s;
-    inert_[i].gravity_m_s = g * settings_.step_s;
-  }
-}
-
-bool Solver::set_mass(int body, double mass_kg) {
-  const auto i = static_cast<std::size_t>(body);
-  const dBodyID id = engine_->bodies[i];
-  if (!id || engine_->jointed[i]) return false;
-  dMass mass;
-  dBodyGetMass(id, &mass);
-  inert_[i].inverse_inertia *= mass.mass / mass_kg;
-  dMassAdjust(&mass, mass_kg);
-  dBodySetMass(id, &mass);
-  motions_[i].inverse_mass_1_kg = 1 / mass_kg;
-  read_bodies();
-  return true;
-}
-
-bool Solver::set_pose(int body, const Eigen::Isometry3d& pose) {
-  const auto i = static_cast<std::size_t>(body);
-  const dBodyID id = engine_->bodies[i];
-  if (!id || engine_->jointed[i]) return false;
-  const Eigen::Vector3d p = pose * inert_[i].centre_in_body_m;
-  dQuaternion q;
-  ode::set_quaternion(Eigen::Quaterniond(pose.linear()).normalized(), q);
-  dBodySetPosition(id, p.x(), p.y(), p.z());
-  dBodySetQuaternion(id, q);
-  read_bodies();
-  engine_->shapes->collide(contacts_);
-  return true;
-}
-
-bool Solver::set_velocity(int body, const Eigen::Vector3d& v) {
-  const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
-  if (!id) return false;
-  dBodySetLinearVel(id, v.x(), v.y(), v.z());
-  read_bodies();
-  return true;
-}
-
-bool Solver::set_spin(int body, const Eigen::Vector3d& w) {
-  const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
-  if (!id) return false;
-  dBodySetAngularVel(id, w.x(), w.y(), w.z());
-  read_bodies();
-  return true;
-}
-
-void Solver::set_friction(int body, double friction) {
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body) friction_[s] = friction;
-}
-
-void Solver::set_restitution(int body, double restitution) {
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body) restitution_[s] = restitution;
-}
-
-bool Solver::set_motor(const std::string& joint, int axis, double effort, double velocity) {
-  return engine_->joints->set_motor(joint, axis, effort, velocity);
-}
-
-bool Solver::set_joint_friction(const std::string& joint, int axis, double friction) {
-  return engine_->joints->set_friction(joint, axis, friction);
-}
-
-void Solver::Engine::archive(StateArchive& a, dBodyID id) {
-  dMass mass;
-  dBodyGetMass(id, &mass);
-  a(mass.mass);
-  for (dReal& x : mass.I) a(x);
-  Eigen::Vector3d p = to_eigen(dBodyGetPosition(id)), v = to_eigen(dBodyGetLinearVel(id)),
-                  w = to_eigen(dBodyGetAngularVel(id));
-  Eigen::Quaterniond q = ode::quaternion(dBodyGetQuaternion(id));
-  a(p), a(v), a(w), a(q);
-  if (!a.reads()) return;
-  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(inertia.leftCols<3>());
-  a.require(mass.mass > 0 && cholesky.info() == Eigen::Success, "the state holds a mass that is not positive");
-  a.require(std::abs(q.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
-  dBodySetMass(id, &mass);
-  dBodySetPosition(id, p.x(), p.y(), p.z());
-  // It normalises, which may change the last bit, and tells the shapes that they have moved; they read the numbers when
-  // they are next asked.
-  dQuaternion exact;
-  ode::set_quaternion(q, exact);
-  dBodySetQuaternion(id, exact);
-  std::copy_n(exact, 4, const_cast<dReal*>(dBodyGetQuaternion(id)));
-  dRfromQ(const_cast<dReal*>(dBodyGetRotation(id)), exact);
-  dBodySetLinearVel(id, v.x(), v.y(), v.z());
-  dBodySetAngularVel(id, w.x(), w.y(), w.z());
-  dBodySetForce(id, 0, 0, 0);
-  dBodySetTorque(id, 0, 0, 0);
-}
-
-void Solver::archive(StateArchive& a) {
-  a(steps_);
-  for (std::size_t i = 0; i < motions_.size(); ++i) {
-    if (!engine_->bodies[i]) continue;
-    engine_->archive(a, engine_->bodies[i]);
-    a(motions_[i].inverse_mass_1_kg);
-  }
-  engine_->joints->archive(a);
-  dVector3 gravity;
-  dWorldGetGravity(engine_->world.get(), gravity);
-  Eigen::Vector3d g = to_eigen(gravity);
-  a(g);
-  dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
-  a.fixed(friction_, [&](double& x) { a(x); });
-  a.fixed(restitution_, [&](double& x) { a(x); });
-  a.fixed(inert_, [&](Inert& x) { a(x.inverse_inertia), a(x.gravity_m_s); });
-  a.fixed(fall_m_s_, [&](Eigen::Vector3d& x) { a(x); });
-  if (a.reads()) read_bodies();
-  for (auto* list : {&contacts_, &solved_})
-    a.list(*list, kMostPoints, [&](Manifold& m) { sim::archive(a, m, motions_.size(), friction_.size()); });
-}
+double Solver::largest_joint_gap_m() const { return engine_->joints ? engine_->joints->largest_gap_m() : 0; }
 
 }  // namespace tactus::sim

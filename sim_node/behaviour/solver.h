@@ -32,6 +32,8 @@ class Solver {
 
   // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
   // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
+  // takes_settings: false with the solver impulse, which has none of these.
+  bool takes_settings() const;
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
   bool set_mass(int body, double mass_kg);  // the inertia in proportion
   bool set_pose(int body, const Eigen::Isometry3d& pose);
@@ -68,6 +70,7 @@ class Solver {
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds in a step
   };
   void read_bodies();
+  void place_bodies();
   void back_off(Manifold& contact, bool is_new);
   void join(Manifold& contact);
 

@@ -79,6 +79,12 @@ Settings exact() {
   return s;
 }
 
+Settings by_impulses() {
+  Settings s;
+  s.solver = "impulse";
+  return s;
+}
+
 struct World {
   std::string name;
   WorldDef def;
@@ -128,13 +134,17 @@ std::vector<World> made_worlds() {
   const Path along = [](double t) { return Vector3d(-0.12 + 0.1 * t, 0.01 * std::sin(20 * t), 0.2); };
   return {{"a stack that a hand pushes over", stack(), {}, along},
           {"the same, solved exactly", stack(), exact(), along},
+          {"the same, by impulses", stack(), by_impulses(), along},
           {"a chain with springs, and a ball", springs()},
+          {"the same chain, by impulses", springs(), by_impulses()},
+          {"a motor, by impulses", motor(), by_impulses()},
           {"a motor and bouncing balls", motor()}};
 }
 
 std::vector<World> worlds() {
   std::vector<World> all = made_worlds();
   all.push_back({"the dark room", scene("dark_room"), {}, about_the_room});
+  all.push_back({"the dark room, by impulses", scene("dark_room"), by_impulses(), about_the_room});
   all.push_back(
       {"a mesh in a mesh", scene("peg_in_hole"), {}, [](double t) { return Vector3d(0, 0, 0.12 - 0.08 * t); }});
   all.push_back({"a cradle", scene("newtons_cradle")});

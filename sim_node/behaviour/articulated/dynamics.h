@@ -1,0 +1,99 @@
+// Forward dynamics of a tree by the articulated-body algorithm (Featherstone 2008, table 7.1), and what the system
+// does when it is struck: the same factors, once found, carry an impulse from any point to every joint.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim_node/behaviour/articulated/spatial.h"
+#include "sim_node/behaviour/articulated/tree.h"
+
+namespace tactus::sim::articulated {
+
+// What acts on the system during a step; constant in it.
+struct Loads {
+  std::vector<Eigen::Vector3d> force_N, moment_N_m;  // per link, world axes, at its centre
+  std::vector<double> torque;                        // per dof, N m or N
+
+  explicit Loads(const Tree& tree)
+      : force_N(tree.links.size(), Eigen::Vector3d::Zero()),
+        moment_N_m(tree.links.size(), Eigen::Vector3d::Zero()),
+        torque(tree.dofs.size(), 0.0) {}
+};
+
+class Dynamics {
+ public:
+  explicit Dynamics(const Tree& tree);
+
+  // Places the links, finds their velocities and the acceleration of every dof. positions: coordinates,
+  // quaternions w x y z of any length > 0; rates, accelerations: per dof. A ball's rates are the child's against
+  // its parent in the child's axes (those of the world at rest); a free base's are its spin and the velocity of
+  // its centre, world axes. passive: per dof; whether its spring and damper act here (stiff ones act elsewhere).
+  // Realtime-safe: yes.
+  void evaluate(const double* positions, const double* rates, const Loads& loads, const std::vector<char>& passive,
+                double* accelerations);
+  // Only places the links and finds their velocities.
+  void place(const double* positions, const double* rates);
+
+  // Of a link, as last evaluated or placed, world.
+  const Eigen::Matrix3d& turn(int link) const { return work_[index(link)].turn; }
+  Eigen::Vector3d centre_m(int link) const { return work_[index(link)].centre + origin_; }
+  Eigen::Vector3d spin_rad_s(int link) const { return work_[index(link)].velocity.head<3>(); }
+  Eigen::Vector3d velocity_at(int link, const Eigen::Vector3d& point_m) const {
+    const Spatial& v = work_[index(link)].velocity;
+    return v.tail<3>() + v.head<3>().cross(point_m - origin_);
+  }
+  double kinetic_energy_J() const;
+
+  // The following need an evaluate() of the present pose.
+  // Change of every rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: all links once.
+  void strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse, std::span<double> rates);
+  // Change of every rate by a unit impulse along one dof.
+  void strike_dof(int dof, std::span<double> rates);
+  // Change of velocity of one point by a unit impulse at another, per axis: J_to M^-1 J_from^T, 1/kg. Cost: the
+  // paths from both links to the root. response(a, b) is the transpose of response(b, a).
+  Eigen::Matrix3d response(int to_link, const Eigen::Vector3d& to_m, int from_link, const Eigen::Vector3d& from_m);
+  // Velocity of a point of a link for unit rate of each dof, 3 x dofs, row-major; zero for dofs that do not carry
+  // it.
+  void jacobian(int link, const Eigen::Vector3d& point_m, std::span<double> rows) const;
+
+ private:
+  struct Work {
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d centre;                       // from the common point, m
+    Eigen::Matrix<double, 6, kMostDofs> axes;     // S: motion for unit rate of each dof
+    Spatial velocity, bias;                       // v, and c: acceleration at zero joint acceleration
+    SpatialInertia inertia;                       // rigid, then articulated: I^A
+    Spatial force;                                // p^A
+    Eigen::Matrix<double, 6, kMostDofs> carried;  // U = I^A S
+    Eigen::Matrix<double, 6, kMostDofs> shared;   // U D^-1
+    Eigen::Matrix3d inverse;                      // D^-1
+    Eigen::Vector3d drive;                        // u
+    Spatial acceleration = Spatial::Zero();
+  };
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void place_link(std::size_t i, const double* positions, const double* rates);
+  void load_link(std::size_t i, const Loads& loads);
+  void drive_link(std::size_t i, const double* positions, const double* rates, const Loads& loads,
+                  const std::vector<char>& passive);
+  template <int N>
+  void condense(std::size_t i);
+  void condense_base();
+  template <int N>
+  Spatial respond(std::size_t i, const Spatial& before, const Eigen::Vector3d& drive, double* rates) const;
+  Spatial respond_link(std::size_t i, const Spatial& before, const Eigen::Vector3d& drive, double* rates) const;
+  void send(int link, Spatial force);
+  void spread(std::span<double> rates);
+
+  const Tree& tree_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // the common point: the root's anchor or free centre
+  std::vector<Work> work_;
+  Eigen::Matrix<double, 6, 6> base_inverse_;  // of a free base: (I^A)^-1
+  // Of an impulse on its way: what reaches each joint, then how each link's velocity changes.
+  std::vector<Eigen::Vector3d> struck_;
+  std::vector<Spatial> change_;
+  Spatial base_struck_ = Spatial::Zero();
+  std::vector<int> path_;
+};
+
+}  // namespace tactus::sim::articulated

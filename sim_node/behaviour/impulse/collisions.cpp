@@ -1,0 +1,148 @@
+#include "sim_node/behaviour/impulse/collisions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::sim::impulse {
+namespace {
+
+// Of one pair: sweeps over its points, and the change of speed below which they have settled, m/s.
+constexpr int kMostSweeps = 50;
+constexpr double kSettled_m_s = 1e-12;
+// Blows of one step per group: a row of n balls needs up to n/2 for each; beyond, the contact solver ends it.
+constexpr std::size_t kMostBlows = 16;
+
+}  // namespace
+
+// Calls each(velocity, pointer to its offset or null) for every component of what a mover moves.
+template <class F>
+void Collisions::of_mover(int mover, F&& each) {
+  if (mover < 0) return;
+  const auto m = static_cast<std::size_t>(mover);
+  if (m < velocity_->twists.size()) {
+    Twist &v = velocity_->twists[m], &x = aside_->twists[m];
+    for (int k = 0; k < 3; ++k) each(v.linear_m_s[k], &x.linear_m_s[k]);
+    for (int k = 0; k < 3; ++k) each(v.angular_rad_s[k], &x.angular_rad_s[k]);
+    return;
+  }
+  const std::size_t system = m - velocity_->twists.size();
+  for (std::size_t i = (*first_rate_)[system]; i < (*first_rate_)[system + 1]; ++i)
+    each(velocity_->rates[i], nullptr);
+}
+
+// Solves gap + s t + (drift / h) t^2 = 0: the drift is gained evenly over the step, half of it on the mean.
+bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
+  const double gap = p.gap_m + rows_->velocity(p, *aside_).x();
+  const double speed = rows_->velocity(p, *velocity_).x(), bend = p.drift_m_s.x() / h_;
+  double t = 0;
+  if (gap < 0 && -gap > -1.5 * speed * h_) {
+    // Overlapped before the last step: meets now.
+    if (speed >= 0) return false;
+  } else {
+    const double inside = speed * speed - 4 * bend * gap;
+    if (inside < 0) return false;
+    const double root = std::sqrt(inside);
+    if (speed < 0)
+      t = 2 * gap / (-speed + root);
+    else if (bend < 0)
+      t = (speed + root) / (-2 * bend);
+    else
+      return false;
+    if (t > h_) return false;
+    t = std::max(t, -h_);
+  }
+  out = {t, -(speed + 2 * bend * t)};
+  // What acts within a step, weight for one, is no collision.
+  return out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
+}
+
+double Collisions::approach(const ContactGroup& g) const {
+  double fastest = 0;
+  bool overlaps = false;
+  for (int i = g.first; i < g.first + g.count; ++i) {
+    Meeting m;
+    const ContactPoint& p = rows_->points[static_cast<std::size_t>(i)];
+    if (meets(p, m)) fastest = std::max(fastest, m.speed_m_s);
+    overlaps |= p.gap_m < 0;
+  }
+  // Without restitution, and ahead, the contact solver lets the gap close and no further.
+  return g.restitution > 0 || overlaps ? fastest : 0;
+}
+
+void Collisions::rebound(const ContactGroup& g) {
+  std::array<Eigen::Vector3d, 4> impulse;
+  std::array<double, 4> wanted;
+  std::array<bool, 4> takes_part{};
+  Meeting first{h_, 0}, m;
+  const auto point = [&](int i) -> ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
+  const int count = std::min(g.count, 4);
+  for (int i = 0; i < count; ++i)
+    if (meets(point(i), m) && m.time_s < first.time_s) first = m;
+  const double t = first.time_s;
+  for (int i = 0; i < count; ++i) {
+    const ContactPoint& p = point(i);
+    const auto k = static_cast<std::size_t>(i);
+    const double speed = rows_->velocity(p, *velocity_).x() + 2 * t / h_ * p.drift_m_s.x();
+    const double mean = rows_->velocity(p, *velocity_).x() + t / h_ * p.drift_m_s.x();
+    const double gap = p.gap_m + rows_->velocity(p, *aside_).x() + t * mean;
+    takes_part[k] = gap < limits_.touching_m;
+    impulse[k].setZero();
+    wanted[k] = std::max(0.0, -g.restitution * speed);
+  }
+  before_.clear();
+  const auto keep = [this](double v, const double*) { before_.push_back(v); };
+  of_mover(g.mover_a, keep);
+  if (g.mover_b != g.mover_a) of_mover(g.mover_b, keep);
+  for (int round = 0; round < kMostSweeps; ++round) {
+    double change = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!takes_part[k]) continue;
+      const ContactPoint& p = point(i);
+      Eigen::Vector3d v = rows_->velocity(p, *velocity_) + 2 * t / h_ * p.drift_m_s;
+      v.x() -= wanted[k];
+      const Eigen::Vector3d next = ContactRows::solve(p, impulse[k], v), by = next - impulse[k];
+      impulse[k] = next;
+      rows_->apply(p, by, *velocity_);
+      change = std::max(change, by.norm() * p.mobility(0, 0));
+    }
+    if (change < kSettled_m_s) break;
+  }
+  for (int i = 0; i < count; ++i) point(i).blow_N_s += impulse[static_cast<std::size_t>(i)].x();
+  // Joints are not set aside: their momentum depends on where they are, so they take the blow at the start of the
+  // step.
+  std::size_t next = 0;
+  const auto set_aside = [&](double v, double* x) {
+    const double change = v - before_[next++];
+    if (x) *x -= t * change;
+  };
+  of_mover(g.mover_a, set_aside);
+  if (g.mover_b != g.mover_a) of_mover(g.mover_b, set_aside);
+}
+
+void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,
+                         Velocities& velocity, Velocities& aside) {
+  rows_ = &rows;
+  first_rate_ = &first_rate;
+  velocity_ = &velocity;
+  aside_ = &aside;
+  h_ = h;
+  approach_.resize(rows.groups.size());
+  for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
+  const std::size_t most = kMostBlows * rows.groups.size();
+  for (std::size_t blow = 0; blow < most; ++blow) {
+    const auto fastest = std::max_element(approach_.begin(), approach_.end());
+    if (*fastest <= 0) return;
+    const ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
+    rebound(struck);
+    const auto shares = [&](int mover) {
+      return mover >= 0 && (mover == struck.mover_a || mover == struck.mover_b);
+    };
+    for (std::size_t i = 0; i < rows.groups.size(); ++i)
+      if (shares(rows.groups[i].mover_a) || shares(rows.groups[i].mover_b))
+        approach_[i] = approach(rows.groups[i]);
+  }
+}
+
+}  // namespace tactus::sim::impulse

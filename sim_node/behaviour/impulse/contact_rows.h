@@ -1,0 +1,124 @@
+// Contact points as rows that an impulse solver sweeps: each knows the bodies or joints that it moves, the
+// velocity of its surfaces and what an impulse does to it. Contiguous, and built once a step.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace tactus::sim::impulse {
+
+// Velocities of everything that moves: of free bodies, and the rates of the joints of all systems one after the
+// other. Twist 0 is that of what never moves.
+struct Twist {
+  Eigen::Vector3d linear_m_s = Eigen::Vector3d::Zero(), angular_rad_s = Eigen::Vector3d::Zero();
+};
+struct Velocities {
+  std::vector<Twist> twists;
+  std::vector<double> rates;
+};
+struct Inertness {  // of a free body, world axes; zero: never moves
+  double inverse_mass_1_kg = 0;
+  Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
+};
+
+// What an impulse at a point does to a system of joints, in the axes of the point.
+struct Coupling {
+  std::size_t first_rate = 0, rates = 0;
+  std::size_t jacobian = 0, response = 0;  // where each 3 x rates, row-major, begins in the pool
+};
+
+// In its own axes: normal (from a to b), and two tangents. Impulses act on b, and oppositely on a.
+struct ContactPoint {
+  int a = 0, b = 0;  // twists; 0 too for a link
+  int first_coupling = 0, couplings = 0;
+  Eigen::Matrix3d axes;                        // rows: normal, tangents
+  Eigen::Vector3d arm_a, arm_b;                // from the centres of mass, m
+  Eigen::Matrix3d mobility, inverse_mobility;  // velocity by unit impulse, 1/kg
+  double sliding_mobility = 0;                 // largest along the tangents
+  double friction = 0;
+  double gap_m = 0;            // at the start of the step; negative: overlap
+  double least_speed_m_s = 0;  // of parting that the contact asks for; negative: how fast the gap may close
+  Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
+  double blow_N_s = 0;                                // along the normal, of collisions before
+  int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
+  int visit = -1;                                     // the one of the sweep at which it was last solved
+};
+
+// The points of one manifold.
+struct ContactGroup {
+  int first = 0, count = 0, manifold = 0;
+  int mover_a = -1, mover_b = -1;  // what they move: a twist, or beyond those a system; -1: nothing
+  double restitution = 0;
+};
+
+class ContactRows {
+ public:
+  std::vector<ContactPoint> points;
+  std::vector<ContactGroup> groups;
+  std::vector<Coupling> couplings;
+  std::vector<double> pool;
+  std::vector<Inertness> inert;  // per twist
+
+  void clear();
+  // Of the surface of b against that of a, in the point's axes.
+  Eigen::Vector3d velocity(const ContactPoint& p, const Velocities& v) const;
+  void apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  // Completes the mobility from the arms and couplings; call when those are set.
+  void weigh(ContactPoint& p) const;
+
+  // The impulse that the point should have instead of `impulse`, when its velocity less what is asked for is v:
+  // none where the surfaces part anyway, no sliding where the cone allows it, otherwise on the cone and against
+  // the sliding. The cone is round: |tangential| <= friction * normal. Fixed points satisfy Coulomb's law exactly.
+  static Eigen::Vector3d solve(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v);
+
+ private:
+  void add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const;
+  void apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  // alone: normal velocity without an impulse here.
+  static Eigen::Vector3d solve_sliding(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                       const Eigen::Vector3d& v, double alone);
+};
+
+// The innermost loop of a step is made of these three.
+
+inline Eigen::Vector3d ContactRows::velocity(const ContactPoint& p, const Velocities& v) const {
+  const Twist& b = v.twists[static_cast<std::size_t>(p.b)];
+  Eigen::Vector3d world = b.linear_m_s + b.angular_rad_s.cross(p.arm_b);
+  if (p.a) {
+    const Twist& a = v.twists[static_cast<std::size_t>(p.a)];
+    world -= a.linear_m_s + a.angular_rad_s.cross(p.arm_a);
+  }
+  Eigen::Vector3d out = p.axes * world;
+  if (p.couplings > 0) add_velocity(p, v, out);
+  return out;
+}
+
+inline void ContactRows::apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const {
+  const Eigen::Vector3d world = p.axes.transpose() * impulse;
+  if (p.b) {
+    Twist& b = v.twists[static_cast<std::size_t>(p.b)];
+    const Inertness& m = inert[static_cast<std::size_t>(p.b)];
+    b.linear_m_s += m.inverse_mass_1_kg * world;
+    b.angular_rad_s += m.inverse_inertia * p.arm_b.cross(world);
+  }
+  if (p.a) {
+    Twist& a = v.twists[static_cast<std::size_t>(p.a)];
+    const Inertness& m = inert[static_cast<std::size_t>(p.a)];
+    a.linear_m_s -= m.inverse_mass_1_kg * world;
+    a.angular_rad_s -= m.inverse_inertia * p.arm_a.cross(world);
+  }
+  if (p.couplings > 0) apply_to_joints(p, impulse, v);
+}
+
+inline Eigen::Vector3d ContactRows::solve(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                          const Eigen::Vector3d& v) {
+  const double alone = v.x() - p.mobility.row(0).dot(impulse);
+  if (alone >= 0) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d stuck = impulse - p.inverse_mobility * v;
+  const double most = p.friction * stuck.x();
+  if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
+  return solve_sliding(p, impulse, v, alone);
+}
+
+}  // namespace tactus::sim::impulse

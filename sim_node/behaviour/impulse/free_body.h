@@ -1,0 +1,45 @@
+// A rigid body that hangs on nothing: its state, and its flight over one step without contacts.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "sim_node/behaviour/body_motion.h"
+
+namespace tactus::sim::impulse {
+
+struct FreeBody {
+  double mass_kg = 1;
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // about the centre of mass, body axes
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();
+  double linear_damping_1_s = 0, angular_damping_1_s = 0;
+
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  // Of the middle of the step before, so that steps of x += h v lie on the parabola (leapfrog).
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d spin_rad_s = Eigen::Vector3d::Zero();  // now
+
+  // Act during the next step, at the centre.
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero(), moment_N_m = Eigen::Vector3d::Zero();
+};
+
+// What a body would do in the next step if it touched nothing. World axes.
+struct Flight {
+  Eigen::Matrix3d inertia, inverse_inertia;  // kg m^2, 1/(kg m^2)
+  Eigen::Vector3d spin_momentum;             // kg m^2/s, at the end of the step
+  Eigen::Vector3d start_m_s, mean_m_s;       // velocity at the start of the step, and its mean over it
+  Eigen::Vector3d start_rad_s, mean_rad_s;   // spin: turning so through the step leads to the free orientation
+};
+
+// The turn of a body without torque is found with its spin momentum held exactly, by the classical Runge-Kutta
+// step (Hairer, Norsett and Wanner 1993, table II.1.2). Realtime-safe: yes.
+Flight fly(const FreeBody& body, double h_s);
+
+// Ends a step in which the body moved with these mean velocities instead, and was set aside by these offsets (m,
+// rad).
+void land(FreeBody& body, const Flight& flight, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
+          const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h_s);
+
+BodyMotion motion_of(const FreeBody& body);
+
+}  // namespace tactus::sim::impulse

@@ -1,0 +1,57 @@
+#include "sim_node/behaviour/impulse/warm_start.h"
+
+#include <algorithm>
+
+namespace tactus::sim::impulse {
+namespace {
+
+// A point further than this from where it was is another point, m; design: well below the size of a patch, above
+// what slides by in a step.
+constexpr double kSame_m = 0.01;
+
+Eigen::Vector3d place(const Manifold& m, const ManifoldPoint& p, std::span<const BodyMotion> poses) {
+  const BodyMotion& b = poses[static_cast<std::size_t>(m.body_b)];
+  return (b.moves() ? b : poses[static_cast<std::size_t>(m.body_a)]).to_body(p.point_m);
+}
+
+}  // namespace
+
+void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
+                       ContactRows& rows) const {
+  auto kept = kept_.begin();
+  for (const ContactGroup& g : rows.groups) {
+    const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
+    const auto before = [&](const Kept& k) {
+      return k.shape_a != m.shape_a ? k.shape_a < m.shape_a : k.shape_b < m.shape_b;
+    };
+    while (kept != kept_.end() && before(*kept)) ++kept;
+    for (int i = 0; i < g.count; ++i) {
+      ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
+      const Eigen::Vector3d here = place(m, m.points[static_cast<std::size_t>(i)], poses);
+      double nearest = kSame_m * kSame_m;
+      for (auto k = kept; k != kept_.end() && k->shape_a == m.shape_a && k->shape_b == m.shape_b; ++k) {
+        const double apart = (k->place_m - here).squaredNorm();
+        if (apart >= nearest) continue;
+        nearest = apart;
+        p.impulse = p.axes * k->impulse_N_s;
+        p.impulse.x() = std::max(0.0, p.impulse.x());
+      }
+    }
+  }
+}
+
+void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
+                     const ContactRows& rows) {
+  kept_.clear();
+  for (const ContactGroup& g : rows.groups) {
+    const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
+    for (int i = 0; i < g.count; ++i) {
+      const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
+      if (p.impulse.x() <= 0) continue;
+      kept_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
+                       p.axes.transpose() * p.impulse});
+    }
+  }
+}
+
+}  // namespace tactus::sim::impulse

@@ -1,0 +1,287 @@
+#include "sim_node/behaviour/impulse/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::sim::impulse {
+
+int World::add_fixed() {
+  movers_.push_back({});
+  motions_.emplace_back();
+  return static_cast<int>(movers_.size()) - 1;
+}
+
+int World::add_free(const FreeBody& body) {
+  movers_.push_back({Kind::kFree, static_cast<int>(free_.size()), 0});
+  free_.push_back(body);
+  motions_.push_back(motion_of(body));
+  return static_cast<int>(movers_.size()) - 1;
+}
+
+int World::add_system(articulated::ArticulatedSystem system) {
+  std::vector<int> bodies;
+  for (std::size_t i = 0; i < system.tree().links.size(); ++i) bodies.push_back(add_fixed());
+  const int first = bodies.front();
+  make_system(bodies, std::move(system));
+  return first;
+}
+
+void World::make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system) {
+  const std::size_t dofs = system.tree().dofs.size();
+  system.dynamics();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    movers_[index(bodies[i])] = {Kind::kLink, static_cast<int>(systems_.size()), static_cast<int>(i)};
+    motions_[index(bodies[i])] = system.motion(static_cast<int>(i));
+  }
+  first_rate_.push_back(first_rate_.back() + dofs);
+  const bool has_rows = needs_rows(system);
+  systems_.push_back({std::move(system), JointMemory(dofs), bodies, has_rows, false});
+}
+
+int World::add_surface(const Surface& surface) {
+  surfaces_.push_back(surface);
+  return static_cast<int>(surfaces_.size()) - 1;
+}
+
+void World::add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
+  const Mover& m = movers_[index(body)];
+  if (m.kind == Kind::kLink) systems_[index(m.index)].system.add_force(m.link, force_N, point_m);
+  if (m.kind != Kind::kFree) return;
+  FreeBody& b = free_[index(m.index)];
+  b.force_N += force_N;
+  b.moment_N_m += (point_m - b.centre_m).cross(force_N);
+}
+
+void World::add_torque(int body, const Eigen::Vector3d& torque_N_m) {
+  const Mover& m = movers_[index(body)];
+  if (m.kind == Kind::kLink) systems_[index(m.index)].system.add_moment(m.link, torque_N_m);
+  if (m.kind == Kind::kFree) free_[index(m.index)].moment_N_m += torque_N_m;
+}
+
+int World::mover_number(const Mover& m) const {
+  if (m.kind == Kind::kFixed) return -1;
+  return m.kind == Kind::kFree ? m.index + 1 : static_cast<int>(free_.size()) + 1 + m.index;
+}
+
+void World::start_velocities(std::span<const Manifold> contacts, double h) {
+  flights_.resize(free_.size());
+  for (Velocities* v : {&velocity_, &drift_, &aside_}) {
+    v->twists.assign(free_.size() + 1, Twist{});
+    v->rates.assign(first_rate_.back(), 0.0);
+  }
+  rows_.inert.resize(free_.size() + 1);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const Flight& f = flights_[i] = fly(free_[i], h);
+    velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
+    drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
+    rows_.inert[i + 1] = {1 / free_[i].mass_kg, f.inverse_inertia};
+  }
+  for (System& s : systems_) s.touched = s.has_rows;
+  for (const Manifold& m : contacts)
+    for (const int body : {m.body_a, m.body_b})
+      if (movers_[index(body)].kind == Kind::kLink) systems_[index(movers_[index(body)].index)].touched = true;
+  for (std::size_t s = 0; s < systems_.size(); ++s) {
+    if (!systems_[s].touched) continue;
+    const auto acceleration = systems_[s].system.accelerations();
+    const auto& rates = systems_[s].system.state().rates;
+    for (std::size_t j = 0; j < rates.size(); ++j) {
+      velocity_.rates[first_rate_[s] + j] = rates[j];
+      drift_.rates[first_rate_[s] + j] = h / 2 * acceleration[j];
+    }
+  }
+}
+
+// Rows of the joints between the sides of a point and the world: links a and b of one system, -1: not of it.
+void World::couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m) {
+  articulated::ArticulatedSystem& s = systems_[index(system)].system;
+  const std::size_t n = s.tree().dofs.size();
+  if (n == 0) return;
+  Coupling c{first_rate_[index(system)], n, rows_.pool.size(), rows_.pool.size() + 3 * n};
+  rows_.pool.resize(rows_.pool.size() + 6 * n, 0.0);
+  scratch_.resize(3 * n);
+  double* jacobian = rows_.pool.data() + c.jacobian;
+  double* response = rows_.pool.data() + c.response;
+  for (const auto& [link, sign] : {std::pair{link_a, -1.0}, std::pair{link_b, 1.0}}) {
+    if (link < 0) continue;
+    s.dynamics().jacobian(link, point_m, scratch_);
+    for (int r = 0; r < 3; ++r)
+      for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < 3; ++k) jacobian[index(r) * n + i] += sign * p.axes(r, k) * scratch_[index(k) * n + i];
+    for (int r = 0; r < 3; ++r) {
+      s.dynamics().strike(link, point_m, p.axes.row(r), std::span(scratch_).first(n));
+      for (std::size_t i = 0; i < n; ++i) response[index(r) * n + i] += sign * scratch_[i];
+    }
+  }
+  rows_.couplings.push_back(c);
+  ++p.couplings;
+}
+
+void World::build(std::span<const Manifold> contacts, double h) {
+  rows_.clear();
+  joints_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Manifold& m = contacts[i];
+    const Mover &a = movers_[index(m.body_a)], &b = movers_[index(m.body_b)];
+    if (m.count == 0 || (a.kind == Kind::kFixed && b.kind == Kind::kFixed)) continue;
+    const Surface &sa = surfaces_[index(m.shape_a)], &sb = surfaces_[index(m.shape_b)];
+    ContactGroup g{
+        static_cast<int>(rows_.points.size()),   m.count, static_cast<int>(i), mover_number(a), mover_number(b),
+        std::min(sa.restitution, sb.restitution)};
+    for (const ManifoldPoint& at : m.used()) {
+      ContactPoint p;
+      p.axes.row(0) = at.normal;
+      p.axes.row(1) = at.normal.unitOrthogonal();
+      p.axes.row(2) = at.normal.cross(Eigen::Vector3d(p.axes.row(1)));
+      p.friction = std::sqrt(sa.friction * sb.friction);
+      p.mover_a = g.mover_a + 1, p.mover_b = g.mover_b + 1;
+      p.gap_m = -at.depth_m;
+      p.first_coupling = static_cast<int>(rows_.couplings.size());
+      if (a.kind == Kind::kFree) {
+        p.a = a.index + 1;
+        p.arm_a = at.point_m - free_[index(a.index)].centre_m;
+      }
+      if (b.kind == Kind::kFree) {
+        p.b = b.index + 1;
+        p.arm_b = at.point_m - free_[index(b.index)].centre_m;
+      } else {
+        p.arm_b.setZero();
+      }
+      const bool one = a.kind == Kind::kLink && b.kind == Kind::kLink && a.index == b.index;
+      if (one) couple(p, a.index, a.link, b.link, at.point_m);
+      if (a.kind == Kind::kLink && !one) couple(p, a.index, a.link, -1, at.point_m);
+      if (b.kind == Kind::kLink && !one) couple(p, b.index, -1, b.link, at.point_m);
+      rows_.weigh(p);
+      p.drift_m_s = rows_.velocity(p, drift_);
+      rows_.points.push_back(p);
+    }
+    rows_.groups.push_back(g);
+  }
+  for (std::size_t s = 0; s < systems_.size(); ++s)
+    if (systems_[s].has_rows) {
+      const std::size_t first = joints_.size();
+      append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
+      for (std::size_t j = first; j < joints_.size(); ++j)
+        joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
+    }
+}
+
+// What each contact asks for: that its gap does not close beyond zero, that an overlap is taken back gently.
+void World::ask(double h) {
+  const auto repair = [&](double overlap) {
+    return std::min(law_.repair_speed_m_s, law_.repair * std::max(0.0, overlap - law_.slack_m) / h);
+  };
+  for (ContactPoint& p : rows_.points) {
+    const double aside = rows_.velocity(p, aside_).x(), gap = p.gap_m + aside;
+    if (p.gap_m >= 0 || gap >= 0)
+      p.least_speed_m_s = -gap / h;
+    else if (aside < 0)
+      p.least_speed_m_s = -aside / h + repair(-p.gap_m);
+    else
+      p.least_speed_m_s = repair(-gap);
+  }
+}
+
+void World::sweep() {
+  for (const ContactPoint& p : rows_.points)
+    if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
+  for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
+  // What has settled is left alone until something stirs one of its sides.
+  stirred_.assign(free_.size() + systems_.size() + 2, 0);
+  int visits = 0;
+  const auto point = [&](ContactPoint& p) {
+    int &a = stirred_[index(p.mover_a)], &b = stirred_[index(p.mover_b)];
+    if (a <= p.visit && b <= p.visit) return 0.0;
+    p.visit = visits;
+    Eigen::Vector3d v = rows_.velocity(p, velocity_);
+    v.x() -= p.least_speed_m_s;
+    const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, v), by = next - p.impulse;
+    const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
+    if (change == 0) return 0.0;
+    p.impulse = next;
+    rows_.apply(p, by, velocity_);
+    if (change >= law_.settled_m_s) {
+      ++visits;
+      if (p.mover_a) a = visits;
+      if (p.mover_b) b = visits;
+    }
+    return change;
+  };
+  const auto joint = [&](JointRow& row) {
+    const double change = impulse::sweep(row, rows_.pool, velocity_);
+    if (change >= law_.settled_m_s) stirred_[index(row.mover + 1)] = ++visits;
+    return change;
+  };
+  for (sweeps_ = 0; sweeps_ < law_.sweeps;) {
+    double change = 0;
+    const auto visit = [&](int number) { change = std::max(change, point(rows_.points[index(number)])); };
+    for (JointRow& row : joints_) change = std::max(change, joint(row));
+    const auto& order = layers_.points();
+    // Up and down, so that neither end of a stack is always the last to hear of the other.
+    if (sweeps_++ % 2 == 0)
+      for (auto number = order.begin(); number != order.end(); ++number) visit(*number);
+    else
+      for (auto number = order.rbegin(); number != order.rend(); ++number) visit(*number);
+    if (change < law_.settled_m_s) break;
+  }
+}
+
+void World::finish(double h) {
+  std::size_t body = 0, flown = 0;
+  for (; body < movers_.size(); ++body) {
+    if (movers_[body].kind != Kind::kFree) continue;
+    FreeBody& b = free_[flown];
+    const Twist &v = velocity_.twists[flown + 1], &x = aside_.twists[flown + 1];
+    land(b, flights_[flown], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
+    motions_[body] = motion_of(b);
+    ++flown;
+  }
+  for (std::size_t s = 0; s < systems_.size(); ++s) {
+    System& system = systems_[s];
+    const std::size_t first = first_rate_[s], n = first_rate_[s + 1] - first;
+    if (system.touched) {
+      scratch_.resize(n);
+      bool changed = false;
+      for (std::size_t j = 0; j < n; ++j) {
+        scratch_[j] = velocity_.rates[first + j] - drift_.rates[first + j] - system.system.state().rates[j];
+        changed |= scratch_[j] != 0;
+      }
+      if (changed) system.system.add_rates(scratch_);
+    }
+    system.system.step(h);
+    for (std::size_t i = 0; i < system.system.tree().links.size(); ++i) {
+      BodyMotion& m = motions_[index(system.bodies[i])];
+      const BodyMotion before = m;
+      m = system.system.motion(static_cast<int>(i));
+      m.velocity_m_s = (m.centre_m - before.centre_m) / h;
+      const Eigen::AngleAxisd turned(m.orientation * before.orientation.conjugate());
+      m.spin_rad_s = turned.angle() / h * turned.axis();
+    }
+  }
+}
+
+void World::step(std::span<Manifold> contacts, double h) {
+  start_velocities(contacts, h);
+  build(contacts, h);
+  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  for (std::size_t i = 0; i < velocity_.twists.size(); ++i) {
+    velocity_.twists[i].linear_m_s += drift_.twists[i].linear_m_s;
+    velocity_.twists[i].angular_rad_s += drift_.twists[i].angular_rad_s;
+  }
+  for (std::size_t i = 0; i < velocity_.rates.size(); ++i) velocity_.rates[i] += drift_.rates[i];
+  ask(h);
+  warm_.recall(contacts, motions_, rows_);
+  layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
+  sweep();
+  if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);
+  warm_.keep(contacts, motions_, rows_);
+  for (const JointRow& row : joints_) *row.memory = row.impulse;
+  for (const ContactGroup& g : rows_.groups)
+    for (int i = 0; i < g.count; ++i) {
+      const ContactPoint& p = rows_.points[index(g.first + i)];
+      contacts[index(g.manifold)].points[index(i)].normal_force_N = (p.blow_N_s + p.impulse.x()) / h;
+    }
+  finish(h);
+}
+
+}  // namespace tactus::sim::impulse

@@ -1,0 +1,110 @@
+// Free bodies, systems of joints and things that never move, and the impulses between them: one step at a time, in
+// the order of Guendelman, Bridson and Fedkiw 2003: collisions, velocities, contact, positions. Bodies and links
+// are moved by the same sweep. Knows no shapes: contacts are an argument.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim_node/behaviour/articulated/articulated_system.h"
+#include "sim_node/behaviour/impulse/collisions.h"
+#include "sim_node/behaviour/impulse/contact_rows.h"
+#include "sim_node/behaviour/impulse/free_body.h"
+#include "sim_node/behaviour/impulse/joint_rows.h"
+#include "sim_node/behaviour/impulse/layers.h"
+#include "sim_node/behaviour/impulse/warm_start.h"
+#include "sim_node/collision/manifold.h"
+#include "sim_node/state/state_archive.h"
+
+namespace tactus::sim::impulse {
+
+struct Law {
+  int sweeps = 40;                 // most, over all contacts of a step
+  double settled_m_s = 1e-9;       // sweeps end when no point changes by more
+  double bounce_speed_m_s = 0.02;  // slower impacts do not bounce
+  double slack_m = 1e-4;           // overlap that is not repaired
+  double repair = 0.2;             // share of a deeper one that is taken back in a step
+  double repair_speed_m_s = 0.02;  // and at most so fast
+};
+
+struct Surface {
+  double friction = 0.5,
+         restitution = 0;  // a pair takes the geometric mean of friction and the smaller restitution
+};
+
+class World {
+ public:
+  explicit World(Law law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slack_m}) {}
+
+  // Each gives the next number of a body, from 0; a system as many as it has links, in their order.
+  int add_fixed();
+  int add_free(const FreeBody& body);
+  int add_system(articulated::ArticulatedSystem system);
+  // Bodies that were added as fixed become the links of a system, in their order.
+  void make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system);
+  // Gives the next number of a shape.
+  int add_surface(const Surface& surface);
+
+  FreeBody& free_body(int body) { return free_[index(movers_[index(body)].index)]; }
+  articulated::ArticulatedSystem& system_of(int body) {
+    return systems_[index(movers_[index(body)].index)].system;
+  }
+  // Acts during the next step.
+  void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
+
+  // contacts: of the present poses, ordered by their shapes, with gaps (negative depth) out to where a step may
+  // lead; each point's normal_force_N is filled in, mean over the step, blows included. Deterministic.
+  // Realtime-safe once its lists have grown.
+  void step(std::span<Manifold> contacts, double h_s);
+
+  // Acts during the next step, N m.
+  void add_torque(int body, const Eigen::Vector3d& torque_N_m);
+  // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
+  void archive(StateArchive& a);
+
+  // After a step (or none): velocities are the means over it. position: the centre of mass.
+  std::span<const BodyMotion> motions() const { return motions_; }
+  int sweeps_last() const { return sweeps_; }
+  bool moves(int body) const { return movers_[index(body)].kind != Kind::kFixed; }
+
+ private:
+  enum class Kind { kFixed, kFree, kLink };
+  struct Mover {
+    Kind kind = Kind::kFixed;
+    int index = 0, link = 0;
+  };
+  struct System {
+    articulated::ArticulatedSystem system;
+    JointMemory memory;
+    std::vector<int> bodies;  // of its links
+    bool has_rows = false, touched = false;
+  };
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void start_velocities(std::span<const Manifold> contacts, double h);
+  void build(std::span<const Manifold> contacts, double h);
+  void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
+  void ask(double h);
+  void sweep();
+  void finish(double h);
+  int mover_number(const Mover& m) const;
+
+  Law law_;
+  std::vector<Mover> movers_;
+  std::vector<Surface> surfaces_;
+  std::vector<FreeBody> free_;
+  std::vector<System> systems_;
+  std::vector<BodyMotion> motions_;
+  ContactRows rows_;
+  std::vector<JointRow> joints_;
+  Collisions collisions_;
+  WarmStart warm_;
+  Layers layers_;
+  std::vector<Flight> flights_;             // of free bodies
+  std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
+  Velocities velocity_, drift_, aside_;
+  std::vector<double> scratch_;
+  std::vector<int> stirred_;  // per mover plus one: the visit that last changed it
+  int sweeps_ = 0;
+};
+
+}  // namespace tactus::sim::impulse

@@ -1,0 +1,49 @@
+// What Solver keeps of ODE: for its own files alone.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim_node/behaviour/impulse/build_world.h"
+#include "sim_node/behaviour/ode_handles.h"
+#include "sim_node/behaviour/ode_joints.h"
+#include "sim_node/behaviour/solver.h"
+#include "sim_node/collision/ode_shapes.h"
+
+namespace tactus::sim {
+
+// Contacts that one step may solve, and storage for their feedback: it must outlive the step.
+inline constexpr std::size_t kMostPoints = 16384;
+
+struct Solver::Engine {
+  ode::Library library;
+  ode::Owned<dWorldID> world;
+  dJointGroupID contact_joints;
+  std::vector<dBodyID> bodies;  // null: never moves
+  std::vector<bool> jointed;
+  std::unique_ptr<ode::Joints> joints;      // null when impulses solve
+  std::unique_ptr<impulse::World> impulse;  // null when ODE solves; ODE then only finds the contacts
+  std::vector<Eigen::Quaterniond> at_rest;  // orientation of each body at the start
+  std::unique_ptr<ode::Shapes> shapes;
+  struct Joined {
+    ManifoldPoint* point;
+    bool first_is_b;
+  };
+  std::vector<Joined> joined;
+  std::vector<dJointFeedback> feedback;
+  bool exact = false;
+  long long said_before = 0;  // messages up to the end of the construction
+
+  Engine() : world(dWorldCreate()), contact_joints(dJointGroupCreate(0)) {}
+  ~Engine() {
+    joints.reset();
+    shapes.reset();
+    dJointGroupDestroy(contact_joints);
+  }
+
+  static void archive(StateArchive& a, dBodyID id);
+  // Null for what never moves. Throws std::runtime_error with one sentence.
+  dBodyID make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s);
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,137 @@
+// What of Solver may be set while the world runs, and its state as bytes.
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/behaviour/ode_engine.h"
+#include "sim_node/state/archive_motion.h"
+
+namespace tactus::sim {
+
+using ode::to_eigen;
+
+bool Solver::takes_settings() const { return engine_->impulse == nullptr; }
+
+void Solver::set_gravity(const Eigen::Vector3d& g) {
+  dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
+  for (std::size_t i = 0; i < inert_.size(); ++i) {
+    if (!falls_[i]) continue;
+    fall_m_s_[i] += g * settings_.step_s - inert_[i].gravity_m_s;
+    inert_[i].gravity_m_s = g * settings_.step_s;
+  }
+}
+
+bool Solver::set_mass(int body, double mass_kg) {
+  const auto i = static_cast<std::size_t>(body);
+  const dBodyID id = engine_->bodies[i];
+  if (!id || engine_->jointed[i]) return false;
+  dMass mass;
+  dBodyGetMass(id, &mass);
+  inert_[i].inverse_inertia *= mass.mass / mass_kg;
+  dMassAdjust(&mass, mass_kg);
+  dBodySetMass(id, &mass);
+  motions_[i].inverse_mass_1_kg = 1 / mass_kg;
+  read_bodies();
+  return true;
+}
+
+bool Solver::set_pose(int body, const Eigen::Isometry3d& pose) {
+  const auto i = static_cast<std::size_t>(body);
+  const dBodyID id = engine_->bodies[i];
+  if (!id || engine_->jointed[i]) return false;
+  const Eigen::Vector3d p = pose * inert_[i].centre_in_body_m;
+  dQuaternion q;
+  ode::set_quaternion(Eigen::Quaterniond(pose.linear()).normalized(), q);
+  dBodySetPosition(id, p.x(), p.y(), p.z());
+  dBodySetQuaternion(id, q);
+  read_bodies();
+  engine_->shapes->collide(contacts_);
+  return true;
+}
+
+bool Solver::set_velocity(int body, const Eigen::Vector3d& v) {
+  const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
+  if (!id) return false;
+  dBodySetLinearVel(id, v.x(), v.y(), v.z());
+  read_bodies();
+  return true;
+}
+
+bool Solver::set_spin(int body, const Eigen::Vector3d& w) {
+  const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
+  if (!id) return false;
+  dBodySetAngularVel(id, w.x(), w.y(), w.z());
+  read_bodies();
+  return true;
+}
+
+void Solver::set_friction(int body, double friction) {
+  for (std::size_t s = 0; s < body_of_.size(); ++s)
+    if (body_of_[s] == body) friction_[s] = friction;
+}
+
+void Solver::set_restitution(int body, double restitution) {
+  for (std::size_t s = 0; s < body_of_.size(); ++s)
+    if (body_of_[s] == body) restitution_[s] = restitution;
+}
+
+bool Solver::set_motor(const std::string& joint, int axis, double effort, double velocity) {
+  return engine_->joints->set_motor(joint, axis, effort, velocity);
+}
+
+bool Solver::set_joint_friction(const std::string& joint, int axis, double friction) {
+  return engine_->joints->set_friction(joint, axis, friction);
+}
+
+void Solver::Engine::archive(StateArchive& a, dBodyID id) {
+  dMass mass;
+  dBodyGetMass(id, &mass);
+  a(mass.mass);
+  for (dReal& x : mass.I) a(x);
+  Eigen::Vector3d p = to_eigen(dBodyGetPosition(id)), v = to_eigen(dBodyGetLinearVel(id)),
+                  w = to_eigen(dBodyGetAngularVel(id));
+  Eigen::Quaterniond q = ode::quaternion(dBodyGetQuaternion(id));
+  a(p), a(v), a(w), a(q);
+  if (!a.reads()) return;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(inertia.leftCols<3>());
+  a.require(mass.mass > 0 && cholesky.info() == Eigen::Success, "the state holds a mass that is not positive");
+  a.require(std::abs(q.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
+  dBodySetMass(id, &mass);
+  dBodySetPosition(id, p.x(), p.y(), p.z());
+  // It normalises, which may change the last bit, and tells the shapes that they have moved; they read the numbers
+  // when they are next asked.
+  dQuaternion exact;
+  ode::set_quaternion(q, exact);
+  dBodySetQuaternion(id, exact);
+  std::copy_n(exact, 4, const_cast<dReal*>(dBodyGetQuaternion(id)));
+  dRfromQ(const_cast<dReal*>(dBodyGetRotation(id)), exact);
+  dBodySetLinearVel(id, v.x(), v.y(), v.z());
+  dBodySetAngularVel(id, w.x(), w.y(), w.z());
+  dBodySetForce(id, 0, 0, 0);
+  dBodySetTorque(id, 0, 0, 0);
+}
+
+void Solver::archive(StateArchive& a) {
+  a(steps_);
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    if (!engine_->bodies[i]) continue;
+    engine_->archive(a, engine_->bodies[i]);
+    a(motions_[i].inverse_mass_1_kg);
+  }
+  if (engine_->joints) engine_->joints->archive(a);
+  if (engine_->impulse) engine_->impulse->archive(a);
+  dVector3 gravity;
+  dWorldGetGravity(engine_->world.get(), gravity);
+  Eigen::Vector3d g = to_eigen(gravity);
+  a(g);
+  dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
+  a.fixed(friction_, [&](double& x) { a(x); });
+  a.fixed(restitution_, [&](double& x) { a(x); });
+  a.fixed(inert_, [&](Inert& x) { a(x.inverse_inertia), a(x.gravity_m_s); });
+  a.fixed(fall_m_s_, [&](Eigen::Vector3d& x) { a(x); });
+  if (a.reads()) read_bodies();
+  for (auto* list : {&contacts_, &solved_})
+    a.list(*list, kMostPoints, [&](Manifold& m) { sim::archive(a, m, motions_.size(), friction_.size()); });
+}
+
+}  // namespace tactus::sim
