@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <tactus/degraded_t.hpp>
+#include <utility>
 
 namespace tactus::sync {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr std::size_t kMostDecisions = 8192;
 constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
 constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
+constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as PresentationMatcher::kReportsWithin
 constexpr std::size_t kRememberedArrivals = 8192;    // as sync/contact_stream.cpp remembers ids
 
 // Operators on the output that the profile asks of this sense and that it does not have.
@@ -90,13 +92,28 @@ void Sense::step(HostTime now) {
   take_control(now);
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
-  profile_delay_ = stack_.presentation_delay(sim_now);
+  const Nanoseconds delay_before = std::exchange(profile_delay_, stack_.presentation_delay(sim_now));
+  if (profile_delay_ > delay_before) delay_what_is_on_its_way(now, sim_now);
   output_ = stack_.output(sim_now);
   lockstep_ = map && playout_.lockstep_Hz() > 0 ? std::optional(Lockstep{*map, playout_.lockstep_Hz()}) : std::nullopt;
   serial_delay_ = playout_.step(now) + profile_delay_;
   delay_ = lockstep_ ? now - lockstep_->begin_of_turn(now - serial_delay_) : serial_delay_;
   const HostTime lets = lockstep_ ? lockstep_->begin_of_turn(now) : now;
   for (const auto& stream : streams_) stream->step(*this, now, lets);
+}
+
+void Sense::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
+  const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
+  for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
+    const HostTime arrived = arrivals_.at(*id);
+    if (arrived < since) break;
+    Decision d;
+    d.key = static_cast<std::uint64_t>(*id);
+    d.is_event = true;
+    d.time = sim_now - (now - arrived);
+    d.verdict.release = d.arrival = arrived;
+    decisions_.push_back(d);
+  }
 }
 
 HostTime Sense::schedule(std::int64_t event_id, HostTime happened) const {
