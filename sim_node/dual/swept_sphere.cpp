@@ -1,5 +1,6 @@
 #include "sim_node/dual/swept_sphere.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::sim {

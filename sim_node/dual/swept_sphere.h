@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 
 namespace tactus::sim {
 
@@ -13,20 +12,12 @@ struct SweptSphere {
   double pad_m = 0;  // its centre stays so near to the straight way
 };
 
-// Smallest distance of the straight ways' centres at the same instant within the horizon.
-inline double closest_approach_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
-  const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
-  const double speed2 = closing.squaredNorm();
-  const double when = speed2 > 0 ? std::clamp(-apart.dot(closing) / speed2, 0.0, horizon_s) : 0;
-  return (apart + closing * when).norm();
-}
-
 // When the centres first are so near, s; -1: never within the horizon.
 double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distance_m, double horizon_s);
 
 // Smallest distance of the straight ways themselves, each at an instant of its own: the axes of the capsules that
-// Kim et al. 2005, section 4, intersect. Never larger than closest_approach_m. Source of the method: Ericson 2005,
-// Real-Time Collision Detection, 5.1.9.
+// Kim et al. 2005, section 4, intersect. Never larger than the closest approach in time. Source of the method:
+// Ericson 2005, Real-Time Collision Detection, 5.1.9.
 double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon_s);
 
 // What holds the sphere during the whole horizon.

@@ -37,7 +37,6 @@ void World::archive(StateArchive& a) {
     impulse::archive(a, s.system);
     for (auto* list : {&s.memory.friction, &s.memory.motor, &s.memory.limit, &s.memory.spring})
       a.fixed(*list, [&](double& x) { a(x); });
-    a(s.touched);
   }
   warm_.archive(a, surfaces_.size());
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });

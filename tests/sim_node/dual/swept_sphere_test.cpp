@@ -1,5 +1,6 @@
 #include "sim_node/dual/swept_sphere.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -19,6 +20,14 @@ struct Chance {
     return s;
   }
 };
+
+// Smallest distance of the straight ways' centres at the same instant within the horizon.
+double closest_approach_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
+  const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
+  const double speed2 = closing.squaredNorm();
+  const double when = speed2 > 0 ? std::clamp(-apart.dot(closing) / speed2, 0.0, horizon_s) : 0;
+  return (apart + closing * when).norm();
+}
 
 constexpr double kHorizon_s = 0.017;
 
