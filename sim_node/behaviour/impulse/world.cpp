@@ -195,7 +195,7 @@ void World::sweep() {
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, v), by = next - p.impulse;
+    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v), by = next - p.impulse;
     const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
     if (change == 0) return 0.0;
     p.impulse = next;
@@ -263,13 +263,15 @@ void World::finish(double h) {
 void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build(contacts, h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  const bool presses = law_.penalty.stiffness_N_m > 0;
+  if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   for (std::size_t i = 0; i < velocity_.twists.size(); ++i) {
     velocity_.twists[i].linear_m_s += drift_.twists[i].linear_m_s;
     velocity_.twists[i].angular_rad_s += drift_.twists[i].angular_rad_s;
   }
   for (std::size_t i = 0; i < velocity_.rates.size(); ++i) velocity_.rates[i] += drift_.rates[i];
   ask(h);
+  if (presses) press(rows_, law_.penalty, velocity_, h);
   warm_.recall(contacts, motions_, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();

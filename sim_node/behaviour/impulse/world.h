@@ -12,6 +12,7 @@
 #include "sim_node/behaviour/impulse/free_body.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
 #include "sim_node/behaviour/impulse/layers.h"
+#include "sim_node/behaviour/impulse/penalty.h"
 #include "sim_node/behaviour/impulse/warm_start.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/state/state_archive.h"
@@ -25,6 +26,7 @@ struct Law {
   double slack_m = 1e-4;           // overlap that is not repaired
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
+  Penalty penalty = {};            // instead of collisions with restitution
 };
 
 struct Surface {
