@@ -213,7 +213,7 @@ void World::sweep() {
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, v), by = next - p.impulse;
+    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v), by = next - p.impulse;
     const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
     if (change == 0) return 0.0;
     p.impulse = next;
@@ -298,9 +298,11 @@ void World::add_drift() {
 void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build(contacts, h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  const bool presses = law_.penalty.stiffness_N_m > 0;
+  if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
   ask(h);
+  if (presses) press(rows_, law_.penalty, velocity_, h);
   warm_.recall(contacts, motions_, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();

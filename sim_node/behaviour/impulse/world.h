@@ -12,6 +12,7 @@
 #include "sim_node/behaviour/impulse/free_body.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
 #include "sim_node/behaviour/impulse/layers.h"
+#include "sim_node/behaviour/impulse/penalty.h"
 #include "sim_node/behaviour/impulse/warm_start.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/state/state_archive.h"
@@ -26,6 +27,7 @@ struct Law {
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
   double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
+  Penalty penalty = {};            // instead of collisions with restitution
 };
 
 struct Surface {
