@@ -111,6 +111,12 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.curvature_1_m = static_cast<float>(how.curvature_1_m);
 }
 
+void ContactTracker::tell(LiveContact& c, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+                          std::vector<contact_event_t>& events) {
+  events_ = &events;
+  emit(c, kind, when, meeting(c.manifold, bodies));
+}
+
 // Takes the newest manifold as the state of the contact.
 void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const BodyMotion> bodies, bool rolls) {
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
