@@ -86,7 +86,7 @@ void Simulation::look() {
   motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
   place_tools();
   game_.step(now(), motions_);
-  tracker_.update(now(), motions_, solver_.contacts(), solver_.solved(), events_);
+  tracker_.update(now(), step_, motions_, solver_.contacts(), solver_.solved(), events_);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     ToolTouch& touch = tools_[i].touch;
     touch.update(now(), motions_, tools_[i].news, events_);

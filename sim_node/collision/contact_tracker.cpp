@@ -17,11 +17,31 @@ constexpr double kRearm = 0.5;
 // than this beyond the motion of the surfaces did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
+// Surfaces nearer than this touch: design: four times what the solver leaves between surfaces that rest (impulse::Law),
+// so that its residual is no gap. What touched parts when it is further away than this.
+constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
   Vector3d sum = Vector3d::Zero();
   for (const ManifoldPoint& p : c.used()) sum += p.point_m;
   return sum / std::max(1, c.count);
+}
+
+double deepest(const Manifold& c) {
+  double depth = c.points[0].depth_m;
+  for (const ManifoldPoint& p : c.used()) depth = std::max(depth, p.depth_m);
+  return depth;
+}
+
+// Only the points that `keep`; all of them when it keeps none.
+template <class Keep>
+Manifold of_points(const Manifold& c, Keep keep) {
+  Manifold out = c;
+  out.count = 0;
+  for (const ManifoldPoint& p : c.used())
+    if (keep(p)) out.points[static_cast<std::size_t>(out.count++)] = p;
+  if (out.count == 0) return c;
+  return out;
 }
 
 Vector3d tangential(const Vector3d& v, const Vector3d& n) { return v - v.dot(n) * n; }
@@ -31,15 +51,24 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), step_(sync::from_seconds(settings.step_s)), ids_(ids) {}
+    : surfaces_(std::move(surfaces)), settings_(settings), ids_(ids) {}
 
-ContactTracker::Approach ContactTracker::approach(const Manifold& c, std::span<const BodyMotion> bodies) const {
-  Approach best;
+// At the point whose surfaces close fastest.
+ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<const BodyMotion> bodies) const {
+  const BodyMotion &a = at(bodies, c.body_a), &b = at(bodies, c.body_b);
+  Meeting best;
+  const ManifoldPoint* fastest = nullptr;
   for (const ManifoldPoint& p : c.used()) {
-    const Vector3d relative = at(bodies, c.body_b).velocity_at(p.point_m) - at(bodies, c.body_a).velocity_at(p.point_m);
-    const double speed = -relative.dot(p.normal);
-    if (!best.point || speed > best.speed_m_s) best = {speed, &p};
+    const double speed = (a.velocity_at(p.point_m) - b.velocity_at(p.point_m)).dot(p.normal);
+    if (fastest && speed <= best.speed_m_s) continue;
+    best.speed_m_s = speed;
+    fastest = &p;
   }
+  best.depth_m = std::max(0.0, fastest->depth_m);
+  best.place_m = fastest->point_m;
+  best.normal = fastest->normal;
+  best.mass_kg = effective_mass(a, b, best.place_m, best.normal);
+  best.curvature_1_m = curvature_of(c, *fastest, bodies);
   return best;
 }
 
@@ -49,10 +78,20 @@ double ContactTracker::curvature_of(const Manifold& c, const ManifoldPoint& p, s
          curvature(surfaces_[static_cast<std::size_t>(c.shape_b)], kind, at(bodies, c.body_b).to_body(p.point_m), p.triangle_b);
 }
 
-void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Approach& approach,
-                          std::span<const BodyMotion> bodies) {
+ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, const Impact& impact) const {
+  const ContactKind kind = kind_of(c);
+  const auto curved = [&](int shape, const Vector3d& in_body, int triangle) {
+    return curvature(surfaces_[static_cast<std::size_t>(shape)], kind, in_body, triangle);
+  };
+  return {.speed_m_s = impact.speed_m_s,
+          .mass_kg = impact.effective_mass_kg,
+          .curvature_1_m = curved(c.shape_a, impact.a_body_m, impact.triangle_a) + curved(c.shape_b, impact.b_body_m, impact.triangle_b),
+          .place_m = impact.place_m,
+          .normal = impact.normal};
+}
+
+void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& how) {
   const Manifold& m = c.manifold;
-  const ManifoldPoint& p = approach.point ? *approach.point : m.points[0];
   when = std::max(when, c.last_event);
   c.last_event = when;
   contact_event_t& e = events_->emplace_back();
@@ -65,11 +104,11 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.material_a = surfaces_[static_cast<std::size_t>(m.shape_a)].material;
   e.material_b = surfaces_[static_cast<std::size_t>(m.shape_b)].material;
   e.tool = -1;
-  e.point_m = to_vec3f(p.point_m);
-  e.normal = to_vec3f(p.normal);
-  e.approach_speed_m_s = static_cast<float>(std::max(0.0, approach.speed_m_s));
-  e.effective_mass_kg = static_cast<float>(effective_mass(at(bodies, m.body_a), at(bodies, m.body_b), p.point_m, p.normal));
-  e.curvature_1_m = static_cast<float>(curvature_of(m, p, bodies));
+  e.point_m = to_vec3f(how.place_m);
+  e.normal = to_vec3f(how.normal);
+  e.approach_speed_m_s = static_cast<float>(std::max(0.0, how.speed_m_s));
+  e.effective_mass_kg = static_cast<float>(how.mass_kg);
+  e.curvature_1_m = static_cast<float>(how.curvature_1_m);
 }
 
 // Takes the newest manifold as the state of the contact.
@@ -79,10 +118,10 @@ void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const
   const Vector3d surfaces = 0.5 * (a.velocity_at(place) + b.velocity_at(place));
   Vector3d rolling = Vector3d::Zero();
   if (rolls && kind_of(m) != ContactKind::kSurface) {
-    const Vector3d beyond = tangential(place - c.place_m - surfaces * settings_.step_s, n);
-    if (beyond.norm() < kJump_m) rolling = beyond / settings_.step_s;
+    const Vector3d beyond = tangential(place - c.place_m - surfaces * step_s_, n);
+    if (beyond.norm() < kJump_m) rolling = beyond / step_s_;
   }
-  c.rolling_m_s += (rolling - c.rolling_m_s) * std::min(1.0, settings_.step_s / kRollingTime_s);
+  c.rolling_m_s += (rolling - c.rolling_m_s) * std::min(1.0, step_s_ / kRollingTime_s);
   c.manifold = m;
   c.place_m = place;
   c.touching = true;
@@ -92,84 +131,111 @@ void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const
   c.b_body_m = b.to_body(p.point_m - 0.5 * p.depth_m * p.normal);
 }
 
-// A hit when the surfaces close fast enough. The impact was inside the step: where the overlap began.
-void ContactTracker::meet(LiveContact& c, bool is_new, std::span<const BodyMotion> bodies) {
-  const Approach fast = approach(c.manifold, bodies);
-  const double since_s =
-      fast.speed_m_s > 0 ? std::clamp(fast.point->depth_m / fast.speed_m_s, 0.0, settings_.step_s) : 0;
-  const sync::SimTime when = now_ - sync::from_seconds(since_s);
-  if (is_new) emit(c, contact_event_t::BEGIN, when, fast, bodies);
+void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, const Meeting& how) {
+  if (is_new) emit(c, contact_event_t::BEGIN, when, how);
   const bool rested = !c.has_hit || now_ - c.last_hit >= sync::from_seconds(settings_.hit_interval_s);
-  if (c.armed && rested && fast.speed_m_s > settings_.hit_speed_m_s) {
-    emit(c, contact_event_t::HIT, when, fast, bodies);
+  if (c.armed && rested && how.speed_m_s > settings_.hit_speed_m_s) {
+    emit(c, contact_event_t::HIT, when, how);
     c.armed = false;
     c.has_hit = true;
     c.last_hit = now_;
-  } else if (fast.speed_m_s < kRearm * settings_.hit_speed_m_s) {
+  } else if (how.speed_m_s < kRearm * settings_.hit_speed_m_s) {
     c.armed = true;
   }
 }
 
-void ContactTracker::begin(const Manifold& m, std::span<const BodyMotion> bodies) {
-  LiveContact& c = next_.emplace_back();
-  c = LiveContact{};
-  c.id = ids_.fresh();
-  remember(c, m, bodies, false);
-  meet(c, true, bodies);
-}
-
-void ContactTracker::keep(LiveContact& c, const Manifold& m, std::span<const BodyMotion> bodies) {
-  remember(c, m, bodies, c.touching);
-  meet(c, false, bodies);
-  next_.push_back(c);
-}
-
-bool ContactTracker::part(LiveContact& c, std::span<const BodyMotion> bodies) {
+bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies) {
   const Manifold& m = c.manifold;
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
   const Vector3d on_a = a.to_world(c.a_body_m), on_b = b.to_world(c.b_body_m), n = m.points[0].normal;
-  c.gap_m = (on_b - on_a).dot(n);
-  if (c.touching) {
+  c.gap_m = near ? -deepest(*near) : (on_b - on_a).dot(n);
+  if (c.touching || struck) {
     const double opening = (b.velocity_at(on_b) - a.velocity_at(on_a)).dot(n);
-    const double since_s = opening > 0 ? std::clamp(c.gap_m / opening, 0.0, settings_.step_s) : settings_.step_s;
+    const double since_s = struck        ? step_s_ - struck->impact.last_s
+                           : opening > 0 ? std::clamp(c.gap_m / opening, 0.0, step_s_)
+                                         : step_s_;
     c.apart_since = now_ - sync::from_seconds(since_s);
     c.touching = false;
   }
   c.armed = true;
   const bool ended = c.gap_m > settings_.contact_end_gap_m ||
                      now_ - c.apart_since > sync::from_seconds(settings_.contact_end_time_s);
-  if (ended) emit(c, contact_event_t::END, c.apart_since, {}, bodies);
+  if (ended) {
+    Meeting how = meeting(m, bodies);
+    how.speed_m_s = 0;
+    how.place_m = on_a;
+    emit(c, contact_event_t::END, c.apart_since, how);
+  }
   return ended;
 }
 
-void ContactTracker::update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const Manifold> contacts,
-                            std::span<const Manifold> solved, std::vector<contact_event_t>& events) {
+// One pair of shapes in one step. before: as it was; near: at the end of the step; solved: what the step did to it.
+void ContactTracker::follow(const LiveContact* before, const Manifold* near, const Manifold* solved,
+                            std::span<const BodyMotion> bodies) {
+  const Manifold* struck = solved && solved->impact.blows > 0 ? solved : nullptr;
+  const bool touched = before && before->touching;
+  const bool touches = near && -deepest(*near) <= (touched ? kParted_m : kTouch_m);
+  if (!before && !struck && !touches) return;
+  LiveContact& c = next_.emplace_back();
+  if (before)
+    c = *before;
+  else
+    c.id = ids_.fresh();
+  c.normal_force_N = 0;
+  if (solved) {
+    for (const ManifoldPoint& p : solved->used()) c.normal_force_N += p.normal_force_N;
+    c.impulse_N_s += c.normal_force_N * step_s_;
+  }
+  if (struck) {
+    const Impact& i = struck->impact;
+    const Manifold met = of_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; });
+    if (!before) c.place_m = i.place_m;
+    c.manifold = met;
+    c.a_body_m = i.a_body_m, c.b_body_m = i.b_body_m;
+    meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), meeting(met, i));
+  }
+  if (touches) {
+    const Manifold met = of_points(*near, [](const ManifoldPoint& p) { return -p.depth_m <= kParted_m; });
+    remember(c, met, bodies, touched);
+    if (struck) return;
+    // The impact was inside the step: where the overlap began.
+    const Meeting how = meeting(met, bodies);
+    const double since_s = how.speed_m_s > 0 ? std::clamp(how.depth_m / how.speed_m_s, 0.0, step_s_) : 0;
+    meet(c, !before, now_ - sync::from_seconds(since_s), how);
+  } else if (part(c, near, struck, bodies)) {
+    next_.pop_back();
+  }
+}
+
+void ContactTracker::update(sync::SimTime now, sync::Nanoseconds step, std::span<const BodyMotion> bodies,
+                            std::span<const Manifold> contacts, std::span<const Manifold> solved,
+                            std::vector<contact_event_t>& events) {
   now_ = now;
+  step_ = step;
+  step_s_ = sync::to_seconds(step);
   events_ = &events;
-  // What the step did to the contacts that it began with.
-  auto force = solved.begin();
-  for (LiveContact& c : live_) {
-    while (force != solved.end() && force->before(c.manifold)) ++force;
-    c.normal_force_N = 0;
-    if (force == solved.end() || c.manifold.before(*force)) continue;
-    for (const ManifoldPoint& p : force->used()) c.normal_force_N += p.normal_force_N;
-    c.impulse_N_s += c.normal_force_N * settings_.step_s;
-  }
-  // Both lists are ordered: one pass finds what began, stayed and parted.
   next_.clear();
-  auto old = live_.begin();
-  const auto part_until = [&](const Manifold* limit) {
-    for (; old != live_.end() && (!limit || old->manifold.before(*limit)); ++old)
-      if (!part(*old, bodies)) next_.push_back(*old);
-  };
-  for (const Manifold& m : contacts) {
-    part_until(&m);
-    if (old != live_.end() && !m.before(old->manifold))
-      keep(*old++, m, bodies);
-    else
-      begin(m, bodies);
+  // All three lists are ordered: one pass over the pairs that are in any of them.
+  auto old = live_.cbegin();
+  auto near = contacts.begin(), met = solved.begin();
+  while (true) {
+    const Manifold* first = nullptr;
+    const auto earlier = [&](const Manifold& m) {
+      if (!first || m.before(*first)) first = &m;
+    };
+    if (old != live_.cend()) earlier(old->manifold);
+    if (near != contacts.end()) earlier(*near);
+    if (met != solved.end()) earlier(*met);
+    if (!first) break;
+    const auto same = [&](const Manifold& m) { return !m.before(*first) && !first->before(m); };
+    const LiveContact* before = old != live_.cend() && same(old->manifold) ? &*old : nullptr;
+    const Manifold* at_end = near != contacts.end() && same(*near) ? &*near : nullptr;
+    const Manifold* in_step = met != solved.end() && same(*met) ? &*met : nullptr;
+    follow(before, at_end, in_step, bodies);
+    if (before) ++old;
+    if (at_end) ++near;
+    if (in_step) ++met;
   }
-  part_until(nullptr);
   std::swap(live_, next_);
 }
 

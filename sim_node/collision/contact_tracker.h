@@ -20,10 +20,10 @@ namespace tactus::sim {
 // One pair of shapes that touches, or has just touched.
 struct LiveContact {
   std::int64_t id = 0;
-  Manifold manifold;        // as last seen
+  Manifold manifold;        // as last seen to touch
   // Its deepest point on each surface, body frames, as last seen.
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
-  bool touching = true;     // seen at the newest step; else within the hysteresis
+  bool touching = true;     // at the newest step; else within the hysteresis
   double gap_m = 0;         // while not touching
   double normal_force_N = 0;
   double impulse_N_s = 0;
@@ -39,11 +39,13 @@ class ContactTracker {
  public:
   ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids);
 
-  // The contacts at `now`, the end of a step, and those of the step before with their forces, both ordered; bodies as
-  // they are at `now`, before anything has acted on the new contacts. Appends the events of the step.
+  // The contacts at `now`, the end of a step of that length, and those that the step began with, with their forces and
+  // impacts; both ordered. Contacts may have gaps: a pair touches when it is nearer than what a solver leaves between
+  // surfaces that rest, or when the solver says that it met inside the step. bodies: as they are at `now`; where no
+  // solver says how surfaces met, before anything has acted on the new contacts. Appends the events of the step.
   // Realtime-safe once its lists have grown.
-  void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const Manifold> contacts,
-              std::span<const Manifold> solved, std::vector<contact_event_t>& events);
+  void update(sync::SimTime now, sync::Nanoseconds step, std::span<const BodyMotion> bodies,
+              std::span<const Manifold> contacts, std::span<const Manifold> solved, std::vector<contact_event_t>& events);
 
   std::span<const LiveContact> live() const { return live_; }
   // The contact as a message.
@@ -55,26 +57,31 @@ class ContactTracker {
   void rename();
 
  private:
-  struct Approach {
-    double speed_m_s = 0;  // at which the surfaces close; negative: they part
-    const ManifoldPoint* point = nullptr;
+  // How two surfaces come together, or are when they part.
+  struct Meeting {
+    double speed_m_s = 0;  // at which they close; negative: they part
+    double mass_kg = 0;    // that the meeting feels
+    double curvature_1_m = 0;
+    double depth_m = 0;
+    Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitZ();
   };
-  Approach approach(const Manifold& contact, std::span<const BodyMotion> bodies) const;
-  void begin(const Manifold& contact, std::span<const BodyMotion> bodies);
-  void keep(LiveContact& c, const Manifold& contact, std::span<const BodyMotion> bodies);
+  Meeting meeting(const Manifold& contact, std::span<const BodyMotion> bodies) const;
+  Meeting meeting(const Manifold& contact, const Impact& impact) const;
+  void follow(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
+  // A hit when the surfaces close fast enough.
+  void meet(LiveContact& c, bool is_new, sync::SimTime when, const Meeting& how);
   // True when it has ended.
-  bool part(LiveContact& c, std::span<const BodyMotion> bodies);
-  void meet(LiveContact& c, bool is_new, std::span<const BodyMotion> bodies);
+  bool part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
   void remember(LiveContact& c, const Manifold& contact, std::span<const BodyMotion> bodies, bool rolls);
-  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Approach& approach,
-            std::span<const BodyMotion> bodies);
+  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& how);
   double curvature_of(const Manifold& contact, const ManifoldPoint& p, std::span<const BodyMotion> bodies) const;
 
   std::vector<SurfaceTraits> surfaces_;
   Settings settings_;
-  sync::Nanoseconds step_;
   Ids& ids_;
   sync::SimTime now_{};
+  sync::Nanoseconds step_{};
+  double step_s_ = 0;
   std::vector<LiveContact> live_, next_;
   std::vector<contact_event_t>* events_ = nullptr;
 };

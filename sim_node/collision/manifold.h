@@ -10,9 +10,22 @@ namespace tactus::sim {
 struct ManifoldPoint {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // world, between the surfaces or on one of them
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
-  double depth_m = 0;                                 // positive inside
+  double depth_m = 0;                                 // positive inside; negative: a gap
   int triangle_a = -1, triangle_b = -1;               // of a mesh; -1: none
   double normal_force_N = 0;                          // once solved, mean over the step
+};
+
+// What a step did at a pair of shapes: how they met in it, if they did.
+struct Impact {
+  int blows = 0;                    // 0: they touched before, or did not touch
+  double first_s = 0, last_s = 0;   // instants of the first and the last blow, from the start of the step
+  double speed_m_s = 0;             // at which the surfaces closed before the first
+  double effective_mass_kg = 0;     // that it felt, joints included
+  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first, world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
+  // The places that met, in the frames of the bodies.
+  Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
+  int triangle_a = -1, triangle_b = -1;
 };
 
 inline constexpr int kMaxManifoldPoints = 4;
@@ -22,6 +35,7 @@ struct Manifold {
   int body_a = -1, body_b = -1;  // body_a < body_b
   int count = 0;
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
+  Impact impact;  // once solved
 
   std::span<const ManifoldPoint> used() const { return {points.data(), static_cast<std::size_t>(count)}; }
   std::span<ManifoldPoint> used() { return {points.data(), static_cast<std::size_t>(count)}; }

@@ -31,7 +31,7 @@ struct Tracked {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
       solver.step();
       ++step;
-      tracker.update(now(), solver.bodies(), solver.contacts(), solver.solved(), events);
+      tracker.update(now(), sync::from_seconds(settings.step_s), solver.bodies(), solver.contacts(), solver.solved(), events);
     }
   }
   std::vector<contact_event_t> of_kind(int kind) const {
@@ -238,7 +238,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis stay one contact") {
     bodies[1].velocity_m_s = {0, 0, speed_m_s};
     touch.points[0].depth_m = -height_m;
     const std::span<const Manifold> now(&touch, height_m <= 0 ? 1 : 0);
-    tracker.update(sync::sim_time(tick * std::int64_t{1'000'000}), bodies, now, {}, events);
+    tracker.update(sync::sim_time(tick * std::int64_t{1'000'000}), sync::Nanoseconds(1'000'000), bodies, now, {}, events);
   };
   // Up and down by 0.2 mm, three ticks at a time: below the gap and the time that end a contact.
   for (int i = 0; i < 60; ++i) step(i, i % 6 < 3 ? -1e-5 : 2e-4, i % 6 < 3 ? -0.01 : 0.01);
