@@ -11,13 +11,14 @@ constexpr double kTick_s = 0.001;
 Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, GroupingRule rule)
     : bodies_(std::move(bodies)), limits_(limits), rule_(rule) {
   const std::size_t n = bodies_.size();
-  beside_.resize(n);
-  outside_.resize(n);
+  late_ways_.resize(n);
   inside_.resize(n);
   kicks_.resize(n);
   member_.resize(n);
   wanted_at_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
+    radii_m_.push_back(bodies_[i].radius_m);
+    if (bodies_[i].inverse_mass_1_kg > 0) movers_.push_back(static_cast<int>(i));
     const int system = bodies_[i].system;
     if (system < 0) continue;
     systems_.resize(std::max(systems_.size(), static_cast<std::size_t>(system) + 1));
@@ -46,10 +47,11 @@ SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
 }
 
 // An impact changes the velocity by (1 + e) of that at which they meet (Newton's law, of a tool as heavy as can
-// be), no more than its limited force can. Impacts of what was struck in turn are left to the watch: to pad them too
-// makes the group ten times as large and saves not half of the alarms (grouping_table at 30 m/s^2, both ways).
+// be), no more than its limited force can. Impacts of what was struck in turn are left to the watch: to pad them
+// too makes the group ten times as large and saves not half of the alarms (grouping_table at 30 m/s^2, both ways).
 double Grouping::kick_m_s(const SweptSphere& tool, std::size_t body, double t) const {
-  const double meeting = (tool.velocity_m_s - outside_[body].velocity_m_s).norm() + (t > 0 ? tool.pad_m / t : 0);
+  const double meeting =
+      (tool.velocity_m_s - way_of(static_cast<int>(body)).velocity_m_s).norm() + (t > 0 ? tool.pad_m / t : 0);
   return std::min((1 + limits_.restitution) * meeting, limits_.tool_force_N * bodies_[body].inverse_mass_1_kg * t);
 }
 
@@ -62,15 +64,21 @@ void Grouping::enter(int index, Kick kick, sync::SimTime now, std::span<const Bo
   haptic_.push_back(index);
 }
 
+// Into found_. Bounds of the late ones are not kept: there are few.
+void Grouping::find_outside(const Bounds& query) {
+  found_.clear();
+  ways_->find(query, found_);
+  found_.insert(found_.end(), late_.begin(), late_.end());
+}
+
 void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime now,
                      std::span<const BodyMotion> bodies) {
   const double t = left_s(now), passed = sync::to_seconds(now - step_began_);
-  found_.clear();
-  grid_.find(bounds_of(from, t), found_);
+  find_outside(bounds_of(from, t));
   for (const int j : found_) {
     const auto body = static_cast<std::size_t>(j);
     if (member_[body]) continue;
-    SweptSphere other = outside_[body];
+    SweptSphere other = way_of(j);
     other.centre_m += other.velocity_m_s * passed;
     const double meeting =
         first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
@@ -95,7 +103,10 @@ void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std:
     const Kick kick = kicks_[i];
     if (bodies_[i].system >= 0)
       for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) enter(j, kick, now, bodies);
-    for (const int j : beside_[i]) enter(j, kick, now, bodies);
+    for (const int j : ways_->beside(haptic_[k])) enter(j, kick, now, bodies);
+    for (auto pair = std::lower_bound(touching_.begin(), touching_.end(), std::pair(haptic_[k], -1));
+         pair != touching_.end() && pair->first == haptic_[k]; ++pair)
+      enter(pair->second, kick, now, bodies);
     reach(inside_[i], bodies_[i].inverse_mass_1_kg, now, bodies);
   }
 }
@@ -111,34 +122,89 @@ void Grouping::close_as_kim(std::span<const BodyMotion> bodies, std::span<const 
     }
 }
 
+// Of a body that would leave: whether it may meet something in this step that does not leave with it.
+bool Grouping::reaches_what_stays(int body, sync::SimTime now) {
+  const double t = left_s(now);
+  const SweptSphere& from = way_of(body);
+  find_outside(bounds_of(from, t));
+  return std::any_of(found_.begin(), found_.end(), [&](int j) {
+    if (leaves_[static_cast<std::size_t>(j)]) return false;
+    const SweptSphere& other = way_of(j);
+    return first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t) >= 0;
+  });
+}
+
+// What nothing wants any more leaves by itself, or stays with all that it may meet.
+void Grouping::stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodies) {
+  leaves_.resize(bodies_.size());
+  for (const int i : before_) leaves_[static_cast<std::size_t>(i)] = !member_[static_cast<std::size_t>(i)];
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const int i : before_) {
+      if (!leaves_[static_cast<std::size_t>(i)] || !reaches_what_stays(i, now)) continue;
+      leaves_[static_cast<std::size_t>(i)] = 0;
+      enter(i, {}, now, bodies);
+      changed = true;
+    }
+  }
+  for (const int i : before_) leaves_[static_cast<std::size_t>(i)] = 0;
+}
+
+void Grouping::enter_asked(sync::SimTime now, std::span<const BodyMotion> bodies) {
+  for (const int body : asked_) {
+    enter(body, {}, now, bodies);
+    wanted_at_[static_cast<std::size_t>(body)] = now;
+  }
+  asked_.clear();
+}
+
 void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
                           std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
+  strays_m_.clear();
+  for (const int i : movers_) strays_m_.push_back(strays_m[static_cast<std::size_t>(i)] + limits_.tolerance_m);
+  own_ways_.set(movers_, bodies, radii_m_, strays_m_, touching, sync::to_seconds(limits_.horizon));
+  begin_step(now, own_ways_, bodies, {}, tools);
+}
+
+void Grouping::begin_step(sync::SimTime now, const Ways& ways, std::span<const BodyMotion> bodies,
+                          std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
+                          bool may_leave) {
   step_began_ = now;
-  const double t = left_s(now);
-  boxes_.clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    beside_[i].clear();
-    outside_[i] = {bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m,
-                   strays_m[i] + limits_.tolerance_m};
-    boxes_.push_back(bounds_of(outside_[i], t));
-  }
+  ways_ = &ways;
+  late_.clear();
+  touching_.clear();
   for (const auto& [a, b] : touching) {
-    beside_[static_cast<std::size_t>(a)].push_back(b);
-    beside_[static_cast<std::size_t>(b)].push_back(a);
+    touching_.emplace_back(a, b);
+    touching_.emplace_back(b, a);
   }
-  grid_.build(boxes_);
+  std::sort(touching_.begin(), touching_.end());
   std::swap(before_, haptic_);
   haptic_.clear();
-  std::fill(member_.begin(), member_.end(), 0);
+  for (const int i : before_) {
+    member_[static_cast<std::size_t>(i)] = 0;
+    // Until it is known whether it stays, and should it leave, it is where nobody has computed it: on its way it
+    // may fall, and turn round.
+    if (ways.has(i)) continue;
+    const double t = left_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
+    SweptSphere& way = late_ways_[static_cast<std::size_t>(i)] =
+        swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
+    way.pad_m = bend_m(limits_.gravity_m_s2, t) + 2 * speed * t + limits_.tolerance_m;
+    late_.push_back(i);
+  }
   if (rule_ == GroupingRule::kKim2005) {
     close_as_kim(bodies, tools);
   } else {
     close(now, bodies, tools);
+    enter_asked(now, bodies);
     for (const int i : haptic_) wanted_at_[static_cast<std::size_t>(i)] = now;
     for (const int i : before_)
-      if (now - wanted_at_[static_cast<std::size_t>(i)] < limits_.leave_after) enter(i, {}, now, bodies);
+      if (!may_leave || now - wanted_at_[static_cast<std::size_t>(i)] < limits_.leave_after)
+        enter(i, {}, now, bodies);
+    close(now, bodies, tools);
+    stay_or_leave(now, bodies);
     close(now, bodies, tools);
   }
+  std::erase_if(late_, [&](int i) { return member_[static_cast<std::size_t>(i)] != 0; });
   std::sort(haptic_.begin(), haptic_.end());
   entered_.clear();
   left_.clear();

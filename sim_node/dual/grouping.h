@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
-#include "sim_node/dual/bounds_grid.h"
+#include "sim_node/dual/ways.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
@@ -54,11 +54,21 @@ class Grouping {
  public:
   Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, GroupingRule rule = GroupingRule::kSound);
 
-  // A visual step begins. bodies: all, as they are now. strays_m: how far each body that is not in the group will
-  // be at most from its straight way within the horizon: its way is known. touching: pairs of bodies that touch
-  // now or will in this step. Bodies may enter and leave. Realtime-safe once its lists have grown.
+  // A visual step begins. ways: of the bodies that are computed ahead, from now on; they must live until the next
+  // call. Bodies of the group stay or leave; bodies with a way may enter. touching: pairs of bodies that touch
+  // now, apart from those of the ways. bodies: all, as they are now; read are those of the group, and those that
+  // enter. may_leave: false: there is nobody who would take them. A body leaves only when it can reach nothing
+  // outside in this step, so that it may be computed by itself. Cost: of the group. Realtime-safe once its lists
+  // have grown.
+  void begin_step(sync::SimTime now, const Ways& ways, std::span<const BodyMotion> bodies,
+                  std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
+                  bool may_leave = true);
+  // The same with the ways of all bodies in the group and outside, by how far each will be at most from its
+  // straight way.
   void begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
                   std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
+  // From the next call on the body is in the group for a while, whatever reaches it: something acts on it.
+  void want(int body) { asked_.push_back(body); }
   // A haptic tick, before its contacts are sought: where something is further from its straight way than its pad,
   // the group is closed anew from what is true now; bodies only enter. Cost: of the group, not of all bodies.
   void watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
@@ -84,17 +94,30 @@ class Grouping {
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
   void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
   double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
+  void stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodies);
+  bool reaches_what_stays(int body, sync::SimTime now);
+  void enter_asked(sync::SimTime now, std::span<const BodyMotion> bodies);
+  const SweptSphere& way_of(int body) const {
+    return ways_->has(body) ? ways_->of(body) : late_ways_[static_cast<std::size_t>(body)];
+  }
+  void find_outside(const Bounds& query);
   bool strayed(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) const;
 
   std::vector<GroupBody> bodies_;
   GroupingLimits limits_;
   GroupingRule rule_;
-  std::vector<std::vector<int>> systems_;  // bodies of each
-  std::vector<std::vector<int>> beside_;   // what each touches
+  std::vector<std::vector<int>> systems_;      // bodies of each
+  std::vector<std::pair<int, int>> touching_;  // both ways round, sorted
   sync::SimTime step_began_{};
-  std::vector<SweptSphere> outside_;  // of each body, from step_began_ on
-  BoundsGrid grid_;
-  std::vector<Bounds> boxes_;
+  const Ways* ways_ = nullptr;
+  Ways own_ways_;
+  // Bodies that have just left: nobody has computed their ways yet.
+  std::vector<int> late_;
+  std::vector<SweptSphere> late_ways_;
+  std::vector<double> radii_m_;
+  std::vector<int> movers_, asked_;
+  std::vector<double> strays_m_;
+  std::vector<char> leaves_;
   // Of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;

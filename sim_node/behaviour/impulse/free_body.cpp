@@ -80,12 +80,18 @@ void land(FreeBody& body, const Flight& f, const Eigen::Vector3d& mean_m_s, cons
           const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h) {
   const Eigen::Vector3d momentum = f.spin_momentum + f.inertia * (mean_rad_s - f.mean_rad_s);
   body.velocity_m_s = mean_m_s;
+  body.step_s = h;
   body.centre_m += h * mean_m_s + aside_m;
   body.orientation = turned(body.orientation, h * mean_rad_s + aside_rad);
   const Eigen::Matrix3d r = body.orientation.toRotationMatrix();
   body.spin_rad_s = r * (body.inertia_kg_m2.inverse() * (r.transpose() * momentum));
   body.force_N.setZero();
   body.moment_N_m.setZero();
+}
+
+Eigen::Vector3d velocity_for(const FreeBody& body, double step_s) {
+  if (body.step_s < 0 || body.step_s == step_s) return body.velocity_m_s;
+  return body.velocity_m_s + (body.step_s - step_s) / 2 * body.gravity_m_s2;
 }
 
 BodyMotion motion_of(const FreeBody& body) {

@@ -17,6 +17,7 @@ struct FreeBody {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   // Of the middle of the step before, so that steps of x += h v lie on the parabola (leapfrog).
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
+  double step_s = -1;  // length of that step; negative: the same as the next one's
   Eigen::Vector3d spin_rad_s = Eigen::Vector3d::Zero();  // now
 
   // Act during the next step, at the centre.
@@ -39,6 +40,9 @@ Flight fly(const FreeBody& body, double h_s);
 // rad).
 void land(FreeBody& body, const Flight& flight, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
           const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h_s);
+
+// The velocity as of the middle of a step of another length; 0: of now.
+Eigen::Vector3d velocity_for(const FreeBody& body, double step_s);
 
 BodyMotion motion_of(const FreeBody& body);
 

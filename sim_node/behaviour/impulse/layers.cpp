@@ -13,7 +13,10 @@ constexpr int kSweeps = 5;         // over the points of one group; design: four
 }  // namespace
 
 void Layers::find(const ContactRows& rows, int movers) {
-  layer_.assign(static_cast<std::size_t>(movers), kFlies);
+  layer_.resize(static_cast<std::size_t>(movers), kFlies);
+  for (const ContactGroup& g : rows.groups)
+    for (const int mover : {g.mover_a, g.mover_b})
+      if (mover >= 0) layer_[static_cast<std::size_t>(mover)] = kFlies;
   bool changed = true;
   for (int pass = 0; changed && pass < kMostLayers; ++pass) {
     changed = false;
@@ -50,7 +53,7 @@ void Layers::find(const ContactRows& rows, int movers) {
 }
 
 void Layers::settle(ContactRows& rows, Velocities& v) {
-  above_.inert = rows.inert;
+  std::swap(above_.inert, rows.inert);
   for (const int number : order_) {
     const ContactGroup& g = rows.groups[static_cast<std::size_t>(number)];
     const int low = std::min(layer_of(g.mover_a), layer_of(g.mover_b));
@@ -76,6 +79,7 @@ void Layers::settle(ContactRows& rows, Velocities& v) {
         above_.apply(p, by, v);
       }
   }
+  std::swap(above_.inert, rows.inert);
 }
 
 }  // namespace tactus::sim::impulse

@@ -23,7 +23,7 @@ class Layers {
  private:
   int layer_of(int mover) const { return mover < 0 ? 0 : layer_[static_cast<std::size_t>(mover)]; }
 
-  std::vector<int> layer_;  // per mover: steps from what never moves
+  std::vector<int> layer_;  // per mover: steps from what never moves; of those that touch something
   std::vector<int> order_;  // of groups, the lowest layer first
   std::vector<int> points_;
   ContactRows above_;  // the points of one group with the lower body fixed

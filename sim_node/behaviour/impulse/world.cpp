@@ -15,6 +15,7 @@ int World::add_fixed() {
 int World::add_free(const FreeBody& body) {
   movers_.push_back({Kind::kFree, static_cast<int>(free_.size()), 0});
   free_.push_back(body);
+  body_of_.push_back(static_cast<int>(movers_.size()) - 1);
   motions_.push_back(motion_of(body));
   return static_cast<int>(movers_.size()) - 1;
 }
@@ -65,23 +66,37 @@ int World::mover_number(const Mover& m) const {
 }
 
 void World::start_velocities(std::span<const Manifold> contacts, double h) {
+  activate_all();
   flights_.resize(free_.size());
   for (Velocities* v : {&velocity_, &drift_, &aside_}) {
-    v->twists.assign(free_.size() + 1, Twist{});
-    v->rates.assign(first_rate_.back(), 0.0);
+    v->twists.resize(free_.size() + 1);
+    v->rates.resize(first_rate_.back());
   }
   rows_.inert.resize(free_.size() + 1);
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    const Flight& f = flights_[i] = fly(free_[i], h);
-    velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
-    drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
-    rows_.inert[i + 1] = {1 / free_[i].mass_kg, f.inverse_inertia};
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      FreeBody& b = free_[i];
+      b.velocity_m_s = velocity_for(b, h);
+      b.step_s = h;
+      const Flight& f = flights_[i] = fly(b, h);
+      velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
+      drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
+      aside_.twists[i + 1] = {};
+      rows_.inert[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
+    } else {
+      System& s = systems_[i - free_.size()];
+      s.touched = s.has_rows;
+    }
   }
-  for (System& s : systems_) s.touched = s.has_rows;
   for (const Manifold& m : contacts)
     for (const int body : {m.body_a, m.body_b})
-      if (movers_[index(body)].kind == Kind::kLink) systems_[index(movers_[index(body)].index)].touched = true;
-  for (std::size_t s = 0; s < systems_.size(); ++s) {
+      if (mover(body).kind == Kind::kLink) systems_[index(mover(body).index)].touched = true;
+  for (const int unit : active_) {
+    if (index(unit) < free_.size()) continue;
+    const std::size_t s = index(unit) - free_.size();
+    for (std::size_t j = first_rate_[s]; j < first_rate_[s + 1]; ++j)
+      velocity_.rates[j] = drift_.rates[j] = aside_.rates[j] = 0;
     if (!systems_[s].touched) continue;
     const auto acceleration = systems_[s].system.accelerations();
     const auto& rates = systems_[s].system.state().rates;
@@ -122,7 +137,7 @@ void World::build(std::span<const Manifold> contacts, double h) {
   joints_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Manifold& m = contacts[i];
-    const Mover &a = movers_[index(m.body_a)], &b = movers_[index(m.body_b)];
+    const Mover &a = mover(m.body_a), &b = mover(m.body_b);
     if (m.count == 0 || (a.kind == Kind::kFixed && b.kind == Kind::kFixed)) continue;
     const Surface &sa = surfaces_[index(m.shape_a)], &sb = surfaces_[index(m.shape_b)];
     ContactGroup g{
@@ -135,7 +150,7 @@ void World::build(std::span<const Manifold> contacts, double h) {
       p.axes.row(2) = at.normal.cross(Eigen::Vector3d(p.axes.row(1)));
       p.friction = std::sqrt(sa.friction * sb.friction);
       p.mover_a = g.mover_a + 1, p.mover_b = g.mover_b + 1;
-      p.gap_m = -at.depth_m;
+      p.gap_m = -at.depth_m - law_.shell_m;
       p.first_coupling = static_cast<int>(rows_.couplings.size());
       if (a.kind == Kind::kFree) {
         p.a = a.index + 1;
@@ -158,7 +173,7 @@ void World::build(std::span<const Manifold> contacts, double h) {
     rows_.groups.push_back(g);
   }
   for (std::size_t s = 0; s < systems_.size(); ++s)
-    if (systems_[s].has_rows) {
+    if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
       append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
@@ -187,7 +202,10 @@ void World::sweep() {
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
   // What has settled is left alone until something stirs one of its sides.
-  stirred_.assign(free_.size() + systems_.size() + 2, 0);
+  stirred_.resize(free_.size() + systems_.size() + 2);
+  for (const ContactGroup& g : rows_.groups)
+    for (const int moved : {g.mover_a, g.mover_b}) stirred_[index(moved + 1)] = 0;
+  for (const JointRow& row : joints_) stirred_[index(row.mover + 1)] = 0;
   int visits = 0;
   const auto point = [&](ContactPoint& p) {
     int &a = stirred_[index(p.mover_a)], &b = stirred_[index(p.mover_b)];
@@ -227,36 +245,53 @@ void World::sweep() {
 }
 
 void World::finish(double h) {
-  std::size_t body = 0, flown = 0;
-  for (; body < movers_.size(); ++body) {
-    if (movers_[body].kind != Kind::kFree) continue;
-    FreeBody& b = free_[flown];
-    const Twist &v = velocity_.twists[flown + 1], &x = aside_.twists[flown + 1];
-    land(b, flights_[flown], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
-    motions_[body] = motion_of(b);
-    ++flown;
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      FreeBody& b = free_[i];
+      const Twist &v = velocity_.twists[i + 1], &x = aside_.twists[i + 1];
+      land(b, flights_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
+      motions_[index(body_of_[i])] = motion_of(b);
+    } else {
+      finish(i - free_.size(), h);
+    }
   }
-  for (std::size_t s = 0; s < systems_.size(); ++s) {
-    System& system = systems_[s];
-    const std::size_t first = first_rate_[s], n = first_rate_[s + 1] - first;
-    if (system.touched) {
-      scratch_.resize(n);
-      bool changed = false;
-      for (std::size_t j = 0; j < n; ++j) {
-        scratch_[j] = velocity_.rates[first + j] - drift_.rates[first + j] - system.system.state().rates[j];
-        changed |= scratch_[j] != 0;
-      }
-      if (changed) system.system.add_rates(scratch_);
+}
+
+void World::finish(std::size_t s, double h) {
+  System& system = systems_[s];
+  const std::size_t first = first_rate_[s], n = first_rate_[s + 1] - first;
+  if (system.touched) {
+    scratch_.resize(n);
+    bool changed = false;
+    for (std::size_t j = 0; j < n; ++j) {
+      scratch_[j] = velocity_.rates[first + j] - drift_.rates[first + j] - system.system.state().rates[j];
+      changed |= scratch_[j] != 0;
     }
-    system.system.step(h);
-    for (std::size_t i = 0; i < system.system.tree().links.size(); ++i) {
-      BodyMotion& m = motions_[index(system.bodies[i])];
-      const BodyMotion before = m;
-      m = system.system.motion(static_cast<int>(i));
-      m.velocity_m_s = (m.centre_m - before.centre_m) / h;
-      const Eigen::AngleAxisd turned(m.orientation * before.orientation.conjugate());
-      m.spin_rad_s = turned.angle() / h * turned.axis();
+    if (changed) system.system.add_rates(scratch_);
+  }
+  system.system.step(h);
+  for (std::size_t i = 0; i < system.system.tree().links.size(); ++i) {
+    BodyMotion& m = motions_[index(system.bodies[i])];
+    const BodyMotion before = m;
+    m = system.system.motion(static_cast<int>(i));
+    m.velocity_m_s = (m.centre_m - before.centre_m) / h;
+    const Eigen::AngleAxisd turned(m.orientation * before.orientation.conjugate());
+    m.spin_rad_s = turned.angle() / h * turned.axis();
+  }
+}
+
+// Half of what acts evenly through the step is in its mean velocities.
+void World::add_drift() {
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      velocity_.twists[i + 1].linear_m_s += drift_.twists[i + 1].linear_m_s;
+      velocity_.twists[i + 1].angular_rad_s += drift_.twists[i + 1].angular_rad_s;
+      continue;
     }
+    const std::size_t s = i - free_.size();
+    for (std::size_t j = first_rate_[s]; j < first_rate_[s + 1]; ++j) velocity_.rates[j] += drift_.rates[j];
   }
 }
 
@@ -264,11 +299,7 @@ void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build(contacts, h);
   collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
-  for (std::size_t i = 0; i < velocity_.twists.size(); ++i) {
-    velocity_.twists[i].linear_m_s += drift_.twists[i].linear_m_s;
-    velocity_.twists[i].angular_rad_s += drift_.twists[i].angular_rad_s;
-  }
-  for (std::size_t i = 0; i < velocity_.rates.size(); ++i) velocity_.rates[i] += drift_.rates[i];
+  add_drift();
   ask(h);
   warm_.recall(contacts, motions_, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);

@@ -25,11 +25,18 @@ struct Law {
   double slack_m = 1e-4;           // overlap that is not repaired
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
+  double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
 };
 
 struct Surface {
   double friction = 0.5,
          restitution = 0;  // a pair takes the geometric mean of friction and the smaller restitution
+};
+
+// What moves as one, by value: a free body, or all links of a system.
+struct UnitState {
+  FreeBody body;  // velocity: of now
+  articulated::ArticulatedSystem::State joints;
 };
 
 class World {
@@ -51,6 +58,23 @@ class World {
   }
   // Acts during the next step.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
+
+  // Units: free bodies and systems in the order in which they were added, the free bodies first. Of a body; -1: it
+  // does not move. unit_bodies: its bodies, into `out`, appended.
+  int units() const { return static_cast<int>(free_.size() + systems_.size()); }
+  int unit_of(int body) const;
+  void unit_bodies(int unit, std::vector<int>& out) const;
+  // Only these units, ascending, are there from now on: the others keep their state, and stand still for what
+  // touches them. All of them at first. A step costs what the active ones do. Realtime-safe once its lists have
+  // grown.
+  void set_active(std::span<const int> units);
+  std::span<const int> active_units() const { return active_; }
+  // Their bodies, ascending.
+  std::span<const int> active_bodies() const { return active_bodies_; }
+  // The state of a unit at the end of its last step: put into another world of the same units, it goes on there,
+  // whatever the steps of the two. Realtime-safe once the lists of `out` have grown.
+  void copy_state(int unit, UnitState& out) const;
+  void set_state(int unit, const UnitState& state);
 
   // contacts: of the present poses, ordered by their shapes, with gaps (negative depth) out to where a step may
   // lead; each point's normal_force_N is filled in, mean over the step, blows included. Deterministic.
@@ -80,16 +104,27 @@ class World {
     bool has_rows = false, touched = false;
   };
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void activate_all();
+  void add_drift();
   void start_velocities(std::span<const Manifold> contacts, double h);
   void build(std::span<const Manifold> contacts, double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
   void ask(double h);
   void sweep();
   void finish(double h);
+  void finish(std::size_t system, double h);
   int mover_number(const Mover& m) const;
+  const Mover& mover(int body) const {
+    static constexpr Mover kStill{};
+    return present_[index(body)] ? movers_[index(body)] : kStill;
+  }
 
   Law law_;
   std::vector<Mover> movers_;
+  std::vector<char> present_;                // of each body: its unit is active
+  std::vector<int> active_, active_bodies_;  // ascending; empty before the first step
+  std::vector<int> body_of_;                 // of each free body
+  bool chosen_ = false;                      // else all are active
   std::vector<Surface> surfaces_;
   std::vector<FreeBody> free_;
   std::vector<System> systems_;

@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kMostKept = 16384;
 
 void archive(StateArchive& a, FreeBody& b) {
-  a(b.centre_m), a(b.orientation), a(b.velocity_m_s), a(b.spin_rad_s), a(b.force_N), a(b.moment_N_m);
+  a(b.centre_m), a(b.orientation), a(b.velocity_m_s), a(b.step_s), a(b.spin_rad_s), a(b.force_N), a(b.moment_N_m);
   a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
 }
 
