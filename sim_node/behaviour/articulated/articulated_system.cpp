@@ -88,6 +88,12 @@ void ArticulatedSystem::set_state(const State& state) {
   slope_known_ = placed_ = false;
 }
 
+void ArticulatedSystem::set_burden(const Burden& burden) {
+  loads_ = burden.loads;
+  loaded_ = burden.loaded;
+  slope_known_ = false;
+}
+
 void ArticulatedSystem::add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
   loads_.force_N[static_cast<std::size_t>(link)] += force_N;
   add_moment(link, (point_m - dynamics().centre_m(link)).cross(force_N));

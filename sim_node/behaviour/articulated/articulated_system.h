@@ -35,6 +35,15 @@ class ArticulatedSystem {
   const State& state() const { return state_; }
   void set_state(const State& state);
 
+  // The loads of the next step, copied out and in likewise.
+  struct Burden {
+    Loads loads;
+    bool loaded;
+  };
+  Burden burden() const { return {loads_, loaded_}; }
+  void copy_burden(Burden& out) const { out.loads = loads_, out.loaded = loaded_; }
+  void set_burden(const Burden& burden);
+
   // Act during the next step only; force N at a point of the world m, moment N m.
   void add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
   void add_moment(int link, const Eigen::Vector3d& moment_N_m);

@@ -86,6 +86,26 @@ class World {
   // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
   void archive(StateArchive& a);
 
+  // All that a step changes of the active units, so that it can be taken back.
+  struct Kept {
+    std::vector<FreeBody> free;
+    std::vector<articulated::ArticulatedSystem::State> states;
+    std::vector<articulated::ArticulatedSystem::Burden> burdens;
+    std::vector<JointMemory> memories;
+    std::vector<BodyMotion> motions;  // of the active bodies
+    WarmStart warm;
+  };
+  // Realtime-safe once the lists of `out` have grown. The active units must be the same until it is taken back.
+  void keep(Kept& out);
+  void take_back(const Kept& kept);
+  // What acted in the step after which this was kept acts in the next one too.
+  void load_again(const Kept& kept);
+  // Puts a unit where it was, at rest.
+  void hold(int unit, const Kept& kept);
+  // Moves what overlaps apart, along the shortest way that the contacts leave and as inertia divides it: positions
+  // alone, no speed comes of it. contacts: of the present poses; overlaps deeper than most_m are left alone.
+  void separate(std::span<const Manifold> contacts, double most_m);
+
   // After a step (or none): velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
@@ -107,9 +127,14 @@ class World {
   void activate_all();
   void add_drift();
   void start_velocities(std::span<const Manifold> contacts, double h);
-  void build(std::span<const Manifold> contacts, double h);
+  void build_rows(std::span<const Manifold> contacts);
+  void build_joints(double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
   void ask(double h);
+  void tell(std::span<Manifold> contacts, double h) const;
+  void weigh_anew(std::span<const Manifold> contacts);
+  void separate(std::size_t system);
+  static void place(BodyMotion& m, const BodyMotion& at);
   void sweep();
   void finish(double h);
   void finish(std::size_t system, double h);
