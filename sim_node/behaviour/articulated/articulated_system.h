@@ -49,6 +49,10 @@ class ArticulatedSystem {
   void add_moment(int link, const Eigen::Vector3d& moment_N_m);
   // Acts along a degree of freedom from now on, N m or N.
   void set_torque(int dof, double torque);
+  // Hold from now on.
+  void set_gravity(int link, const Eigen::Vector3d& gravity_m_s2);
+  void set_motor(int dof, double effort, double rate);
+  void set_friction(int dof, double friction);
 
   // Of every dof, at the present state. Realtime-safe: yes.
   std::span<const double> accelerations();
@@ -75,7 +79,7 @@ class ArticulatedSystem {
   void refresh();
   double relative_error() const;
 
-  std::unique_ptr<const Tree> tree_;
+  std::unique_ptr<Tree> tree_;
   Accuracy accuracy_;
   Dynamics dynamics_;
   Loads loads_;

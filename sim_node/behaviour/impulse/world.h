@@ -106,6 +106,22 @@ class World {
   // alone, no speed comes of it. contacts: of the present poses; overlaps deeper than most_m are left alone.
   void separate(std::span<const Manifold> contacts, double most_m);
 
+  // What may be set between steps; each holds from the next one on. Velocities of a link are those that it has at the
+  // instant when its joints begin to hold: the others take their share, as from a blow (Featherstone 2008, section
+  // 11.7). False: the body is not free, or has no such axis.
+  void set_gravity(int body, const Eigen::Vector3d& gravity_m_s2);
+  bool set_mass(int body, double mass_kg);  // the inertia in proportion
+  bool set_pose(int body, const Eigen::Vector3d& centre_m, const Eigen::Quaterniond& orientation);
+  void set_velocity(int body, const Eigen::Vector3d& velocity_m_s);
+  void set_spin(int body, const Eigen::Vector3d& spin_rad_s);
+  void set_surface(int shape, const Surface& surface) { surfaces_[index(shape)] = surface; }
+  const Surface& surface(int shape) const { return surfaces_[index(shape)]; }
+  // axis: of the joint that carries this link, as its LinkDef numbers them.
+  bool set_motor(int body, int axis, double effort, double rate);
+  bool set_joint_friction(int body, int axis, double friction);
+  // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
+
   // After a step (or none): velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
@@ -134,6 +150,8 @@ class World {
   void tell(std::span<Manifold> contacts, double h) const;
   void weigh_anew(std::span<const Manifold> contacts);
   void separate(std::size_t system);
+  void refresh(System& system);
+  int dof_of(int body, int axis) const;
   static void place(BodyMotion& m, const BodyMotion& at);
   void sweep();
   void finish(double h);
