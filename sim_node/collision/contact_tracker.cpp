@@ -174,7 +174,11 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
                             std::span<const BodyMotion> bodies) {
   const Manifold* struck = solved && solved->impact.blows > 0 ? solved : nullptr;
   const bool touched = before && before->touching;
-  const bool touches = near && -deepest(*near) <= (touched ? kParted_m : kTouch_m);
+  // Penalty presses ahead of the surfaces, in a shell.
+  const bool pressed = solved && !struck && std::any_of(solved->used().begin(), solved->used().end(),
+                                                        [](const ManifoldPoint& p) { return p.normal_force_N > 0; });
+  const double within = pressed ? settings_.contact_tolerance_m : touched ? kParted_m : kTouch_m;
+  const bool touches = near && -deepest(*near) <= within;
   if (!before && !struck && !touches) return;
   LiveContact& c = next_.emplace_back();
   if (before)
@@ -195,7 +199,8 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
     meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), meeting(met, i));
   }
   if (touches) {
-    const Manifold met = of_points(*near, [](const ManifoldPoint& p) { return -p.depth_m <= kParted_m; });
+    const double far = std::max(within, kParted_m);
+    const Manifold met = of_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; });
     remember(c, met, bodies, touched);
     if (struck) return;
     // The impact was inside the step: where the overlap began.

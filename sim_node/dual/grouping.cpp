@@ -12,12 +12,12 @@ Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, 
     : bodies_(std::move(bodies)), limits_(limits), rule_(rule) {
   const std::size_t n = bodies_.size();
   late_ways_.resize(n);
+  is_late_.resize(n);
   inside_.resize(n);
   kicks_.resize(n);
   member_.resize(n);
   wanted_at_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    radii_m_.push_back(bodies_[i].radius_m);
     if (bodies_[i].inverse_mass_1_kg > 0) movers_.push_back(static_cast<int>(i));
     const int system = bodies_[i].system;
     if (system < 0) continue;
@@ -61,6 +61,14 @@ void Grouping::enter(int index, Kick kick, sync::SimTime now, std::span<const Bo
   member_[i] = 1;
   kicks_[i] = kick;
   inside_[i] = swept(i, bodies[i], left_s(now));
+  // Who comes from outside is where its way has led it by now.
+  if (!all_have_ways_ && !is_late_[i]) {
+    const SweptSphere& way = ways_->of(index);
+    inside_[i].centre_m =
+        way.centre_m + way.velocity_m_s * (held_ ? held_after_s_ : sync::to_seconds(now - step_began_));
+    inside_[i].velocity_m_s = way.velocity_m_s;
+    inside_[i].pad_m += 2 * way.pad_m;
+  }
   haptic_.push_back(index);
 }
 
@@ -68,6 +76,8 @@ void Grouping::enter(int index, Kick kick, sync::SimTime now, std::span<const Bo
 void Grouping::find_outside(const Bounds& query) {
   found_.clear();
   ways_->find(query, found_);
+  // Who was in the group has no way, whatever was computed before it came into it.
+  std::erase_if(found_, [&](int j) { return is_late_[static_cast<std::size_t>(j)] != 0; });
   found_.insert(found_.end(), late_.begin(), late_.end());
 }
 
@@ -79,7 +89,8 @@ void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime
     const auto body = static_cast<std::size_t>(j);
     if (member_[body]) continue;
     SweptSphere other = way_of(j);
-    other.centre_m += other.velocity_m_s * passed;
+    other.centre_m += other.velocity_m_s * (held_ ? held_after_s_ : passed);
+    if (held_) other.velocity_m_s.setZero();
     const double meeting =
         first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
     if (meeting < 0) continue;
@@ -150,6 +161,38 @@ void Grouping::stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodi
   for (const int i : before_) leaves_[static_cast<std::size_t>(i)] = 0;
 }
 
+void Grouping::note(std::span<const std::pair<int, int>> touching) {
+  touching_.clear();
+  for (const auto& [a, b] : touching) {
+    touching_.emplace_back(a, b);
+    touching_.emplace_back(b, a);
+  }
+  std::sort(touching_.begin(), touching_.end());
+}
+
+// Who has come in a call in which nobody leaves.
+void Grouping::tell(sync::SimTime now) {
+  std::sort(haptic_.begin(), haptic_.end());
+  entered_.clear();
+  left_.clear();
+  std::set_difference(haptic_.begin(), haptic_.end(), before_.begin(), before_.end(),
+                      std::back_inserter(entered_));
+  for (const int i : entered_) wanted_at_[static_cast<std::size_t>(i)] = now;
+}
+
+void Grouping::hold_step(sync::SimTime now, std::span<const BodyMotion> bodies,
+                         std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
+  if (!held_) held_after_s_ = sync::to_seconds(now - step_began_);
+  held_ = true;
+  step_began_ = now;
+  note(touching);
+  before_ = haptic_;
+  close(now, bodies, tools);
+  enter_asked(now, bodies);
+  close(now, bodies, tools);
+  tell(now);
+}
+
 void Grouping::enter_asked(sync::SimTime now, std::span<const BodyMotion> bodies) {
   for (const int body : asked_) {
     enter(body, {}, now, bodies);
@@ -160,36 +203,45 @@ void Grouping::enter_asked(sync::SimTime now, std::span<const BodyMotion> bodies
 
 void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
                           std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
-  strays_m_.clear();
-  for (const int i : movers_) strays_m_.push_back(strays_m[static_cast<std::size_t>(i)] + limits_.tolerance_m);
-  own_ways_.set(movers_, bodies, radii_m_, strays_m_, touching, sync::to_seconds(limits_.horizon));
-  begin_step(now, own_ways_, bodies, {}, tools);
+  straight_.clear();
+  for (const int i : movers_) {
+    const auto k = static_cast<std::size_t>(i);
+    straight_.push_back(
+        {bodies[k].centre_m, bodies[k].velocity_m_s, bodies_[k].radius_m, strays_m[k] + limits_.tolerance_m});
+  }
+  own_ways_.set(bodies.size(), movers_, straight_, touching, sync::to_seconds(limits_.horizon));
+  begin(now, own_ways_, true, bodies, {}, tools, true);
 }
 
 void Grouping::begin_step(sync::SimTime now, const Ways& ways, std::span<const BodyMotion> bodies,
                           std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
                           bool may_leave) {
+  begin(now, ways, false, bodies, touching, tools, may_leave);
+}
+
+void Grouping::begin(sync::SimTime now, const Ways& ways, bool of_all, std::span<const BodyMotion> bodies,
+                     std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
+                     bool may_leave) {
   step_began_ = now;
+  all_have_ways_ = of_all;
   ways_ = &ways;
+  held_ = false;
+  for (const int i : late_) is_late_[static_cast<std::size_t>(i)] = 0;
   late_.clear();
-  touching_.clear();
-  for (const auto& [a, b] : touching) {
-    touching_.emplace_back(a, b);
-    touching_.emplace_back(b, a);
-  }
-  std::sort(touching_.begin(), touching_.end());
+  note(touching);
   std::swap(before_, haptic_);
   haptic_.clear();
   for (const int i : before_) {
     member_[static_cast<std::size_t>(i)] = 0;
     // Until it is known whether it stays, and should it leave, it is where nobody has computed it: on its way it
     // may fall, and turn round.
-    if (ways.has(i)) continue;
+    if (all_have_ways_) continue;
     const double t = left_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
     SweptSphere& way = late_ways_[static_cast<std::size_t>(i)] =
         swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
     way.pad_m = bend_m(limits_.gravity_m_s2, t) + 2 * speed * t + limits_.tolerance_m;
     late_.push_back(i);
+    is_late_[static_cast<std::size_t>(i)] = 1;
   }
   if (rule_ == GroupingRule::kKim2005) {
     close_as_kim(bodies, tools);
@@ -204,7 +256,6 @@ void Grouping::begin_step(sync::SimTime now, const Ways& ways, std::span<const B
     stay_or_leave(now, bodies);
     close(now, bodies, tools);
   }
-  std::erase_if(late_, [&](int i) { return member_[static_cast<std::size_t>(i)] != 0; });
   std::sort(haptic_.begin(), haptic_.end());
   entered_.clear();
   left_.clear();
@@ -229,14 +280,13 @@ bool Grouping::strayed(sync::SimTime now, std::span<const BodyMotion> bodies,
 void Grouping::watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
   entered_.clear();
   left_.clear();
-  if (rule_ == GroupingRule::kKim2005 || !strayed(now, bodies, tools)) return;
-  ++alarms_;
+  const bool wanted = !asked_.empty();
+  if (!wanted && (rule_ == GroupingRule::kKim2005 || !strayed(now, bodies, tools))) return;
+  if (!wanted) ++alarms_;
   before_ = haptic_;
+  enter_asked(now, bodies);
   close(now, bodies, tools);
-  std::sort(haptic_.begin(), haptic_.end());
-  std::set_difference(haptic_.begin(), haptic_.end(), before_.begin(), before_.end(),
-                      std::back_inserter(entered_));
-  for (const int i : entered_) wanted_at_[static_cast<std::size_t>(i)] = now;
+  tell(now);
 }
 
 }  // namespace tactus::sim

@@ -67,6 +67,9 @@ class Grouping {
   // straight way.
   void begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> strays_m,
                   std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
+  // The step is over and the next is not there: what is outside stands still where it came to. Bodies only enter.
+  void hold_step(sync::SimTime now, std::span<const BodyMotion> bodies,
+                 std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
   // From the next call on the body is in the group for a while, whatever reaches it: something acts on it.
   void want(int body) { asked_.push_back(body); }
   // A haptic tick, before its contacts are sought: where something is further from its straight way than its pad,
@@ -94,11 +97,15 @@ class Grouping {
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
   void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
   double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
+  void begin(sync::SimTime now, const Ways& ways, bool of_all, std::span<const BodyMotion> bodies,
+             std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools, bool may_leave);
+  void note(std::span<const std::pair<int, int>> touching);
+  void tell(sync::SimTime now);
   void stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodies);
   bool reaches_what_stays(int body, sync::SimTime now);
   void enter_asked(sync::SimTime now, std::span<const BodyMotion> bodies);
   const SweptSphere& way_of(int body) const {
-    return ways_->has(body) ? ways_->of(body) : late_ways_[static_cast<std::size_t>(body)];
+    return is_late_[static_cast<std::size_t>(body)] ? late_ways_[static_cast<std::size_t>(body)] : ways_->of(body);
   }
   void find_outside(const Bounds& query);
   bool strayed(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) const;
@@ -114,9 +121,12 @@ class Grouping {
   // Bodies that have just left: nobody has computed their ways yet.
   std::vector<int> late_;
   std::vector<SweptSphere> late_ways_;
-  std::vector<double> radii_m_;
   std::vector<int> movers_, asked_;
-  std::vector<double> strays_m_;
+  std::vector<SweptSphere> straight_;
+  std::vector<char> is_late_;
+  bool all_have_ways_ = false;
+  bool held_ = false;  // what is outside stands still, where it was so long after the step had begun
+  double held_after_s_ = 0;
   std::vector<char> leaves_;
   // Of the group, from watched_from_ on.
   sync::SimTime watched_from_{};

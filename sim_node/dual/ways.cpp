@@ -2,21 +2,19 @@
 
 namespace tactus::sim {
 
-void Ways::set(std::span<const int> members, std::span<const BodyMotion> motions, std::span<const double> radii_m,
-               std::span<const double> strays_m, std::span<const std::pair<int, int>> touching, double horizon_s) {
+void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
+               std::span<const std::pair<int, int>> touching, double horizon_s) {
   for (const int body : members_) at_[index(body)] = -1;
-  at_.resize(motions.size(), -1);
+  at_.resize(bodies, -1);
   members_.assign(members.begin(), members.end());
-  ways_.clear();
+  ways_.assign(ways.begin(), ways.end());
   boxes_.clear();
   for (std::size_t k = 0; k < members.size(); ++k) {
-    const std::size_t i = index(members[k]);
-    at_[i] = static_cast<int>(k);
-    ways_.push_back({motions[i].centre_m, motions[i].velocity_m_s, radii_m[i], strays_m[k]});
-    boxes_.push_back(bounds_of(ways_.back(), horizon_s));
+    at_[index(members[k])] = static_cast<int>(k);
+    boxes_.push_back(bounds_of(ways_[k], horizon_s));
   }
   grid_.build(boxes_);
-  first_.assign(motions.size() + 1, 0);
+  first_.assign(bodies + 1, 0);
   for (const auto& [a, b] : touching) ++first_[index(a) + 1], ++first_[index(b) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   beside_.resize(2 * touching.size());

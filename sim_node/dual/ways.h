@@ -6,18 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
 #include "sim_node/dual/bounds_grid.h"
 
 namespace tactus::sim {
 
 class Ways {
  public:
-  // members: ascending numbers of the bodies whose ways these are. motions: of every body, at the beginning of the
-  // step; velocities those of the straight ways. radii_m: of every body. strays_m: of each member, how far it will
-  // be at most from its straight way. touching: pairs of bodies. Realtime-safe once its lists have grown.
-  void set(std::span<const int> members, std::span<const BodyMotion> motions, std::span<const double> radii_m,
-           std::span<const double> strays_m, std::span<const std::pair<int, int>> touching, double horizon_s);
+  // members: ascending numbers of bodies of the world, which has so many; ways: of each, from the beginning of the
+  // step on. touching: pairs of bodies. Realtime-safe once its lists have grown.
+  void set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
+           std::span<const std::pair<int, int>> touching, double horizon_s);
 
   bool has(int body) const { return at_[index(body)] >= 0; }
   // Of a member, from the beginning of the step on.

@@ -27,6 +27,10 @@ struct Coupling {
   std::size_t jacobian = 0, response = 0;  // where each 3 x rates, row-major, begins in the pool
 };
 
+// How a point presses before its surfaces meet: not at all, with a spring and a damper of the end of the step, or with
+// an impulse that is given.
+enum class Press { kNone, kSoft, kGiven };
+
 // In its own axes: normal (from a to b), and two tangents. Impulses act on b, and oppositely on a.
 struct ContactPoint {
   int a = 0, b = 0;  // twists; 0 too for a link
@@ -43,6 +47,9 @@ struct ContactPoint {
   double blow_N_s = 0;                                // along the normal, of collisions before
   int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
   int visit = -1;                                     // the one of the sweep at which it was last solved
+  Press press = Press::kNone;
+  double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
+  double pressed_N_s = 0;                        // kGiven
 };
 
 // The points of one manifold.
@@ -68,6 +75,10 @@ class ContactRows {
   // Of the surface of b against that of a, in the point's axes.
   Eigen::Vector3d velocity(const ContactPoint& p, const Velocities& v) const;
   void apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  // The same as solve() where something presses before the surfaces meet.
+  static Eigen::Vector3d answer(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v) {
+    return p.press == Press::kNone ? solve(p, impulse, v) : solve_pressed(p, impulse, v);
+  }
   // Completes the mobility from the arms and couplings; call when those are set.
   void weigh(ContactPoint& p) const;
 
@@ -79,6 +90,8 @@ class ContactRows {
  private:
   void add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const;
   void apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  static Eigen::Vector3d solve_pressed(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                       const Eigen::Vector3d& v);
   // alone: normal velocity without an impulse here.
   static Eigen::Vector3d solve_sliding(const ContactPoint& p, const Eigen::Vector3d& impulse,
                                        const Eigen::Vector3d& v, double alone);

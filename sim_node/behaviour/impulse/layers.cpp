@@ -74,7 +74,7 @@ void Layers::settle(ContactRows& rows, Velocities& v) {
       for (ContactPoint& p : above_.points) {
         Eigen::Vector3d u = above_.velocity(p, v) + p.drift_m_s;
         u.x() -= p.least_speed_m_s;
-        const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, u), by = next - p.impulse;
+        const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, u), by = next - p.impulse;
         p.impulse = next;
         above_.apply(p, by, v);
       }

@@ -179,6 +179,7 @@ void World::build_joints(double h) {
     if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
       append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
+      append_ball_friction(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
         joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
     }
@@ -216,7 +217,7 @@ void World::sweep() {
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::solve(p, p.impulse, v), by = next - p.impulse;
+    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v), by = next - p.impulse;
     const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
     if (change == 0) return 0.0;
     p.impulse = next;
@@ -327,9 +328,11 @@ void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build_rows(contacts);
   build_joints(h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  const bool presses = law_.penalty.stiffness_N_m > 0;
+  if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
   ask(h);
+  if (presses) press(rows_, law_.penalty, velocity_, h);
   warm_.recall(contacts, motions_, h, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();

@@ -12,6 +12,7 @@
 #include "sim_node/behaviour/impulse/free_body.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
 #include "sim_node/behaviour/impulse/layers.h"
+#include "sim_node/behaviour/impulse/penalty.h"
 #include "sim_node/behaviour/impulse/warm_start.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/state/state_archive.h"
@@ -26,6 +27,7 @@ struct Law {
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
   double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
+  Penalty penalty = {};            // instead of collisions with restitution
 };
 
 struct Surface {
@@ -63,6 +65,8 @@ class World {
   // does not move. unit_bodies: its bodies, into `out`, appended.
   int units() const { return static_cast<int>(free_.size() + systems_.size()); }
   int unit_of(int body) const;
+  // The body that a link's joint hangs it on; -1: the world, or no link.
+  int parent_of(int body) const;
   void unit_bodies(int unit, std::vector<int>& out) const;
   // Only these units, ascending, are there from now on: the others keep their state, and stand still for what
   // touches them. All of them at first. A step costs what the active ones do. Realtime-safe once its lists have

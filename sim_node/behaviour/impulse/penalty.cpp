@@ -1,0 +1,51 @@
+#include "sim_node/behaviour/impulse/penalty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::sim::impulse {
+
+void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
+  for (ContactPoint& p : rows.points) {
+    const double inside = penalty.thickness_m - p.gap_m;
+    const double damping =
+        penalty.damping_N_s_m * std::clamp(inside / (kDamperSetsIn * penalty.thickness_m), 0.0, 1.0);
+    if (penalty.is_explicit) {
+      // Of the step before: what acts in this one is not in it yet, or what rests would seem to sink.
+      const double closing = 2 * p.drift_m_s.x() - rows.velocity(p, velocity).x();
+      p.press = Press::kGiven;
+      p.pressed_N_s = inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
+    } else {
+      const SoftRow row = soft_row(penalty.stiffness_N_m, damping, h);
+      p.press = Press::kSoft;
+      p.softness_1_kg = row.cfm_m_s_N / h;
+      p.soft_speed_m_s = row.erp * inside / h;
+    }
+  }
+}
+
+// Normal first, then friction within its cone: sweeps bring the two together.
+Eigen::Vector3d ContactRows::solve_pressed(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                           const Eigen::Vector3d& v) {
+  const double k = p.mobility(0, 0);
+  double normal = p.pressed_N_s;
+  if (p.press == Press::kSoft) {
+    const double lacks = v.x() + p.least_speed_m_s - p.soft_speed_m_s + p.softness_1_kg * impulse.x();
+    normal = std::max(0.0, impulse.x() - lacks / (k + p.softness_1_kg));
+  }
+  // The shell is run through: the surfaces meet.
+  if (v.x() + k * (normal - impulse.x()) < 0) normal = std::max(0.0, impulse.x() - v.x() / k);
+  const Eigen::Vector2d sliding = v.tail<2>() + p.mobility.block<2, 1>(1, 0) * (normal - impulse.x());
+  const double a = p.mobility(1, 1), b = p.mobility(1, 2), d = p.mobility(2, 2), det = a * d - b * b;
+  const Eigen::Vector2d stuck =
+      impulse.tail<2>() -
+      Eigen::Vector2d(d * sliding.x() - b * sliding.y(), a * sliding.y() - b * sliding.x()) / det;
+  const double most = p.friction * normal;
+  if (stuck.squaredNorm() <= most * most) return {normal, stuck.x(), stuck.y()};
+  const Eigen::Vector2d slides = impulse.tail<2>() - sliding / p.sliding_mobility;
+  const double size = slides.norm();
+  if (size == 0) return {normal, 0, 0};
+  return {normal, slides.x() * most / size, slides.y() * most / size};
+}
+
+}  // namespace tactus::sim::impulse
