@@ -80,7 +80,7 @@ void ImpulseSolver::read() {
 // After something was set: the motions and contacts of now.
 void ImpulseSolver::look() {
   read();
-  source_.find(world_->motions(), world_->active_bodies(), step_s_, contacts_);
+  source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, step_s_), contacts_);
 }
 
 void ImpulseSolver::step(double h) {

@@ -17,8 +17,8 @@ constexpr double kRearm = 0.5;
 // than this beyond the motion of the surfaces did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces nearer than this touch: design: four times what the solver leaves between surfaces that rest (impulse::Law),
-// so that its residual is no gap. What touched parts when it is further away than this.
+// Surfaces nearer than this touch: design: twice what the solver leaves between surfaces that rest (impulse::Law), so
+// that its residual is no gap. What touched parts when it is further away than this.
 constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {

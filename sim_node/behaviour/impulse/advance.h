@@ -41,20 +41,24 @@ class Advance {
   // extents: of every body of the world.
   explicit Advance(std::vector<Extent> extents) : extents_(std::move(extents)) {}
 
-  // contacts: of the present poses, found for a step of h_s; those of the new poses afterwards, for another such step.
+  // How far ahead contacts are to be sought for a step of h_s: all of it, or less when something is fast.
+  double horizon_s(const World& world, double h_s) const;
+
+  // contacts: of the present poses, found for a step of horizon_s(); those of the new poses afterwards, for another such
+  // step.
   // solved: what the step did to them. Realtime-safe once its lists have grown.
   const Report& step(World& world, ContactSource& source, double h_s, std::vector<Manifold>& contacts,
                      std::vector<Manifold>& solved);
 
  private:
   // One try of a piece of dt: false: it was taken back, and dt or the contacts have changed.
-  bool attempt(World& world, ContactSource& source, double& dt, double finest_s, double next_s,
+  bool attempt(World& world, ContactSource& source, double& dt, double finest_s, double h_s,
                std::vector<Manifold>& contacts);
   int pieces_for(const World& world, std::span<const Manifold> contacts, double dt) const;
   bool came_further(const World& world, double dt);
   bool lacks_pair(std::span<const Manifold> contacts) const;
   double worst(std::span<const Manifold> before, double limit_m) const;
-  void clear_overlaps(World& world, ContactSource& source, double next_s, std::span<const Manifold> before);
+  void clear_overlaps(World& world, ContactSource& source, double next_s);
   void hold_back(World& world, ContactSource& source, double next_s, std::span<const Manifold> before);
   void add_to(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun_s, double dt, double h_s);
 
