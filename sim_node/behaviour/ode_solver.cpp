@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/behaviour/behaviour_model.h"
 #include "sim_node/behaviour/ode_engine.h"
 
 namespace tactus::sim {
@@ -51,7 +52,8 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
 }
 
 Solver::Solver(const WorldDef& world, const Settings& settings) : settings_(settings) {
-  if (settings.solver == "impulse")
+  if (const std::string why = refusal(world, settings); !why.empty()) throw std::runtime_error(why);
+  if (behaviour_model(settings.solver).impulses)
     impulse_ = std::make_unique<ImpulseSolver>(world, settings);
   else
     start(world);

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim_node/behaviour/behaviour_model.h"
+
 namespace tactus::sim::impulse {
 namespace {
 
 using articulated::LinkDef;
-
-// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is allowed,
-// 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
-constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -20,12 +18,7 @@ class Builder {
   Builder(const WorldDef& def, const Settings& settings)
       : def_(def),
         settings_(settings),
-        world_(std::make_unique<World>(Law{.sweeps = settings.iterations,
-                                           .bounce_speed_m_s = settings.bounce_speed_m_s,
-                                           .slack_m = kSlack_m,
-                                           .repair = settings.contact_erp,
-                                           .repair_speed_m_s = settings.correcting_speed_m_s,
-                                           .shell_m = kShell_m})),
+        world_(std::make_unique<World>(law_of(settings))),
         placed_(def.bodies.size()),
         jointed_(def.bodies.size()),
         used_(def.joints.size()) {}
@@ -93,7 +86,8 @@ class Builder {
     if (placed_[index(body)])
       throw std::runtime_error(
           "sim_node: joint \"" + joint->name +
-          "\" closes a loop, which the solver \"impulse\" cannot do; remove it or choose quick or step");
+          "\" closes a loop, which the solver \"" +
+          settings_.solver + "\" cannot do; remove it or choose quick or step");
     placed_[index(body)] = true;
     const BodyDef& b = def_.bodies[index(body)];
     LinkDef l;
