@@ -17,8 +17,8 @@ constexpr double kRearm = 0.5;
 // than this beyond the motion of the surfaces did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces nearer than this touch: design: four times what the solver leaves between surfaces that rest (impulse::Law),
-// so that its residual is no gap. What touched parts when it is further away than this.
+// Surfaces nearer than this touch: design: twice what the solver leaves between surfaces that rest (impulse::Law), so
+// that its residual is no gap. What touched parts when it is further away than this.
 constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
@@ -174,7 +174,11 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
                             std::span<const BodyMotion> bodies) {
   const Manifold* struck = solved && solved->impact.blows > 0 ? solved : nullptr;
   const bool touched = before && before->touching;
-  const bool touches = near && -deepest(*near) <= (touched ? kParted_m : kTouch_m);
+  // Penalty presses ahead of the surfaces, in a shell.
+  const bool pressed = solved && !struck && std::any_of(solved->used().begin(), solved->used().end(),
+                                                        [](const ManifoldPoint& p) { return p.normal_force_N > 0; });
+  const double within = pressed ? settings_.contact_tolerance_m : touched ? kParted_m : kTouch_m;
+  const bool touches = near && -deepest(*near) <= within;
   if (!before && !struck && !touches) return;
   LiveContact& c = next_.emplace_back();
   if (before)
@@ -195,7 +199,8 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
     meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), meeting(met, i));
   }
   if (touches) {
-    const Manifold met = of_points(*near, [](const ManifoldPoint& p) { return -p.depth_m <= kParted_m; });
+    const double far = std::max(within, kParted_m);
+    const Manifold met = of_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; });
     remember(c, met, bodies, touched);
     if (struck) return;
     // The impact was inside the step: where the overlap began.

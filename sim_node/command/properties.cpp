@@ -124,8 +124,6 @@ std::string set_property(Simulation& simulation, const WorldDef& world, const st
                                 [&](const PropertyRow& r) { return r.owner == owner && r.name == property; });
   if (row == kProperties.end()) return no_such_property(owner, property);
   if (const std::string why = fits(*row, values); !why.empty()) return why;
-  if (!simulation.solver().takes_settings())
-    return "the solver impulse takes no changes while the world runs; choose solver = quick or step in the scene";
   if (owner == Owner::kBody) return set_of_body(simulation, world, body, property, values);
   if (owner == Owner::kJoint) return set_of_joint(simulation, of, property, values);
   simulation.solver().set_gravity(Vector3d(values.data()));
