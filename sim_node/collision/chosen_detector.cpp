@@ -2,24 +2,15 @@
 
 #include <algorithm>
 
+#include "sim_node/collision/layer_options.h"
+
 namespace tactus::sim {
-namespace {
-
-MeshContactOptions options_of(const Settings& s) {
-  return {.mode = s.contact_mode == "itouch2005" ? ContactMode::kItouch2005 : ContactMode::kComplete,
-          .remover = s.duplicate_remover == "adjacency"     ? DuplicateRemover::kAdjacency
-                     : s.duplicate_remover == "brute_force" ? DuplicateRemover::kBruteForce
-                                                            : DuplicateRemover::kHashed,
-          .isa = isa_named(s.isa)};
-}
-
-}  // namespace
 
 ChosenDetector::ChosenDetector(const WorldDef& world, const Settings& settings) {
   for (const ShapeDef& s : world.shapes) kinds_.push_back(s.kind);
   number_.resize(world.shapes.size(), -1);
   if (settings.detector == "ode") return;
-  detector_ = make_detector(settings.detector, options_of(settings));
+  detector_ = make_detector(settings.detector, layer_options(settings));
   triangles_only_ = settings.detector == "layers";
   if (detector_->abilities().separation) shell_m_ = settings.contact_tolerance_m;
   for (std::size_t i = 0; i < world.shapes.size(); ++i)

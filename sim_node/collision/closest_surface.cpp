@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus::sim {
 
@@ -52,7 +53,11 @@ SurfacePlane cylinder(const Vector3d& p, double radius, double half) {
 }  // namespace
 
 ClosestSurface::ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, double merge_angle_rad)
-    : kind_(shape.kind), same_direction_(std::cos(merge_angle_rad)), size_m_(shape.size_m) {
+    : ClosestSurface(shape, mesh ? std::make_shared<const TriangleTree>(mesh->vertices, mesh->indices) : nullptr,
+                     merge_angle_rad) {}
+
+ClosestSurface::ClosestSurface(const ShapeDef& shape, std::shared_ptr<const TriangleTree> tree, double merge_angle_rad)
+    : kind_(shape.kind), same_direction_(std::cos(merge_angle_rad)), size_m_(shape.size_m), tree_(std::move(tree)) {
   switch (kind_) {
     case ShapeKind::kBox: bound_m_ = 0.5 * size_m_.norm(); break;
     case ShapeKind::kSphere:
@@ -67,10 +72,9 @@ ClosestSurface::ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, 
     case ShapeKind::kPlane: bound_m_ = std::numeric_limits<double>::infinity(); break;
     case ShapeKind::kMesh:
     case ShapeKind::kHeightfield:
-      if (mesh != nullptr) tree_ = TriangleTree(mesh->vertices, mesh->indices);
-      if (tree_.empty()) break;
-      centre_ = tree_.box().center();
-      bound_m_ = 0.5 * tree_.box().sizes().norm();
+      if (!tree_ || tree_->empty()) break;
+      centre_ = tree_->box().center();
+      bound_m_ = 0.5 * tree_->box().sizes().norm();
       break;
   }
 }
@@ -97,14 +101,15 @@ void ClosestSurface::query(const Vector3d& place, double reach_m, std::vector<Su
 bool ClosestSurface::nearest_around(std::size_t candidate) const {
   const NearTriangle& c = near_[candidate];
   for (std::size_t i = 0; i < candidate && near_[i].distance_m < c.distance_m - kTie; ++i)
-    if (tree_.on_triangle(c.point, near_[i].triangle, kTie)) return false;
+    if (tree_->on_triangle(c.point, near_[i].triangle, kTie)) return false;
   return true;
 }
 
 void ClosestSurface::mesh_planes(const Vector3d& place, double reach_m, std::vector<SurfacePlane>& out) const {
   auto& triangles = near_;
   const auto nearer = [](const NearTriangle& a, const NearTriangle& b) { return a.distance_m < b.distance_m; };
-  tree_.near(place, reach_m, kMostNear, triangles);
+  if (!tree_) return;
+  tree_->near(place, reach_m, kMostNear, triangles);
   std::sort(triangles.begin(), triangles.end(), nearer);
   // At an edge or corner several triangles are equally near; the one that faces the place most tells inside from outside.
   const auto facing = [&](const NearTriangle& t) { return std::abs((place - t.point).dot(t.face_normal)); };
@@ -121,7 +126,7 @@ void ClosestSurface::mesh_planes(const Vector3d& place, double reach_m, std::vec
       return kept.normal.dot(normal) < same_direction_ && (kept.point - t.point).dot(normal) >= -kBehind &&
              (t.point - kept.point).dot(kept.normal) >= -kBehind;
     });
-    if (separate && nearest_around(i)) out.push_back({t.point, normal, outside ? t.distance_m : -t.distance_m});
+    if (separate && nearest_around(i)) out.push_back({t.point, normal, outside ? t.distance_m : -t.distance_m, tree_->number(t.triangle)});
   }
 }
 

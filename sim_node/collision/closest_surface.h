@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <vector>
 
 #include "sim_node/collision/triangle_tree.h"
@@ -13,16 +14,20 @@ struct SurfacePlane {
   Eigen::Vector3d point{0, 0, 0};   // on the surface
   Eigen::Vector3d normal{0, 0, 1};  // unit, out of the body
   double distance_m = 0;            // of the place from the point, negative inside
+  int triangle = -1;                // of a mesh
 };
 
 // One shape, ready for queries in its own frame.
 class ClosestSurface {
  public:
   static constexpr int kMaxPlanes = 4;
+  static constexpr double kMergeAngle_rad = 0.1745;  // default of the setting touch_merge_angle
 
   // mesh: the triangles of a mesh or heightfield, else ignored. Planes of a mesh whose directions differ by less than
   // merge_angle_rad are one.
-  ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, double merge_angle_rad = 0.1745);
+  ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, double merge_angle_rad = kMergeAngle_rad);
+  // The same with a tree that others may use too; null or empty: no mesh.
+  ClosestSurface(const ShapeDef& shape, std::shared_ptr<const TriangleTree> tree, double merge_angle_rad = kMergeAngle_rad);
 
   // Planes within `reach` of `place` (shape frame), nearest first, into `out`. A convex surface has one; a mesh has one
   // for each place that is nearer than all around it, so more where it is concave, and none of them cuts off another.
@@ -44,7 +49,7 @@ class ClosestSurface {
   Eigen::Vector3d size_m_;
   Eigen::Vector3d centre_{0, 0, 0};
   double bound_m_ = 0;
-  TriangleTree tree_;
+  std::shared_ptr<const TriangleTree> tree_;
   mutable std::vector<NearTriangle> near_;  // scratch: a query allocates nothing once it has grown
 };
 

@@ -2,11 +2,12 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 namespace tactus::sim {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"ode", "ccd", "ccd_mpr", "fcl", "layers"};
+constexpr std::array<std::string_view, 6> kNames{"ode", "ccd", "ccd_mpr", "fcl", "layers", "gaps"};
 
 std::string_view word(ShapeKind kind) {
   switch (kind) {
@@ -31,17 +32,19 @@ std::string Detector::refusal(ShapeKind a, ShapeKind b) const {
 
 std::span<const std::string_view> detector_names() { return kNames; }
 
-std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers) {
+std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers,
+                                        std::shared_ptr<MeshTrees> trees) {
   if (name == "ode") return make_ode_detector();
   if (name == "ccd" || name == "ccd_mpr") return make_ccd_detector(name == "ccd_mpr");
-  if (name == "layers") return make_layers_detector(layers);
+  if (name == "layers") return make_layers_detector(layers, std::move(trees));
+  if (name == "gaps" || name == "auto") return make_gaps_detector(layers, std::move(trees));
   if (name == "fcl") {
     if (auto fcl = make_fcl_detector()) return fcl;
     throw std::runtime_error(
         "sim_node: the detector \"fcl\" was not built in; install libfcl-dev and build again, or choose \"ode\"");
   }
   throw std::runtime_error("sim_node: the detector \"" + std::string(name) +
-                           "\" is unknown; choose ode, ccd, ccd_mpr, fcl or layers");
+                           "\" is unknown; choose auto, gaps, layers, ode, ccd, ccd_mpr or fcl");
 }
 
 }  // namespace tactus::sim

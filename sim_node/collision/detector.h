@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim_node/collision/layers/mesh_contact.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/collision/point_pair.h"
 #include "sim_node/scene/world_def.h"
 
@@ -49,14 +49,20 @@ class Detector {
 };
 
 // ode: dCollide of ODE. ccd, ccd_mpr: libccd, convex shapes, by GJK and EPA or by MPR. fcl: where it was built in.
-// layers: ours, for meshes, boxes and heightfields as triangles.
+// layers: ours, for meshes, boxes and heightfields as triangles. gaps: ours, for every pair; meshes by the layers.
+// auto: gaps.
 std::span<const std::string_view> detector_names();
-// Throws std::runtime_error with one sentence when the name is unknown or that detector was not built in.
-std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers = {});
+// Throws std::runtime_error with one sentence when the name is unknown or that detector was not built in. trees: of
+// the world whose shapes will be added, where others use them too.
+std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers = {},
+                                        std::shared_ptr<MeshTrees> trees = nullptr);
 
 std::unique_ptr<Detector> make_ode_detector();
 std::unique_ptr<Detector> make_ccd_detector(bool mpr);
 std::unique_ptr<Detector> make_fcl_detector();  // null: not built in
-std::unique_ptr<Detector> make_layers_detector(const MeshContactOptions& options);
+std::unique_ptr<Detector> make_layers_detector(const MeshContactOptions& options,
+                                               std::shared_ptr<MeshTrees> trees = nullptr);
+std::unique_ptr<Detector> make_gaps_detector(const MeshContactOptions& options,
+                                             std::shared_ptr<MeshTrees> trees = nullptr);
 
 }  // namespace tactus::sim

@@ -30,7 +30,7 @@ Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3
 TriangleTree::TriangleTree(const std::vector<Vector3d>& vertices, const std::vector<int>& indices) {
   const auto vertex = [&](std::size_t i) { return vertices[static_cast<std::size_t>(indices[i])]; };
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    Triangle t{vertex(i), vertex(i + 1), vertex(i + 2), {}};
+    Triangle t{vertex(i), vertex(i + 1), vertex(i + 2), {}, static_cast<int>(i / 3)};
     const Vector3d n = (t.b - t.a).cross(t.c - t.a);
     if (n.norm() < 1e-14) continue;  // m^2: an area below that of a square of 0.1 um
     t.normal = n.normalized();

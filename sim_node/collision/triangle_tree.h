@@ -27,12 +27,22 @@ class TriangleTree {
   void near(const Eigen::Vector3d& place, double reach_m, std::size_t most, std::vector<NearTriangle>& out) const;
   // Whether that point lies on the triangle, within a tolerance.
   bool on_triangle(const Eigen::Vector3d& point, int triangle, double tolerance_m) const;
+  // Calls visit(a, b, c, number in the mesh) for each triangle whose box meets that box.
+  template <class Visit>
+  void each_within(const Eigen::AlignedBox3d& box, Visit&& visit) const;
+  // Calls visit(corner, number of a triangle of it in the mesh) for the corners with n corner <= limit: each as often as
+  // it has triangles.
+  template <class Visit>
+  void each_corner_below(const Eigen::Vector3d& n, double limit_m, Visit&& visit) const;
   bool empty() const { return triangles_.empty(); }
+  // Of a triangle in the mesh, from NearTriangle::triangle.
+  int number(int triangle) const { return triangles_[static_cast<std::size_t>(triangle)].number; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
  private:
   struct Triangle {
     Eigen::Vector3d a, b, c, normal;
+    int number = -1;  // in the mesh
   };
   struct Node {
     Eigen::AlignedBox3d box;
@@ -41,9 +51,49 @@ class TriangleTree {
   };
   static constexpr int kLeaf = 4;
   int build(int first, int count);
+  // Of the leaves whose boxes `wanted` says yes to, and so to those above them.
+  template <class Wanted, class Visit>
+  void each(Wanted&& wanted, Visit&& visit) const;
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
 };
+
+template <class Wanted, class Visit>
+void TriangleTree::each(Wanted&& wanted, Visit&& visit) const {
+  if (nodes_.empty()) return;
+  int stack[64];  // deeper than any tree of 2^31 triangles halved at each level
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const int at = stack[--top];
+    const Node& node = nodes_[static_cast<std::size_t>(at)];
+    if (!wanted(node.box)) continue;
+    if (node.right >= 0) {
+      stack[top++] = node.right;
+      stack[top++] = at + 1;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) visit(triangles_[static_cast<std::size_t>(i)]);
+  }
+}
+
+template <class Visit>
+void TriangleTree::each_within(const Eigen::AlignedBox3d& box, Visit&& visit) const {
+  each([&](const Eigen::AlignedBox3d& b) { return b.intersects(box); },
+       [&](const Triangle& t) {
+         const Eigen::AlignedBox3d own(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c));
+         if (own.intersects(box)) visit(t.a, t.b, t.c, t.number);
+       });
+}
+
+template <class Visit>
+void TriangleTree::each_corner_below(const Eigen::Vector3d& n, double limit_m, Visit&& visit) const {
+  each([&](const Eigen::AlignedBox3d& b) { return n.dot(b.center()) - 0.5 * n.cwiseAbs().dot(b.sizes()) <= limit_m; },
+       [&](const Triangle& t) {
+         for (const Eigen::Vector3d* corner : {&t.a, &t.b, &t.c})
+           if (n.dot(*corner) <= limit_m) visit(*corner, t.number);
+       });
+}
 
 }  // namespace tactus::sim

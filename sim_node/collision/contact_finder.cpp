@@ -1,0 +1,92 @@
+#include "sim_node/collision/contact_finder.h"
+
+#include <algorithm>
+
+#include "sim_node/collision/layer_options.h"
+
+namespace tactus::sim {
+namespace {
+
+constexpr std::size_t kKinds = 7;
+constexpr ShapeKind kAllKinds[kKinds] = {ShapeKind::kBox,        ShapeKind::kSphere, ShapeKind::kCylinder,
+                                         ShapeKind::kCapsule,    ShapeKind::kPlane,  ShapeKind::kMesh,
+                                         ShapeKind::kHeightfield};
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t both(ShapeKind a, ShapeKind b) {
+  return static_cast<std::size_t>(a) * kKinds + static_cast<std::size_t>(b);
+}
+
+ManifoldPoint point_of(const PointPair& p) {
+  ManifoldPoint m;
+  m.point_m = (p.on_a_m + p.on_b_m) / 2;
+  m.normal = p.normal;
+  m.depth_m = -p.gap_m;
+  m.triangle_a = p.triangle_a, m.triangle_b = p.triangle_b;
+  return m;
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees)
+    : near_(world, settings.contact_tolerance_m, *(trees = trees ? trees : std::make_shared<MeshTrees>())),
+      number_(world.shapes.size(), -1),
+      chosen_number_(world.shapes.size(), -1),
+      same_place_m_(settings.contact_tolerance_m) {
+  const MeshContactOptions options = layer_options(settings);
+  gaps_ = make_detector("gaps", options, trees);
+  auto chosen = make_detector(settings.detector, options, trees);
+  const DetectorAbilities can = chosen->abilities();
+  if (can.separation && can.name != "gaps") chosen_ = std::move(chosen);
+  only_triangles_ = can.name == "layers";
+  chosen_takes_.resize(kKinds * kKinds, false);
+  for (std::size_t i = 0; chosen_ && i < kKinds; ++i)
+    for (const ShapeKind k : kAllKinds)
+      chosen_takes_[both(kAllKinds[i], k)] = chosen_->refusal(kAllKinds[i], k).empty();
+  for (std::size_t i = 0; i < world.shapes.size(); ++i) {
+    const ShapeDef& shape = world.shapes[i];
+    body_of_.push_back(shape.body);
+    kinds_.push_back(shape.kind);
+    if (world.bodies[index(shape.body)].tool >= 0) continue;
+    number_[i] = gaps_->add(shape, world);
+    if (chosen_ && chosen_takes_[both(shape.kind, shape.kind)]) chosen_number_[i] = chosen_->add(shape, world);
+  }
+}
+
+void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
+  const std::size_t a = index(pair.shape_a), b = index(pair.shape_b);
+  const auto ask = [&](Detector& detector, const std::vector<int>& numbers) {
+    detector.query(numbers[a], near_.pose(pair.shape_a), numbers[b], near_.pose(pair.shape_b), pair.reach_m,
+                   pairs_);
+  };
+  const bool meshed = kinds_[a] == ShapeKind::kMesh || kinds_[b] == ShapeKind::kMesh ||
+                      kinds_[a] == ShapeKind::kHeightfield || kinds_[b] == ShapeKind::kHeightfield;
+  bool found = chosen_ && chosen_number_[a] >= 0 && chosen_number_[b] >= 0 &&
+               chosen_takes_[both(kinds_[a], kinds_[b])] && (meshed || !only_triangles_);
+  if (found) {
+    ask(*chosen_, chosen_number_);
+    found = std::none_of(pairs_.begin(), pairs_.end(), [](const PointPair& p) { return p.pierced; });
+  }
+  if (!found) ask(*gaps_, number_);
+  if (pairs_.empty()) return;
+  points_.clear();
+  if (meshed && pairs_.size() > 1) {
+    patches_.make(pairs_, same_place_m_, patch_list_);
+    for (const ContactPatch& patch : patch_list_)
+      for (int i = 0; i < patch.count; ++i) points_.push_back(point_of(patch.points[index(i)]));
+  } else {
+    for (const PointPair& p : pairs_) points_.push_back(point_of(p));
+  }
+  Manifold& m = out.emplace_back();
+  m.shape_a = pair.shape_a, m.shape_b = pair.shape_b;
+  m.body_a = body_of_[a], m.body_b = body_of_[b];
+  reduce_points(points_, m);
+}
+
+void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,
+                         std::vector<Manifold>& out) {
+  out.clear();
+  for (const NearPair& pair : near_.find(bodies, active, h_s)) look(pair, out);
+}
+
+}  // namespace tactus::sim

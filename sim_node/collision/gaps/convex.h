@@ -1,0 +1,49 @@
+// A convex body as a core that is grown by a radius: what the search for the nearest points works on. Pure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "sim_node/scene/world_def.h"
+
+namespace tactus::sim::gaps {
+
+enum class Core { kPoint, kSegment, kBox, kCylinder, kTriangle };
+
+// In its own frame; segments and cylinders along z. A sphere is a point with a radius, a capsule a segment.
+struct Convex {
+  Core core = Core::kPoint;
+  Eigen::Vector3d half_m{0, 0, 0};  // of a box; (0, 0, half) of a segment; (radius, radius, half) of a cylinder
+  double round_m = 0;
+  std::array<Eigen::Vector3d, 3> corners_m;  // of a triangle
+};
+
+// A plane becomes the plate that stands for one that moves; see plate_offset(). Meshes and heightfields are none.
+Convex convex_of(const ShapeDef& shape);
+// From the frame of a plane to that of its plate, of the thickness that ODE's geometries give it.
+Eigen::Isometry3d plate_offset();
+
+// Point of the core furthest along d.
+inline Eigen::Vector3d support(const Convex& c, const Eigen::Vector3d& d) {
+  const auto side = [](double x, double half) { return x < 0 ? -half : half; };
+  switch (c.core) {
+    case Core::kPoint: return {0, 0, 0};
+    case Core::kSegment: return {0, 0, side(d.z(), c.half_m.z())};
+    case Core::kBox: return {side(d.x(), c.half_m.x()), side(d.y(), c.half_m.y()), side(d.z(), c.half_m.z())};
+    case Core::kCylinder: {
+      const double across = std::sqrt(d.x() * d.x() + d.y() * d.y());
+      const double k = across > 0 ? c.half_m.x() / across : 0;
+      return {k * d.x(), k * d.y(), side(d.z(), c.half_m.z())};
+    }
+    case Core::kTriangle: break;
+  }
+  const double x = d.dot(c.corners_m[0]), y = d.dot(c.corners_m[1]), z = d.dot(c.corners_m[2]);
+  return x >= y && x >= z ? c.corners_m[0] : y >= z ? c.corners_m[1] : c.corners_m[2];
+}
+
+// A smaller core of the same kind; what has no inside stays as it is.
+Convex shrunk(const Convex& c, double by_m);
+// Of a sphere around the middle of the core, with its radius.
+double bound_m(const Convex& c);
+
+}  // namespace tactus::sim::gaps

@@ -1,0 +1,94 @@
+#include "sim_node/collision/gaps/convex_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/collision/gaps/feature.h"
+#include "sim_node/collision/gaps/nearest_points.h"
+#include "sim_node/collision/gaps/parting.h"
+
+namespace tactus::sim::gaps {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// A corner stands for the least gap when it is as near to it, m.
+constexpr double kSame_m = 1e-9;
+
+ContactKind kind_of(const FacingList& found) {
+  return found.count > 2 ? ContactKind::kSurface : found.count == 2 ? ContactKind::kEdge : ContactKind::kPoint;
+}
+
+double least(const FacingList& found) {
+  double gap = 1e300;
+  for (int i = 0; i < found.count; ++i) gap = std::min(gap, found.at[static_cast<std::size_t>(i)].gap_m);
+  return gap;
+}
+
+// From cores in the frame of a to surfaces in the world.
+void append(const FacingList& found, const Vector3d& n, const Isometry3d& pose_a, double round_a, double round_b,
+            std::vector<PointPair>& out) {
+  PointPair p;
+  p.normal = pose_a.linear() * n;
+  p.kind = kind_of(found);
+  for (int i = 0; i < found.count; ++i) {
+    const Facing& f = found.at[static_cast<std::size_t>(i)];
+    p.on_a_m = pose_a * (f.on_a + round_a * n);
+    p.on_b_m = pose_a * (f.on_b - round_b * n);
+    p.gap_m = f.gap_m - round_a - round_b;
+    out.push_back(p);
+  }
+}
+
+}  // namespace
+
+void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, const Isometry3d& pose_b,
+                 double reach_m, std::vector<PointPair>& out) {
+  const Isometry3d a_from_b = pose_a.inverse(Eigen::Isometry) * pose_b;
+  const double rounds = a.round_m + b.round_m, reach = reach_m + rounds;
+  FacingList found;
+  const auto corners = [&](const Vector3d& n) {
+    facing(feature_along(a, Isometry3d::Identity(), n), feature_along(b, a_from_b, -n), n, reach, found);
+  };
+  // Most contacts are those of a face with what lies over it: then a corner over the face is as near as anything.
+  const Parting face = over_faces(a, b, a_from_b);
+  if (face.gap_m > reach) return;
+  if (face.gap_m > -kTouching_m) {
+    corners(face.along);
+    if (least(found) <= face.gap_m + kSame_m) return append(found, face.along, pose_a, a.round_m, b.round_m, out);
+  }
+  NearestPoints near;
+  const Apart apart = nearest_points(a, b, a_from_b, reach, near);
+  if (apart == Apart::kFar) return;
+  Vector3d n;
+  Facing nearest;
+  if (apart == Apart::kNear) {
+    n = (near.on_b - near.on_a) / near.distance_m;
+    nearest = {near.on_a, near.on_b, near.distance_m};
+  } else {
+    const Parting way = out_of_overlap(a, b, a_from_b);
+    n = way.along;
+    const Vector3d on_a = support(a, n), on_b = a_from_b * support(b, a_from_b.linear().transpose() * -n);
+    // Of edges that cross, the ends are not where they do; half way between is at the right height at least.
+    Vector3d flat = (on_a + on_b) / 2;
+    flat -= flat.dot(n) * n;
+    nearest = {flat + on_a.dot(n) * n, flat + on_b.dot(n) * n, way.gap_m};
+    if (way.gap_m > reach) return;
+  }
+  corners(n);
+  if (least(found) > nearest.gap_m + kSame_m) found.add(nearest);
+  append(found, n, pose_a, a.round_m, b.round_m, out);
+}
+
+void plane_pair(const Isometry3d& plane_pose, const Convex& b, const Isometry3d& pose_b, double reach_m,
+                std::vector<PointPair>& out) {
+  const Vector3d n = plane_pose.linear().col(2).normalized();
+  const double offset = n.dot(plane_pose.translation());
+  FacingList found;
+  facing_plane(feature_along(b, pose_b, -n), n, offset, reach_m + b.round_m, found);
+  append(found, n, Isometry3d::Identity(), 0, b.round_m, out);
+}
+
+}  // namespace tactus::sim::gaps

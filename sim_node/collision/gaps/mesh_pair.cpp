@@ -1,0 +1,98 @@
+#include "sim_node/collision/gaps/mesh_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/collision/gaps/convex_pair.h"
+
+namespace tactus::sim::gaps {
+
+using Eigen::AlignedBox3d;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// A point so near to a triangle lies on it; a place is nearer when it is so by more, m: rounding of a metre, a
+// million times.
+constexpr double kOn_m = 1e-9;
+
+AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
+  Vector3d half;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d d = to.linear().row(i);
+    half[i] = d.dot(support(c, d)) + c.round_m + grown_m;
+  }
+  return {to.translation() - half, to.translation() + half};
+}
+
+}  // namespace
+
+bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh) {
+  const double distance = (from - on_mesh).norm(), least = distance - std::max(kOn_m, 1e-6 * distance);
+  const Vector3d on(kOn_m, kOn_m, kOn_m);
+  bool nearest = true;
+  mesh.each_within({on_mesh - on, on_mesh + on},
+                   [&](const Vector3d& a, const Vector3d& b, const Vector3d& c, int) {
+                     if (!nearest || (closest_on_triangle(from, a, b, c) - from).norm() >= least) return;
+                     nearest = (closest_on_triangle(on_mesh, a, b, c) - on_mesh).norm() > kOn_m;
+                   });
+  return nearest;
+}
+
+void convex_mesh(const Convex& convex, const Isometry3d& pose, const TriangleTree& mesh,
+                 const Isometry3d& mesh_pose, double reach_m, std::vector<PointPair>& out) {
+  const Isometry3d mesh_from_world = mesh_pose.inverse(Eigen::Isometry), mesh_from_convex = mesh_from_world * pose;
+  Convex triangle;
+  triangle.core = Core::kTriangle;
+  mesh.each_within(box_of(convex, mesh_from_convex, reach_m),
+                   [&](const Vector3d& a, const Vector3d& b, const Vector3d& c, int number) {
+                     triangle.corners_m = {a, b, c};
+                     const std::size_t first = out.size();
+                     convex_pair(convex, pose, triangle, mesh_pose, reach_m, out);
+                     if (out.size() == first) return;
+                     const auto nearest = std::min_element(
+                         out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+                         [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
+                     const Vector3d from = nearest->on_a_m - convex.round_m * nearest->normal;
+                     if (nearest->gap_m + convex.round_m > kOn_m &&
+                         !nearest_around(mesh, mesh_from_world * from, mesh_from_world * nearest->on_b_m)) {
+                       out.resize(first);
+                       return;
+                     }
+                     for (std::size_t i = first; i < out.size(); ++i) out[i].triangle_b = number;
+                   });
+}
+
+void plane_mesh(const Isometry3d& plane_pose, const TriangleTree& mesh, const Isometry3d& mesh_pose,
+                double reach_m, std::vector<PointPair>& out) {
+  PointPair p;
+  p.normal = plane_pose.linear().col(2).normalized();
+  const double offset = p.normal.dot(plane_pose.translation() - mesh_pose.translation());
+  const Vector3d n = mesh_pose.linear().transpose() * p.normal;
+  mesh.each_corner_below(n, offset + reach_m, [&](const Vector3d& corner, int number) {
+    p.gap_m = n.dot(corner) - offset;
+    p.on_b_m = mesh_pose * corner;
+    p.on_a_m = p.on_b_m - p.gap_m * p.normal;
+    p.triangle_b = number;
+    out.push_back(p);
+  });
+}
+
+void part(const Triangle& a, const Triangle& b, PointPair& pair) {
+  const auto below = [](const Triangle& of, const Triangle& face) {
+    double height = 0;
+    for (const Vector3d& v : of.v) height = std::min(height, face.normal.dot(v - face.v[0]));
+    return -height;
+  };
+  const double of_a = below(a, b), of_b = below(b, a);
+  const bool over_b = b.normal.isZero() ? false : a.normal.isZero() || of_a <= of_b;
+  pair.normal = over_b ? Vector3d(-b.normal) : a.normal;
+  pair.gap_m = -(over_b ? of_a : of_b);
+  const Vector3d middle = (pair.on_a_m + pair.on_b_m) / 2;
+  pair.on_a_m = middle - pair.gap_m / 2 * pair.normal;
+  pair.on_b_m = middle + pair.gap_m / 2 * pair.normal;
+  pair.pierced = false;
+}
+
+}  // namespace tactus::sim::gaps

@@ -1,0 +1,29 @@
+// Contacts of meshes with what has no triangles, and which of the point pairs of a mesh are contacts at all. Pure.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/collision/gaps/convex.h"
+#include "sim_node/collision/layers/obb_tree.h"
+#include "sim_node/collision/point_pair.h"
+#include "sim_node/collision/triangle_tree.h"
+
+namespace tactus::sim::gaps {
+
+// All append pairs with a gap of at most the reach, with their triangles. a: the convex body or the plane, b: the
+// mesh, any polygon soup. Realtime-safe once the list has grown; for any number of threads.
+void convex_mesh(const Convex& convex, const Eigen::Isometry3d& pose, const TriangleTree& mesh,
+                 const Eigen::Isometry3d& mesh_pose, double reach_m, std::vector<PointPair>& out);
+void plane_mesh(const Eigen::Isometry3d& plane_pose, const TriangleTree& mesh, const Eigen::Isometry3d& mesh_pose,
+                double reach_m, std::vector<PointPair>& out);
+
+// Whether no place of the mesh around `on_mesh`, which lies on it, is nearer to `from`; both in its frame. A pair
+// for which one is, is none of a contact: it leads from a surface to the next triangle of a plain that it already
+// stands on, and would hold back whatever slides over that.
+bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& on_mesh);
+
+// Gives a pair of triangles that go through each other, in the world, the shorter of the two ways out over their
+// faces.
+void part(const Triangle& a, const Triangle& b, PointPair& pair);
+
+}  // namespace tactus::sim::gaps

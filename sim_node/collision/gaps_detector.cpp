@@ -1,0 +1,177 @@
+// Every pair of shapes, with gaps: closed forms for balls and planes, faces and nearest points for convex shapes,
+// triangle by triangle for meshes, and the three layers for meshes against meshes and boxes.
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "sim_node/collision/closest_surface.h"
+#include "sim_node/collision/detector.h"
+#include "sim_node/collision/gaps/convex_pair.h"
+#include "sim_node/collision/gaps/mesh_pair.h"
+
+namespace tactus::sim {
+namespace {
+
+using Eigen::Isometry3d;
+
+// As of the detector "layers".
+constexpr double kMargin = 0.2;
+// A pair that leads straight out of a triangle's face is a contact whatever lies beside: cosine.
+constexpr double kStraight = 1 - 1e-9;
+
+bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
+
+struct Shape {
+  ShapeKind kind;
+  bool half_space = false;
+  gaps::Convex convex;
+  Isometry3d offset = Isometry3d::Identity();  // of the convex body in the frame of the shape
+  ClosestSurface surface;
+  std::shared_ptr<const TriangleTree> tree;
+  std::shared_ptr<const ContactMesh> layers;
+};
+
+class GapsDetector : public Detector {
+ public:
+  GapsDetector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees)
+      : trees_(std::move(trees)), contact_(options) {}
+
+  DetectorAbilities abilities() const override {
+    return {.name = "gaps",
+            .separation = true,
+            .both_surfaces = true,
+            .overlap_depth = true,
+            .least_depth = true,
+            .contact_kind = true,
+            .one_pair = false,
+            .deterministic = true};
+  }
+
+  int add(const ShapeDef& shape, const WorldDef& world) override {
+    const bool meshed = has_triangles(shape.kind), plane = shape.kind == ShapeKind::kPlane;
+    const bool fixed =
+        shape.body < 0 || world.bodies.empty() || world.bodies.at(static_cast<std::size_t>(shape.body)).is_static;
+    const gaps::Convex convex = gaps::convex_of(shape);
+    ShapeDef solid = shape;
+    if (plane && !fixed) solid.kind = ShapeKind::kBox, solid.size_m = 2 * convex.half_m;
+    auto tree = meshed ? trees_->triangles(shape, world) : nullptr;
+    Shape s{solid.kind, plane && fixed, convex, Isometry3d::Identity(), {solid, tree}, tree, nullptr};
+    if (plane) s.offset = gaps::plate_offset();
+    // Boxes are triangles where they meet some.
+    const bool box = convex.core == gaps::Core::kBox && !(world.meshes.empty() && world.heightfields.empty());
+    if (meshed || box) {
+      s.layers = trees_->layers(shape, world);
+      contact_.accept(*s.layers, *s.layers);
+    }
+    if (box) s.tree = trees_->triangles(shape, world);
+    shapes_.push_back(std::move(s));
+    return static_cast<int>(shapes_.size()) - 1;
+  }
+
+  void query(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
+             std::vector<PointPair>& out) override {
+    out.clear();
+    const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    const bool swapped = rank(sa) > rank(sb);
+    if (swapped)
+      ordered(sb, pose_b, sa, pose_a, reach_m, out);
+    else
+      ordered(sa, pose_a, sb, pose_b, reach_m, out);
+    if (!swapped) return;
+    for (PointPair& p : out) {
+      std::swap(p.on_a_m, p.on_b_m);
+      std::swap(p.triangle_a, p.triangle_b);
+      p.normal = -p.normal;
+    }
+  }
+
+ protected:
+  bool takes(ShapeKind a, ShapeKind b) const override {
+    const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
+    return !(ground(a) && ground(b));
+  }
+
+ private:
+  static int rank(const Shape& s) {
+    if (s.kind == ShapeKind::kSphere) return 0;
+    if (s.half_space) return 1;
+    return has_triangles(s.kind) ? 3 : 2;
+  }
+
+  void ordered(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
+               std::vector<PointPair>& out) {
+    if (a.kind == ShapeKind::kSphere) return ball(a, pose_a, b, pose_b, reach_m, out);
+    if (a.half_space && b.half_space) return;
+    if (has_triangles(b.kind)) {
+      if (a.half_space) return gaps::plane_mesh(pose_a, *b.tree, pose_b, reach_m, out);
+      if (a.layers) return triangles(a, pose_a, b, pose_b, reach_m, out);
+      return gaps::convex_mesh(a.convex, pose_a, *b.tree, pose_b, reach_m, out);
+    }
+    if (a.half_space) return gaps::plane_pair(pose_a, b.convex, pose_b * b.offset, reach_m, out);
+    gaps::convex_pair(a.convex, pose_a * a.offset, b.convex, pose_b * b.offset, reach_m, out);
+  }
+
+  void ball(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
+            std::vector<PointPair>& out) {
+    const double r = a.convex.round_m;
+    const Isometry3d pose = b.half_space || has_triangles(b.kind) ? pose_b : pose_b * b.offset;
+    b.surface.query(pose.inverse(Eigen::Isometry) * pose_a.translation(), reach_m + r, planes_);
+    for (const SurfacePlane& s : planes_) {
+      PointPair p;
+      p.normal = pose.linear() * -s.normal;
+      p.on_a_m = pose_a.translation() + r * p.normal;
+      p.on_b_m = pose * s.point;
+      p.gap_m = s.distance_m - r;
+      p.triangle_b = s.triangle;
+      out.push_back(p);
+    }
+  }
+
+  void triangles(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b,
+                 double reach_m, std::vector<PointPair>& out) {
+    const bool box = !has_triangles(a.kind);
+    const Isometry3d at = box ? pose_a * a.offset : pose_a;
+    contact_.query(*a.layers, at, *b.layers, pose_b, {reach_m, kMargin * reach_m}, found_);
+    if (found_.pierced && box) return gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
+    for (PointPair& p : found_.pairs) {
+      const Triangle &of_a = a.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_a)],
+                     &of_b = b.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_b)];
+      if (p.pierced)
+        gaps::part(moved(of_a, at), moved(of_b, pose_b), p);
+      else if (!around(a, at, of_a, p.on_b_m, p.on_a_m, p.normal) ||
+               !around(b, pose_b, of_b, p.on_a_m, p.on_b_m, p.normal))
+        continue;
+      if (box) p.triangle_a = -1;
+      out.push_back(p);
+    }
+  }
+
+  static bool around(const Shape& s, const Isometry3d& pose, const Triangle& own, const Eigen::Vector3d& from,
+                     const Eigen::Vector3d& on, const Eigen::Vector3d& normal) {
+    if (std::abs((pose.linear() * own.normal).dot(normal)) > kStraight) return true;
+    const Isometry3d back = pose.inverse(Eigen::Isometry);
+    return gaps::nearest_around(*s.tree, back * from, back * on);
+  }
+
+  static Triangle moved(const Triangle& t, const Isometry3d& pose) {
+    Triangle m = t;
+    for (Eigen::Vector3d& v : m.v) v = pose * v;
+    m.normal = pose.linear() * t.normal;
+    return m;
+  }
+
+  std::shared_ptr<MeshTrees> trees_;
+  MeshContact contact_;
+  std::vector<Shape> shapes_;
+  std::vector<SurfacePlane> planes_;
+  MeshContactResult found_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_gaps_detector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees) {
+  if (!trees) trees = std::make_shared<MeshTrees>();
+  return std::make_unique<GapsDetector>(options, std::move(trees));
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,156 @@
+#include "sim_node/collision/near_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim_node/collision/gaps/convex.h"
+
+namespace tactus::sim {
+
+using Eigen::Vector3d;
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+NearPairs::Extent NearPairs::extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees) {
+  Extent e;
+  if (shape.kind == ShapeKind::kMesh || shape.kind == ShapeKind::kHeightfield) {
+    const auto tree = trees.triangles(shape, world);
+    if (tree->empty()) return e;
+    e.middle_m = tree->box().center();
+    e.half_m = 0.5 * tree->box().sizes();
+    return e;
+  }
+  const gaps::Convex c = gaps::convex_of(shape);
+  e.half_m = c.half_m;
+  e.round_m = c.round_m;
+  if (shape.kind == ShapeKind::kPlane) e.middle_m = gaps::plate_offset().translation();
+  return e;
+}
+
+NearPairs::NearPairs(const WorldDef& world, double tolerance_m, MeshTrees& trees)
+    : tolerance_m_(tolerance_m), gravity_m_s2_(world.gravity_m_s2.norm()), shapes_of_(world.bodies.size()) {
+  std::vector<Bounds> fixed;
+  for (std::size_t i = 0; i < world.shapes.size(); ++i) {
+    const ShapeDef& shape = world.shapes[i];
+    const BodyDef& body = world.bodies[index(shape.body)];
+    const int number = static_cast<int>(i);
+    body_of_.push_back(shape.body);
+    in_body_.push_back(Eigen::Translation3d(-body.centre_of_mass_m) * shape.pose);
+    poses_.push_back(body.pose * shape.pose);
+    const bool ghost = body.tool >= 0;
+    Extent& e = extents_.emplace_back(ghost ? Extent{} : extent_of(shape, world, trees));
+    e.around_centre_m = (in_body_.back() * e.middle_m).norm() + e.half_m.norm() + e.round_m;
+    if (ghost) continue;
+    if (!body.is_static) {
+      shapes_of_[index(shape.body)].push_back(number);
+    } else if (shape.kind == ShapeKind::kPlane) {
+      const Vector3d n = poses_.back().linear().col(2).normalized();
+      half_spaces_.push_back({number, n, n.dot(poses_.back().translation())});
+    } else {
+      fixed_.push_back(number);
+      fixed.push_back(bounds_of_shape(number));
+    }
+  }
+  grid_.build(fixed);
+  for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
+  std::sort(apart_.begin(), apart_.end());
+}
+
+Bounds NearPairs::bounds_of_shape(int shape) const {
+  const Extent& e = extents_[index(shape)];
+  const Eigen::Isometry3d& pose = poses_[index(shape)];
+  const Vector3d middle = pose * e.middle_m;
+  const Vector3d half = (pose.linear().cwiseAbs() * e.half_m).array() + e.round_m;
+  return {middle - half, middle + half};
+}
+
+bool NearPairs::may_touch(int a, int b) const {
+  return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
+}
+
+// How far a point of the shape may get by its body's spin.
+double NearPairs::turning_m(const BodyMotion& m, int shape, double h) const {
+  return m.spin_rad_s.norm() * extents_[index(shape)].around_centre_m * h;
+}
+
+void NearPairs::add(int a, int b, double reach_m) {
+  if (body_of_[index(a)] > body_of_[index(b)]) std::swap(a, b);
+  pairs_.push_back({a, b, reach_m});
+}
+
+void NearPairs::place(const BodyMotion& m, int body, double h) {
+  Eigen::Isometry3d about = Eigen::Isometry3d::Identity();
+  about.linear() = m.orientation.toRotationMatrix();
+  about.translation() = m.centre_m;
+  for (const int shape : shapes_of_[index(body)]) {
+    poses_[index(shape)] = about * in_body_[index(shape)];
+    Swept& s = swept_.emplace_back(Swept{shape, body, bounds_of_shape(shape)});
+    const Vector3d way = h * m.velocity_m_s;
+    const double any_way = turning_m(m, shape, h) + gravity_m_s2_ * h * h + tolerance_m_ / 2;
+    s.bounds.least_m += (way.array().min(0) - any_way).matrix();
+    s.bounds.most_m += (way.array().max(0) + any_way).matrix();
+  }
+}
+
+void NearPairs::with_fixed(std::size_t i, std::span<const BodyMotion> bodies, double h) {
+  const Swept& s = swept_[i];
+  const BodyMotion& m = bodies[index(s.body)];
+  const double reach = m.velocity_m_s.norm() * h + turning_m(m, s.shape, h) + gravity_m_s2_ * h * h + tolerance_m_;
+  const Vector3d middle = (s.bounds.least_m + s.bounds.most_m) / 2,
+                 half = (s.bounds.most_m - s.bounds.least_m) / 2;
+  for (const HalfSpace& p : half_spaces_)
+    if (p.normal.dot(middle) - p.normal.cwiseAbs().dot(half) - p.offset_m <= tolerance_m_ / 2 &&
+        may_touch(s.body, body_of_[index(p.shape)]))
+      add(s.shape, p.shape, reach);
+  met_.clear();
+  const Vector3d more = Vector3d::Constant(tolerance_m_ / 2);
+  grid_.find({s.bounds.least_m - more, s.bounds.most_m + more}, met_);
+  for (const int at : met_)
+    if (may_touch(s.body, body_of_[index(fixed_[index(at)])])) add(s.shape, fixed_[index(at)], reach);
+}
+
+void NearPairs::among_moving(std::span<const BodyMotion> bodies, double h) {
+  Vector3d sum(0, 0, 0), squares(0, 0, 0);
+  for (const Swept& s : swept_) {
+    sum += s.bounds.least_m;
+    squares += s.bounds.least_m.cwiseAbs2();
+  }
+  Eigen::Index axis = 0;
+  (static_cast<double>(swept_.size()) * squares - sum.cwiseAbs2()).maxCoeff(&axis);
+  std::sort(swept_.begin(), swept_.end(), [axis](const Swept& x, const Swept& y) {
+    const double a = x.bounds.least_m[axis], b = y.bounds.least_m[axis];
+    return a != b ? a < b : x.shape < y.shape;
+  });
+  for (std::size_t i = 0; i < swept_.size(); ++i) {
+    const Swept& s = swept_[i];
+    for (std::size_t j = i + 1; j < swept_.size() && swept_[j].bounds.least_m[axis] <= s.bounds.most_m[axis];
+         ++j) {
+      const Swept& t = swept_[j];
+      if (!s.bounds.meets(t.bounds) || !may_touch(s.body, t.body)) continue;
+      const BodyMotion &m = bodies[index(s.body)], &n = bodies[index(t.body)];
+      add(s.shape, t.shape,
+          (m.velocity_m_s - n.velocity_m_s).norm() * h + turning_m(m, s.shape, h) + turning_m(n, t.shape, h) +
+              gravity_m_s2_ * h * h + tolerance_m_);
+    }
+  }
+}
+
+std::span<const NearPair> NearPairs::find(std::span<const BodyMotion> bodies, std::span<const int> active,
+                                          double h) {
+  pairs_.clear();
+  swept_.clear();
+  for (const int body : active) place(bodies[index(body)], body, h);
+  for (std::size_t i = 0; i < swept_.size(); ++i) with_fixed(i, bodies, h);
+  among_moving(bodies, h);
+  std::sort(pairs_.begin(), pairs_.end(), [](const NearPair& x, const NearPair& y) {
+    return x.shape_a != y.shape_a ? x.shape_a < y.shape_a : x.shape_b < y.shape_b;
+  });
+  return pairs_;
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,114 @@
+#include "sim_node/collision/contact_finder.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "tests/sim_node/collision/meshes.h"
+#include "tests/sim_node/small_worlds.h"
+
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// The motions of the bodies as a world begins, at rest unless told.
+std::vector<BodyMotion> motions(const WorldDef& w) {
+  std::vector<BodyMotion> out;
+  for (const BodyDef& b : w.bodies) {
+    BodyMotion m;
+    m.position_m = b.pose.translation();
+    m.orientation = Eigen::Quaterniond(b.pose.linear());
+    m.centre_m = b.pose * b.centre_of_mass_m;
+    m.velocity_m_s = b.velocity_m_s;
+    if (!b.is_static) m.inverse_mass_1_kg = 1 / b.mass_kg;
+    out.push_back(m);
+  }
+  return out;
+}
+
+std::vector<int> moving(const WorldDef& w) {
+  std::vector<int> out;
+  for (int i = 0; i < static_cast<int>(w.bodies.size()); ++i)
+    if (!w.bodies[static_cast<std::size_t>(i)].is_static) out.push_back(i);
+  return out;
+}
+
+std::vector<Manifold> contacts(const WorldDef& w, double h = kStep) {
+  ContactFinder finder(w, Settings{});
+  std::vector<Manifold> out;
+  finder.find(motions(w), moving(w), h, out);
+  return out;
+}
+
+double least_gap(const Manifold& m) {
+  double gap = 1e300;
+  for (const ManifoldPoint& p : m.used()) gap = std::min(gap, -p.depth_m);
+  return gap;
+}
+
+TriangleMesh mesh_of(const Soup& s) { return {s.vertices, {}, s.indices}; }
+
+}  // namespace
+
+TEST_CASE(
+    "A box above the floor, tilted by a degree, shows all its lower corners when they may land in the step") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  const double edge = 0.1, tilt = M_PI / 180;
+  Isometry3d pose = at(0, 0, 0.001 + edge / 2 * (std::cos(tilt) + std::sin(tilt)));
+  pose.rotate(Eigen::AngleAxisd(tilt, Vector3d::UnitX()));
+  const int body = add_box(w, 1, {edge, edge, edge}, pose);
+  CHECK(contacts(w).empty());
+  w.bodies[static_cast<std::size_t>(body)].velocity_m_s = {0, 0, -3};
+  const auto found = contacts(w);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].count == 4);
+  CHECK(least_gap(found[0]) == Approx(0.001).epsilon(1e-9));
+}
+
+TEST_CASE("A ball is seen from as far as it may come in a step, by floor, box, ball, cylinder, capsule and mesh") {
+  const double r = 0.03, speed = 20;
+  const auto kind = GENERATE(ShapeKind::kPlane, ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder,
+                             ShapeKind::kCapsule, ShapeKind::kMesh);
+  const double gap = GENERATE(-0.001, 0.0003, 0.015, 0.019, 0.022);
+  WorldDef w = empty_world();
+  w.meshes.push_back(mesh_of(box({0.2, 0.2, 0.1})));
+  const int under = add_body(w, "under", 0, Eigen::Matrix3d::Identity(), at(0, 0, 0));
+  const bool sphere = kind == ShapeKind::kSphere;
+  const int shape = add_shape(w, under, kind, sphere ? Vector3d(0.05, 0, 0) : Vector3d(0.05, 0.2, 0.1));
+  w.shapes[static_cast<std::size_t>(shape)].mesh = 0;
+  const double top = kind == ShapeKind::kPlane ? 0 : kind == ShapeKind::kCapsule ? 0.1 : 0.05;
+  add_ball(w, 1, r, {0, 0, top + r + gap});
+  w.bodies[1].velocity_m_s = {0, 0, -speed};
+  const auto found = contacts(w);
+  INFO("kind " << static_cast<int>(kind) << " gap " << gap);
+  if (gap > speed * kStep + 1e-3) {
+    CHECK(found.empty());
+    return;
+  }
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].body_a == 0);
+  CHECK(found[0].body_b == 1);
+  CHECK(least_gap(found[0]) == Approx(gap).margin(1e-9));
+  CHECK(found[0].points[0].normal.z() == Approx(1));
+}
+
+TEST_CASE("Bodies that are not active are not there, and those that never move meet nothing among themselves") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  for (int i = 0; i < 3; ++i) add_box(w, 1, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 0.1 * i));
+  ContactFinder finder(w, Settings{});
+  std::vector<Manifold> out;
+  const auto all = motions(w);
+  finder.find(all, std::vector<int>{1, 2, 3}, kStep, out);
+  REQUIRE(out.size() == 3);
+  CHECK((out[0].shape_a == 0 && out[1].shape_a == 1 && out[2].shape_a == 2));
+  for (const Manifold& m : out) CHECK(m.count == 4);
+  finder.find(all, std::vector<int>{1, 3}, kStep, out);
+  CHECK(out.size() == 1);
+  finder.find(all, std::vector<int>{3}, kStep, out);
+  CHECK(out.empty());
+}
