@@ -87,6 +87,7 @@ class ContactTracker {
 
   std::vector<SurfaceTraits> surfaces_;
   Settings settings_;
+  double meets_at_m_;  // surfaces act on each other from this gap on, and touch
   Ids& ids_;
   sync::SimTime now_{};
   sync::Nanoseconds step_{};
