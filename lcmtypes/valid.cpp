@@ -175,12 +175,12 @@ bool valid(const contact_events_t& m) {
   return sane(m.header) && sane(m.clock) && page_of(m.page, m.pages) && all_sane(m.events);
 }
 bool valid(const contact_frame_t& m) {
-  return sane(m.header) && sane(m.clock) && between(m.group, contact_frame_t::TOOL, contact_frame_t::OTHER) &&
+  return sane(m.header) && sane(m.clock) && between(m.group, contact_frame_t::TOOL, contact_frame_t::AHEAD) &&
          page_of(m.page, m.pages) && all_sane(m.contacts);
 }
 bool valid(const world_state_t& m) {
-  return sane(m.header) && sane(m.clock) && sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages) &&
-         all_sane(m.bodies);
+  return sane(m.header) && sane(m.clock) && between(m.group, world_state_t::NOW, world_state_t::PROMOTED) &&
+         sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages) && all_sane(m.bodies);
 }
 bool valid(const touch_model_t& m) {
   return sane(m.header) && sane(m.clock) && m.tool >= 0 && all_sane(m.planes) && all_sane(m.applied);

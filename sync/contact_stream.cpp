@@ -27,6 +27,10 @@ contact_t between(contact_t a, const contact_t& b, double s) {
   return a;
 }
 
+Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
+  return std::find_if(list.begin(), list.end(), [id](const contact_t& c) { return c.contact_id == id; });
+}
+
 }  // namespace
 
 bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
@@ -51,7 +55,7 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
 // What was credible once need not be any more: its message may have been the first of all, and false.
 void ContactStream::forget_after(SimTime latest) {
   pending_.erase(pending_.upper_bound(latest), pending_.end());
-  for (std::size_t group : {0, 1}) {
+  for (std::size_t group = 0; group < kGroups; ++group) {
     partial_[group].erase(partial_[group].upper_bound(latest), partial_[group].end());
     auto& snapshots = snapshots_[group];
     while (!snapshots.empty() && snapshots.back().time > latest) {
@@ -102,9 +106,9 @@ void ContactStream::note_event(const contact_event_t& event) {
 
 void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (!accept(m.header, m.clock, arrival)) return;
-  const std::size_t group = m.group == contact_frame_t::TOOL ? 0 : 1;
+  const auto group = static_cast<std::size_t>(m.group);
   const SimTime time = sim_time(m.header.sim_time_ns);
-  if (time > follower_.latest_credible() || m.pages > kMaxPages) {
+  if (time > follower_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
     ++refused_;
     return;
   }
@@ -115,14 +119,16 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (at != snapshots.end() && at->time == time) return;
   Pages& pages = partial_[group][time];
   pages.pages = m.pages;
-  pages.arrived[m.page] = m.contacts;
+  pages.arrived[m.page] = {m.contacts, m.header.seq};
   if (static_cast<int>(pages.arrived.size()) < pages.pages) {
     bound_partial(group);
     return;
   }
-  Snapshot snapshot{time, {}};
-  for (auto& [page, contacts] : pages.arrived)
-    snapshot.contacts.insert(snapshot.contacts.end(), contacts.begin(), contacts.end());
+  Snapshot snapshot{time, {}, {}};
+  for (auto& [number, page] : pages.arrived) {
+    snapshot.contacts.insert(snapshot.contacts.end(), page.contacts.begin(), page.contacts.end());
+    snapshot.seqs.resize(snapshot.contacts.size(), page.seq);
+  }
   partial_[group].erase(time);
   // One that was overtaken may still become whole, unless it is too old to matter.
   partial_[group].erase(partial_[group].begin(), partial_[group].lower_bound(time - kStaleAfter));
@@ -175,41 +181,65 @@ How ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
   return it->time == t ? How::kExact : How::kInterpolated;
 }
 
-void ContactStream::append_state(const std::deque<Snapshot>& group, SimTime t, Contacts& out) const {
+// It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
+bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
+  if (group != contact_frame_t::AHEAD) return false;
+  const auto life = lives_.find(id);
+  if (life != lives_.end() && life->second.begin) return false;
+  return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
+}
+
+void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
+  const auto& group = snapshots_[number];
   if (how(group, t) == How::kNone) return;
   const auto after =
       std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
-  const Snapshot& before = *std::prev(after);
-  const auto find = [](const Contacts& list, std::int64_t id) {
-    return std::find_if(list.begin(), list.end(), [&](const contact_t& c) { return c.contact_id == id; });
-  };
-  for (const contact_t& c : before.contacts) {
-    if (!alive(c.contact_id, t)) continue;
-    if (after == group.end()) {
-      out.push_back(c);
-      continue;
-    }
+  const auto before = std::prev(after);
+  for (std::size_t i = 0; i < before->contacts.size(); ++i) {
+    const contact_t& c = before->contacts[i];
+    if (!alive(c.contact_id, t) || foreseen_only(number, before, c.contact_id)) continue;
+    out.push_back({c, before->seqs[i], true});
+    if (after == group.end()) continue;
     const auto next = find(after->contacts, c.contact_id);
-    const double s = to_seconds(t - before.time) / to_seconds(after->time - before.time);
-    out.push_back(next == after->contacts.end() ? c : between(c, *next, s));
+    const double s = to_seconds(t - before->time) / to_seconds(after->time - before->time);
+    if (next != after->contacts.end()) out.back().contact = between(c, *next, s);
   }
   if (after == group.end()) return;
   // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
-  for (const contact_t& c : after->contacts) {
+  for (std::size_t i = 0; i < after->contacts.size(); ++i) {
+    const contact_t& c = after->contacts[i];
     const auto life = lives_.find(c.contact_id);
     const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
-    if (begun && alive(c.contact_id, t) && find(before.contacts, c.contact_id) == before.contacts.end())
-      out.push_back(c);
+    if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
+      out.push_back({c, after->seqs[i], false});
   }
+}
+
+// Of a contact that moved between the groups of bodies: as a snapshot of t or before has it rather than one of later,
+// and of two as the one has it that was said later.
+void ContactStream::keep_last_told(std::vector<Candidate>& list) {
+  const auto better = [](const Candidate& a, const Candidate& b) { return std::pair(a.present, a.seq) > std::pair(b.present, b.seq); };
+  std::map<std::int64_t, std::size_t> at;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto [it, first] = at.try_emplace(list[i].contact.contact_id, kept);
+    if (!first && better(list[i], list[it->second])) std::swap(list[it->second], list[i]);
+    if (!first) continue;
+    if (kept != i) std::swap(list[kept], list[i]);
+    ++kept;
+  }
+  list.resize(kept);
 }
 
 Sample<Contacts> ContactStream::state_at(SimTime t) const {
   Sample<Contacts> state;
-  for (const auto& group : snapshots_) {
-    const How how_group = how(group, t);
-    state.how = std::max(state.how, how_group);
-    append_state(group, t, state.value);
+  std::vector<Candidate> found;
+  for (std::size_t group = 0; group < kGroups; ++group) {
+    state.how = std::max(state.how, how(snapshots_[group], t));
+    append_state(group, t, found);
   }
+  keep_last_told(found);
+  for (Candidate& c : found) state.value.push_back(std::move(c.contact));
   return state;
 }
 

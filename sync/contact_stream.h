@@ -59,9 +59,10 @@ class ContactStream {
   // next call.
   std::vector<contact_event_t> take_events(SimTime until);
 
-  // Contacts alive at `t`, of both groups: the newest complete snapshot at or before t, its forces and depths
-  // interpolated towards the next. `how` is the worse of the two groups. A contact whose begin lies after t or
-  // whose end lies at or before t is not in it, whatever the snapshots say.
+  // Contacts alive at `t`, of all groups: the newest complete snapshot at or before t, its forces and depths
+  // interpolated towards the next. `how` is the worst of the groups. A contact whose begin lies after t or whose end
+  // lies at or before t is not in it, whatever the snapshots say. One that moved between OTHER and AHEAD is there once,
+  // as it was told last; one that was foreseen is there once its begin has been heard or another snapshot tells of it too.
   Sample<Contacts> state_at(SimTime t) const;
 
   // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact
@@ -78,12 +79,18 @@ class ContactStream {
   std::int64_t overflow() const { return overflow_; }
 
  private:
+  static constexpr std::size_t kGroups = 3;  // by contact_frame_t.group
   struct Snapshot {
     SimTime time;
     Contacts contacts;
+    std::vector<std::int64_t> seqs;  // of the page of each
+  };
+  struct Page {
+    Contacts contacts;
+    std::int64_t seq = 0;
   };
   struct Pages {
-    std::map<int, Contacts> arrived;
+    std::map<int, Page> arrived;
     int pages = 0;
   };
   struct Life {  // of a contact, from its events
@@ -98,7 +105,14 @@ class ContactStream {
   void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
   How how(const std::deque<Snapshot>& group, SimTime t) const;
-  void append_state(const std::deque<Snapshot>& group, SimTime t, Contacts& out) const;
+  struct Candidate {  // for the state at an instant
+    contact_t contact;
+    std::int64_t seq = 0;
+    bool present = false;  // in a snapshot of that instant or before; else known from a later one alone
+  };
+  void append_state(std::size_t group, SimTime t, std::vector<Candidate>& out) const;
+  bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;
+  static void keep_last_told(std::vector<Candidate>& list);
 
   SimFollower follower_;
   std::int64_t restarts_ = 0;
@@ -112,9 +126,9 @@ class ContactStream {
   std::map<std::int64_t, Life> lives_;
   std::deque<std::int64_t> lives_order_;
 
-  std::map<SimTime, Pages> partial_[2];  // per group
-  std::deque<Snapshot> snapshots_[2];    // in order of time
-  std::size_t contacts_kept_[2] = {0, 0};
+  std::map<SimTime, Pages> partial_[kGroups];
+  std::deque<Snapshot> snapshots_[kGroups];  // in order of time
+  std::size_t contacts_kept_[kGroups] = {};
   Nanoseconds span_ = kSpan;
 };
 

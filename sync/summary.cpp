@@ -113,7 +113,9 @@ void RunSummary::add(const LogEvent& e) {
     if (!info_ || m.header.run_id == info_->header.run_id) game_ = m;
   });
   feed.template operator()<degraded_t>(channels::kDegraded, match);
-  if (header && e.channel == channels::kWorldState) observe_course(*header);
+  feed.template operator()<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
+    if (m.group == world_state_t::NOW) observe_course(m.header);  // of what is told ahead the times lie ahead
+  });
   matcher_.advance(now);
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/behaviour/behaviour_model.h"
 #include "sim_node/behaviour/ode_engine.h"
 
 namespace tactus::sim {
@@ -12,6 +13,12 @@ using ode::to_eigen;
 
 // Below this a tangential speed has no direction, m/s.
 constexpr double kStill_m_s = 1e-9;
+
+void shift_depths(std::span<Manifold> contacts, double by_m) {
+  if (by_m == 0) return;
+  for (Manifold& m : contacts)
+    for (ManifoldPoint& p : m.used()) p.depth_m += by_m;
+}
 
 dMass mass_of(const BodyDef& body) {
   const Eigen::Matrix3d& i = body.inertia_kg_m2;
@@ -52,6 +59,7 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
 
 Solver::Solver(const WorldDef& world, const Settings& settings)
     : engine_(std::make_unique<Engine>()), settings_(settings), motions_(world.bodies.size()) {
+  if (const std::string why = refusal(world, settings); !why.empty()) throw std::runtime_error(why);
   const dWorldID w = engine_->world.get();
   const Eigen::Vector3d g = world.gravity_m_s2;
   dWorldSetGravity(w, g.x(), g.y(), g.z());
@@ -68,7 +76,7 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
   for (const JointDef& j : world.joints)
     for (const int body : {j.parent, j.child})
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
-  if (settings.solver == "impulse")
+  if (behaviour_model(settings.solver).impulses)
     engine_->impulse = impulse::build_world(world, settings);
   else
     engine_->joints =
@@ -211,7 +219,11 @@ void Solver::join(Manifold& c) {
 
 void Solver::step() {
   if (engine_->impulse) {
+    // Depth is counted from where contact begins; that of penalty begins a shell before the surfaces meet.
+    const double shell_m = behaviour_model(settings_.solver).needs_gaps ? settings_.contact_tolerance_m : 0;
+    shift_depths(contacts_, -shell_m);
     engine_->impulse->step(contacts_, settings_.step_s);
+    shift_depths(contacts_, shell_m);
     place_bodies();
     std::swap(contacts_, solved_);
     read_bodies();

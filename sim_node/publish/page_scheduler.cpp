@@ -56,6 +56,12 @@ void PageScheduler::begin_urgent_world(std::size_t pages) {
   urgent_ = true;
 }
 
+bool PageScheduler::take_extra() {
+  if (allowance_ < 1) return false;
+  allowance_ -= 1;
+  return true;
+}
+
 Lane PageScheduler::next() {
   State &world = at(Lane::kWorld), &contacts = at(Lane::kContacts);
   if (world.left() == 0) urgent_ = false;

@@ -23,6 +23,10 @@ class PageScheduler {
   // True when a snapshot of the lane is to be taken in this tick. Snapshot n is due at tick ceil(n * ticks per
   // snapshot), 16 or 17 at 60 Hz.
   bool due(Lane lane) const;
+  // True when all pages of the lane are out.
+  bool free(Lane lane) const { return at(lane).left() == 0; }
+  // A page more than those of the snapshots, before all of them: true when the budget carries it now.
+  bool take_extra();
   // It has been taken and has so many pages.
   void begin(Lane lane, std::size_t pages);
   // Somebody waits for the whole world: these pages replace what is left of the world's and go before all others.

@@ -1,21 +1,25 @@
 #include "sim_node/publish/snapshots.h"
 
+#include <algorithm>
+
+#include "lcmtypes/channels.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/publish/paging.h"
 
 namespace tactus::sim {
 namespace {
 
-// Less than this is rest, below what is seen and felt: 20 um and 0.02 degrees since it was last told, or at these speeds
-// within a snapshot.
+// Less than this is rest, below what is seen and felt: 20 um and 0.02 degrees since it was last told, or at these
+// speeds within a snapshot.
 constexpr double kMoved_m = 2e-5;
 constexpr double kTurned_rad = 4e-4;
 constexpr double kMoving_m_s = 1e-3;
 constexpr double kTurning_rad_s = 1e-2;
 
 bool moves(const BodyMotion& m, const BodyMotion& told) {
-  return (m.position_m - told.position_m).norm() > kMoved_m || m.orientation.angularDistance(told.orientation) > kTurned_rad ||
-         m.velocity_m_s.norm() > kMoving_m_s || m.spin_rad_s.norm() > kTurning_rad_s;
+  return (m.position_m - told.position_m).norm() > kMoved_m ||
+         m.orientation.angularDistance(told.orientation) > kTurned_rad || m.velocity_m_s.norm() > kMoving_m_s ||
+         m.spin_rad_s.norm() > kTurning_rad_s;
 }
 
 body_state_t state_of(std::size_t body, const BodyMotion& m, bool moving) {
@@ -30,16 +34,46 @@ body_state_t state_of(std::size_t body, const BodyMotion& m, bool moving) {
   return b;
 }
 
-template <class Page, class Item>
-void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& from, std::pair<std::size_t, std::size_t> range) {
-  (page.*list).assign(from.begin() + static_cast<std::ptrdiff_t>(range.first), from.begin() + static_cast<std::ptrdiff_t>(range.second));
-  page.count = static_cast<std::int32_t>((page.*list).size());
+// The items of that range, without those that are gone.
+template <class Page, class Item, class Gone>
+void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& from,
+          std::pair<std::size_t, std::size_t> range, const Gone& gone) {
+  auto& to = page.*list;
+  to.clear();
+  for (std::size_t i = range.first; i < range.second; ++i)
+    if (!gone(from[i])) to.push_back(from[i]);
+  page.count = static_cast<std::int32_t>(to.size());
 }
 
 }  // namespace
 
-void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full) {
-  bodies_time_ = now;
+void Snapshots::tell_now(std::size_t body, const BodyMotion& m, bool always) {
+  const bool moving = moves(m, told_[body]);
+  // Once more when it has come to rest, so that its last pose is told, at rest.
+  if (always || moving || moved_[body]) {
+    bodies_.items.push_back(state_of(body, m, moving));
+    told_[body] = m;
+  }
+  moved_[body] = moving;
+}
+
+// One that came from the bodies of every step, or rested, is told of the present step too: pictures begin there.
+void Snapshots::tell_ahead(std::size_t body, const BodyMotion& m, const BodyMotion& now, bool always) {
+  const bool moving = moves(m, told_[body]);
+  if (moving && !(ahead_[body] && moved_[body]))
+    bodies_.items.push_back(state_of(body, now, moves(now, told_[body])));
+  if (always || moving || moved_[body]) {
+    bodies_ahead_.items.push_back(state_of(body, m, moving));
+    told_[body] = m;
+  }
+  moved_[body] = moving;
+}
+
+void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full,
+                            bool with_ahead) {
+  const Ahead* a = source.ahead;
+  bodies_.time = now;
+  bodies_ahead_.time = a ? a->time : now;
   full_ = full;
   if (full) {
     full_wanted_ = false;
@@ -48,58 +82,162 @@ void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSo
   const bool first = told_.size() != source.bodies.size();
   if (first) told_.assign(source.bodies.begin(), source.bodies.end());
   moved_.resize(source.bodies.size(), 0);
-  bodies_.clear();
-  for (std::size_t i = 0; i < source.bodies.size(); ++i) {
-    const BodyMotion& m = source.bodies[i];
-    const bool moving = moves(m, told_[i]);
-    // Once more when it has come to rest, so that its last pose is told, at rest.
-    if (full || moving || moved_[i]) {
-      bodies_.push_back(state_of(i, m, moving));
-      told_[i] = m;
+  bodies_.items.clear();
+  bodies_ahead_.items.clear();
+  for (std::size_t i = 0, next = 0; i < source.bodies.size(); ++i) {
+    const bool is_ahead = a && next < a->bodies.size() && a->bodies[next] == static_cast<int>(i);
+    const BodyMotion* foreseen = is_ahead ? &a->motions[next++] : nullptr;
+    if (!is_ahead || a->held) {
+      tell_now(i, source.bodies[i], full || (a && told_until_[i] > pace));
+      if (a) ahead_[i] = 0;
+    } else if (with_ahead) {
+      tell_ahead(i, *foreseen, source.bodies[i], full);
+      ahead_[i] = 1;
     }
-    moved_[i] = moving;
   }
-  body_pages_ = paged(bodies_, empty_size<world_state_t>());
+  gone_.assign(gone_.size(), 0);
+  bodies_.pages.clear();
+  bodies_ahead_.pages.clear();
+  if (!bodies_ahead_.items.empty()) bodies_ahead_.pages = paged(bodies_ahead_.items, empty_size<world_state_t>());
+  if (!bodies_.items.empty() || bodies_ahead_.pages.empty())
+    bodies_.pages = paged(bodies_.items, empty_size<world_state_t>());
   sent_bodies_ = 0;
 }
 
 void Snapshots::take_contacts(sync::SimTime now, const StateSource& source) {
-  contacts_time_ = now;
-  source.contacts(contacts_);
-  contact_pages_ = paged(contacts_, empty_size<contact_frame_t>());
+  contacts_.time = now;
+  source.contacts(contacts_.items);
+  contacts_.pages = paged(contacts_.items, empty_size<contact_frame_t>());
+  contacts_ahead_.pages.clear();
   sent_contacts_ = 0;
+  if (!source.ahead) return;
+  contacts_ahead_.time = source.ahead->held ? now : source.ahead->time;
+  source.ahead->contacts(contacts_ahead_.items);
+  contacts_ahead_.pages = paged(contacts_ahead_.items, empty_size<contact_frame_t>());
 }
 
 void Snapshots::fill(world_state_t& m) {
-  m.header.sim_time_ns = sync::to_ns(bodies_time_);
+  const bool now = sent_bodies_ < bodies_.pages.size();
+  const Part<body_state_t>& part = now ? bodies_ : bodies_ahead_;
+  const std::size_t page = now ? sent_bodies_ : sent_bodies_ - bodies_.pages.size();
+  ++sent_bodies_;
+  m.header.sim_time_ns = sync::to_ns(part.time);
+  m.group = now ? world_state_t::NOW : world_state_t::AHEAD;
   m.full = full_ ? 1 : 0;
   m.rate_Hz = static_cast<float>(scheduler_.rate_Hz(Lane::kWorld));
-  m.page = static_cast<std::int32_t>(sent_bodies_);
-  m.pages = static_cast<std::int32_t>(body_pages_.size());
-  copy(m, &world_state_t::bodies, bodies_, body_pages_[sent_bodies_++]);
+  m.page = static_cast<std::int32_t>(page);
+  m.pages = static_cast<std::int32_t>(part.pages.size());
+  copy(m, &world_state_t::bodies, part.items, part.pages[page],
+       [&](const body_state_t& b) { return !now && gone_[static_cast<std::size_t>(b.body)] != 0; });
 }
 
 void Snapshots::fill(contact_frame_t& m) {
-  m.header.sim_time_ns = sync::to_ns(contacts_time_);
-  m.group = contact_frame_t::OTHER;
-  m.page = static_cast<std::int32_t>(sent_contacts_);
-  m.pages = static_cast<std::int32_t>(contact_pages_.size());
-  copy(m, &contact_frame_t::contacts, contacts_, contact_pages_[sent_contacts_++]);
+  // What is told ahead comes first: one that goes over is then in one of the two at every instant.
+  const bool now = sent_contacts_ >= contacts_ahead_.pages.size();
+  const Part<contact_t>& part = now ? contacts_ : contacts_ahead_;
+  const std::size_t page = now ? sent_contacts_ - contacts_ahead_.pages.size() : sent_contacts_;
+  ++sent_contacts_;
+  m.header.sim_time_ns = sync::to_ns(part.time);
+  m.group = now ? contact_frame_t::OTHER : contact_frame_t::AHEAD;
+  m.page = static_cast<std::int32_t>(page);
+  m.pages = static_cast<std::int32_t>(part.pages.size());
+  // Also those of promoted bodies: they touch still, and how hard is told with the next snapshot.
+  copy(m, &contact_frame_t::contacts, part.items, part.pages[page], [](const contact_t&) { return false; });
 }
 
-void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& source, const std::function<void(contact_frame_t&)>& send_contacts,
-                     const std::function<void(world_state_t&)>& send_world) {
-  scheduler_.tick(pace);
+// What became of the bodies that are computed ahead.
+void Snapshots::follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace) {
+  ahead_.resize(bodies, 0);
+  gone_.resize(bodies, 0);
+  told_until_.resize(bodies, sync::SimTime::min());
+  moved_.resize(bodies, 0);
+  if (ahead.fresh || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
+  held_ = ahead.held;
+  // One that went back before it could be told.
+  std::erase_if(promoted_,
+                [&](int body) { return std::binary_search(ahead.bodies.begin(), ahead.bodies.end(), body); });
+  for (const int body : ahead.promoted) {
+    const auto i = static_cast<std::size_t>(body);
+    ahead_[i] = 0;
+    moved_[i] = 1;
+    gone_[i] = 1;
+    told_until_[i] = pace + kToldAgain;
+    if (std::find(promoted_.begin(), promoted_.end(), body) == promoted_.end()) promoted_.push_back(body);
+  }
+}
+
+void Snapshots::tell_promoted(sync::SimTime now, const StateSource& source,
+                              const std::function<void(world_state_t&)>& send) {
+  static const std::size_t per_page = (channels::kMaxMessageBytes - empty_size<world_state_t>()) /
+                                      static_cast<std::size_t>(body_state_t{}._getEncodedSizeNoHash());
+  std::size_t pages = 0;
+  while (pages * per_page < promoted_.size() && scheduler_.take_extra()) ++pages;
+  const std::size_t told = std::min(promoted_.size(), pages * per_page);
+  world_state_t& m = world_page_;
+  for (std::size_t page = 0; page < pages; ++page) {
+    m.header.sim_time_ns = sync::to_ns(now);
+    m.group = world_state_t::PROMOTED;
+    m.full = 0;
+    m.rate_Hz = static_cast<float>(scheduler_.rate_Hz(Lane::kWorld));
+    m.page = static_cast<std::int32_t>(page);
+    m.pages = static_cast<std::int32_t>(pages);
+    m.bodies.clear();
+    for (std::size_t i = page * per_page; i < std::min(told, (page + 1) * per_page); ++i) {
+      const auto body = static_cast<std::size_t>(promoted_[i]);
+      const BodyMotion& motion = source.bodies[body];
+      m.bodies.push_back(state_of(body, motion, told_.size() <= body || moves(motion, told_[body])));
+    }
+    m.count = static_cast<std::int32_t>(m.bodies.size());
+    send(m);
+  }
+  promoted_.erase(promoted_.begin(), promoted_.begin() + static_cast<std::ptrdiff_t>(told));
+}
+
+void Snapshots::take_due(sync::SimTime now, sync::SimTime pace, const StateSource& source) {
   if (scheduler_.due(Lane::kWorld)) {
-    take_bodies(now, pace, source, full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod);
-    scheduler_.begin(Lane::kWorld, body_pages_.size());
+    take_bodies(now, pace, source, full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod, false);
+    scheduler_.begin(Lane::kWorld, bodies_.pages.size());
   } else if (full_wanted_) {
-    take_bodies(now, pace, source, true);
-    scheduler_.begin_urgent_world(body_pages_.size());
+    take_bodies(now, pace, source, true, false);
+    scheduler_.begin_urgent_world(bodies_.pages.size());
   }
   if (scheduler_.due(Lane::kContacts)) {
     take_contacts(now, source);
-    scheduler_.begin(Lane::kContacts, contact_pages_.size());
+    scheduler_.begin(Lane::kContacts, contacts_.pages.size());
+  }
+}
+
+void Snapshots::take_due_ahead(sync::SimTime now, sync::SimTime pace, const StateSource& source) {
+  const auto ready = [&](Lane lane, bool pending, sync::SimTime taken) {
+    return scheduler_.free(lane) && (pending || (scheduler_.due(lane) && pace - taken >= kNoStep));
+  };
+  const bool takes = ready(Lane::kWorld, bodies_pending_, taken_bodies_);
+  if (takes || full_wanted_) {
+    const bool full = full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod;
+    take_bodies(now, pace, source, full, bodies_pending_ || full);
+    const std::size_t pages = bodies_.pages.size() + bodies_ahead_.pages.size();
+    takes ? scheduler_.begin(Lane::kWorld, pages) : scheduler_.begin_urgent_world(pages);
+    bodies_pending_ = false;
+    taken_bodies_ = pace;
+  }
+  if (ready(Lane::kContacts, contacts_pending_, taken_contacts_)) {
+    take_contacts(now, source);
+    scheduler_.begin(Lane::kContacts, contacts_.pages.size() + contacts_ahead_.pages.size());
+    contacts_pending_ = false;
+    taken_contacts_ = pace;
+  }
+}
+
+void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& source,
+                     const std::function<void(contact_frame_t&)>& send_contacts,
+                     const std::function<void(world_state_t&)>& send_world) {
+  scheduler_.tick(pace);
+  if (source.ahead) {
+    follow(*source.ahead, source.bodies.size(), pace);
+    tell_promoted(now, source, send_world);
+    take_due_ahead(now, pace, source);
+  } else {
+    take_due(now, pace, source);
   }
   for (Lane lane = scheduler_.next(); lane != Lane::kNone; lane = scheduler_.next()) {
     if (lane == Lane::kWorld) {

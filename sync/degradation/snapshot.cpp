@@ -48,7 +48,7 @@ class Changer {
 }  // namespace
 
 std::uint64_t stream_of(const contact_frame_t& m) { return 0x10u + static_cast<std::uint64_t>(m.group); }
-std::uint64_t stream_of(const world_state_t&) { return 0x20; }
+std::uint64_t stream_of(const world_state_t& m) { return 0x20u + static_cast<std::uint64_t>(m.group); }
 std::uint64_t stream_of(const touch_model_t& m) { return 0x1000u + static_cast<std::uint64_t>(m.tool); }
 std::uint64_t stream_of(const tool_state_t& m) { return 0x2000u + static_cast<std::uint64_t>(m.tool); }
 

@@ -128,11 +128,12 @@ class Samples {
   }
   void fill(contact_frame_t& m) {
     fill(m.header), fill(m.clock), fill_page(m);
-    m.group = static_cast<std::int8_t>(whole(0, 1));
+    m.group = static_cast<std::int8_t>(whole(0, 2));
     fill_list(m.count, m.contacts, 0, 3);
   }
   void fill(world_state_t& m) {
     fill(m.header), fill(m.clock), fill_page(m);
+    m.group = static_cast<std::int8_t>(whole(0, 2));
     m.full = static_cast<std::int8_t>(whole(0, 1)), m.rate_Hz = single(0, 60);
     fill_list(m.count, m.bodies, 0, 9);
   }

@@ -127,7 +127,7 @@ inline Life make_life(Random& random, std::size_t number, std::int64_t begin_ns)
   const auto contacts = random.whole(1, 9);
   for (std::int64_t i = 0; i < contacts; ++i) {
     TrueContact c{};
-    c.group = random.chance(0.7) ? 0 : 1;
+    c.group = random.chance(0.6) ? 0 : random.chance(0.5) ? 1 : 2;
     c.shown.contact_id = prefix + i;
     c.shown.tool = c.group == 0 ? random.chance(0.8) ? kTool : 1 : -1;
     c.shown.body_a = static_cast<std::int32_t>(i), c.shown.body_b = kToolBody + std::max(0, c.shown.tool);
@@ -172,11 +172,13 @@ class Teller {
       send_ns_ = life_.begin_ns + step_ns_ + random_.whole(0, 300'000);
       tell_events();
       tell_contacts(0, step_ns_);
-      // Visual step n begins at tick ceil(1000 n / 60) and is told one step ahead, with its time to come.
+      // Visual step n begins at tick ceil(1000 n / 60) and is told one step ahead, with its time to come; so are the
+      // contacts of the group AHEAD.
       if (k != (1000 * frame + 59) / 60) continue;
       const std::int64_t next_ns = (1000 * (frame + 1) + 59) / 60 * kMs;
-      if (frame == 0) tell_contacts(1, 0), tell_bodies(0);
-      tell_contacts(1, next_ns);
+      if (frame == 0) tell_contacts(2, 0), tell_bodies(0);
+      tell_contacts(1, step_ns_);
+      tell_contacts(2, next_ns);
       tell_bodies(next_ns);
       ++frame;
     }
@@ -246,6 +248,7 @@ class Teller {
     }
     paged(bodies, 2, [&](std::size_t page, std::size_t pages, std::vector<body_state_t> part) {
       auto m = stamped<world_state_t>(sim_ns, page, pages);
+      m.group = sim_ns > step_ns_ ? world_state_t::AHEAD : world_state_t::NOW;
       m.count = static_cast<std::int32_t>(part.size());
       m.bodies = std::move(part);
       send(std::move(m));

@@ -140,7 +140,7 @@ class Renderer {
   void check_state(SimTime t) {
     const auto state = stream_.state_at(t);
     const auto wanted = contacts_.state(to_ns(t));
-    const How how = std::max(contacts_.how(0, to_ns(t)), contacts_.how(1, to_ns(t)));
+    const How how = std::max({contacts_.how(0, to_ns(t)), contacts_.how(1, to_ns(t)), contacts_.how(2, to_ns(t))});
     if (state.how != how)
       said_ << "the state at " << to_ns(t) << " is " << to_string(state.how) << " instead of " << to_string(how)
             << "; ";

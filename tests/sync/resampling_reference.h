@@ -16,8 +16,8 @@ using sync::How;
 struct Known {
   std::map<std::int64_t, contact_event_t> events;  // by id: all that came
   std::set<std::int64_t> taken;
-  std::map<std::int64_t, std::set<int>> pages[2];  // of contact snapshots, by their time
-  std::set<std::int64_t> complete[2];
+  std::map<std::int64_t, std::set<int>> pages[3];  // by group, of contact snapshots, by their time
+  std::set<std::int64_t> complete[3];
   std::map<int, std::set<std::int64_t>> bodies;  // times of the samples of each
   std::optional<std::int64_t> newest_world_ns;
   std::int64_t least_latency_ns = INT64_MAX;
@@ -79,13 +79,20 @@ class Reference {
     return t - *before <= to_ns(sync::SimTime(sync::ContactStream::kStaleAfter)) ? How::kHeld : How::kStale;
   }
 
+  // What is told ahead may not come true: it counts once its begin or the snapshot before tell of it too.
+  bool foreseen_only(const TrueContact& c, std::int64_t told_ns) const {
+    if (c.group != contact_frame_t::AHEAD || told(c, contact_event_t::BEGIN)) return false;
+    const auto earlier = snapshot_before(c.group, told_ns - 1);
+    return !earlier || !c.alive(*earlier);
+  }
+
   // Force of each live contact at t.
   std::map<std::int64_t, float> state(std::int64_t t) const {
     std::map<std::int64_t, float> out;
     for (const TrueContact& c : life().contacts) {
       const auto before = snapshot_before(c.group, t), after = snapshot_after(c.group, t);
       if (!before || !may_live(c, t)) continue;
-      const bool in_before = c.alive(*before), in_after = after && c.alive(*after);
+      const bool in_before = c.alive(*before) && !foreseen_only(c, *before), in_after = after && c.alive(*after);
       if (in_before && in_after)
         out[c.shown.contact_id] = c.force(t);
       else if (in_before)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim_node/behaviour/behaviour_model.h"
+
 namespace tactus::sim::impulse {
 namespace {
 
@@ -16,11 +18,7 @@ class Builder {
   Builder(const WorldDef& def, const Settings& settings)
       : def_(def),
         settings_(settings),
-        world_(std::make_unique<World>(Law{.sweeps = settings.iterations,
-                                           .bounce_speed_m_s = settings.bounce_speed_m_s,
-                                           .slack_m = settings.surface_layer_m,
-                                           .repair = settings.contact_erp,
-                                           .repair_speed_m_s = settings.correcting_speed_m_s})),
+        world_(std::make_unique<World>(law_of(settings))),
         placed_(def.bodies.size()),
         jointed_(def.bodies.size()),
         used_(def.joints.size()) {}
@@ -88,7 +86,8 @@ class Builder {
     if (placed_[index(body)])
       throw std::runtime_error(
           "sim_node: joint \"" + joint->name +
-          "\" closes a loop, which the solver \"impulse\" cannot do; remove it or choose quick or step");
+          "\" closes a loop, which the solver \"" +
+          settings_.solver + "\" cannot do; remove it or choose quick or step");
     placed_[index(body)] = true;
     const BodyDef& b = def_.bodies[index(body)];
     LinkDef l;

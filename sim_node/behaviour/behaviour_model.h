@@ -1,0 +1,43 @@
+// The laws that may move the bodies of a scene, behind one solver (setting `solver`): what each needs, and whether
+// a scene, its detector and its law work together. A pairing that cannot work is refused before anything starts.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sim_node/behaviour/impulse/world.h"
+#include "sim_node/collision/detector.h"
+#include "sim_node/scene/world_def.h"
+#include "sim_node/settings.gen.h"
+
+namespace tactus::sim {
+
+struct BehaviourModel {
+  std::string_view name, what;
+  // Solved by impulse::World, free bodies and systems of joints alike; else by ODE.
+  bool impulses = false;
+  // Acts before surfaces meet: contacts have to say how far they still are apart. The others make do with overlap.
+  bool needs_gaps = false;
+  // Joints must not close a loop.
+  bool needs_trees = false;
+  // Only so stiff as step and mass allow.
+  bool has_stability_limit = false;
+  bool bounces = true;         // restitution of materials counts; else what rebounds is the spring's
+  bool finite_forces = false;  // which also are continuous; else a blow is over in one step
+};
+
+std::span<const BehaviourModel> behaviour_models();
+// Throws std::runtime_error with one sentence when the name is unknown.
+const BehaviourModel& behaviour_model(std::string_view name);
+
+// Empty when this detector serves the model; else one sentence with what to choose instead.
+std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector);
+// Empty when the model of these settings can move the bodies of this scene; else one sentence with what to do.
+// Loops of joints are found by who builds the systems.
+std::string refusal(const WorldDef& world, const Settings& settings);
+
+// The law of an impulse world, of a model that has one.
+impulse::Law law_of(const Settings& settings);
+
+}  // namespace tactus::sim
