@@ -15,6 +15,7 @@
 #include "sim_node/behaviour/group_tool.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/publish/ahead.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
@@ -63,7 +64,8 @@ class Mechanics {
   virtual void rename(std::int64_t incarnation) = 0;
 };
 
-// As the settings say. Throws std::runtime_error with one sentence when the world cannot be simulated.
-std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids);
+// As the settings say. trees: of this world. Throws std::runtime_error with one sentence when the world cannot be simulated.
+std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids,
+                                          const std::shared_ptr<MeshTrees>& trees);
 
 }  // namespace tactus::sim

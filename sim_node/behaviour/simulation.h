@@ -102,6 +102,7 @@ class Simulation {
   sync::Nanoseconds step_;
   std::int64_t steps_ = 0;
   Ids ids_;
+  std::shared_ptr<MeshTrees> trees_;
   std::unique_ptr<Mechanics> mechanics_;
   std::vector<Tool> tools_;
   std::vector<GroupTool> group_tools_;

@@ -15,6 +15,7 @@
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/collision/sphere_tree.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/state/state_archive.h"
@@ -26,7 +27,8 @@ class ToolTouch {
  public:
   static constexpr std::size_t kMostPlanes = 8;  // of a touch_model_t
 
-  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids);
+  // trees: of this world, where others use them too.
+  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids, MeshTrees& trees);
 
   // One step, at `now`. news: messages of this tool since the last step, in order. Appends events.
   void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
