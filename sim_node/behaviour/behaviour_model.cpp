@@ -92,7 +92,8 @@ impulse::Law law_of(const Settings& s) {
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
                    .damping_N_s_m = s.penalty_damping_Ns_m,
                    .thickness_m = s.contact_tolerance_m,
-                   .is_explicit = s.solver == "penalty_explicit"};
+                   .is_explicit = s.solver == "penalty_explicit",
+                   .rise_m_s = s.correcting_speed_m_s};
   return law;
 }
 
