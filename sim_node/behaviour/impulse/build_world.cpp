@@ -11,26 +11,14 @@ namespace {
 
 using articulated::LinkDef;
 
-// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is allowed,
-// 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
-constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
-
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-// The law where contacts say their gaps.
-Law touching(Law law) {
-  law.slack_m = kSlack_m;
-  law.shell_m = kShell_m;
-  law.penalty.thickness_m -= kShell_m;  // which ends where surfaces meet
-  return law;
-}
 
 class Builder {
  public:
   Builder(const WorldDef& def, const Settings& settings)
       : def_(def),
         settings_(settings),
-        world_(std::make_unique<World>(touching(law_of(settings)))),
+        world_(std::make_unique<World>(law_of(settings))),
         placed_(def.bodies.size()),
         jointed_(def.bodies.size()),
         used_(def.joints.size()) {}
