@@ -92,14 +92,20 @@ impulse::Law law_of(const Settings& s) {
                    .slack_m = kSlack_m,
                    .repair = s.contact_erp,
                    .repair_speed_m_s = s.correcting_speed_m_s,
-                   .shell_m = kShell_m};
-  if (behaviour_model(s.solver).finite_forces)
+                   .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
+  if (behaviour_model(s.solver).finite_forces) {
+    law.shell_m = kShell_m;
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
                    .damping_N_s_m = s.penalty_damping_Ns_m,
                    .thickness_m = s.contact_tolerance_m - kShell_m,  // ends where surfaces meet
                    .is_explicit = s.solver == "penalty_explicit",
                    .rise_m_s = s.correcting_speed_m_s};
+  }
   return law;
+}
+
+double meeting_distance_m(const Settings& s) {
+  return s.groups == "dual" || behaviour_model(s.solver).finite_forces ? s.contact_tolerance_m : 0;
 }
 
 }  // namespace tactus::sim

@@ -38,6 +38,7 @@ class Engine {
   virtual double chain_energy_J() = 0;   // of chain or pendulum
   virtual double joint_gap_m() = 0;
   virtual double pendulum_angle_rad() = 0;
+  virtual Eigen::Vector3d link_spin() = 0;  // of the hanging rod, world frame
 };
 
 std::unique_ptr<Engine> make_ours();

@@ -108,6 +108,7 @@ class Ode : public Engine {
   }
   Vector3d velocity(int body) override { return vec(dBodyGetLinearVel(at(body))); }
   Vector3d spin(int body) override { return vec(dBodyGetAngularVel(at(body))); }
+  Vector3d link_spin() override { return spin(0); }
   double contact_force_N() override { return force_; }
   double chain_energy_J() override {
     double sum = 0;

@@ -55,6 +55,7 @@ class Ours : public Engine {
   Eigen::Quaterniond orientation(int body) override { return toys_.motion(body).orientation; }
   Eigen::Vector3d velocity(int body) override { return toys_.world.free_body(body).velocity_m_s; }
   Eigen::Vector3d spin(int body) override { return toys_.world.free_body(body).spin_rad_s; }
+  Eigen::Vector3d link_spin() override { return toys_.world.system_of(jointed_).motion(0).spin_rad_s; }
   double contact_force_N() override { return toys_.force_N(); }
   double chain_energy_J() override { return energy_J(toys_.world.system_of(jointed_)); }
   double joint_gap_m() override { return 0; }  // the coordinates have none

@@ -12,7 +12,8 @@ namespace tactus::bench {
 struct Proof {
   std::string what, unit;
   double limit = 0;
-  std::string source;  // of the truth and of the limit
+  std::string truth;  // what the outcome is to be
+  std::string why;    // the limit
   std::function<double(const std::function<std::unique_ptr<Engine>()>&)> error;
 };
 

@@ -63,7 +63,7 @@ void Ear::take(const contact_frame_t& page) {
   auto& ids = part.ids[page.page];
   ids.clear();
   for (const contact_t& c : page.contacts) ids.push_back(c.contact_id);
-  if (static_cast<int>(part.ids.size()) == part.pages && page.group < 2) snapshots_[page.group] = part;
+  if (static_cast<int>(part.ids.size()) == part.pages && page.group < 3) snapshots_[page.group] = part;
 }
 
 std::set<std::int64_t> Ear::contact_ids() const {

@@ -70,7 +70,7 @@ class Ear {
   sync::Queue<presented_t>& presented_queue_;
   std::map<std::string, Heard> heard_;
   std::optional<tool_state_t> tool_;
-  Snapshot snapshots_[2];           // newest complete one of each group
+  Snapshot snapshots_[3];           // newest complete one of each group
   std::map<int, Snapshot> partial_;  // by group
   std::set<std::int64_t> hits_;
   std::map<std::string, std::map<std::int64_t, presentation_t>> presented_;

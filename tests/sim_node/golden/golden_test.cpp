@@ -1,0 +1,82 @@
+// What each scene comes to: the same to the bit as when the table was written, and whichever instructions are
+// used.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "sim_node/collision/layers/isa.h"
+#include "tests/sim_node/golden/state_hash.h"
+
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+
+namespace {
+
+const std::filesystem::path kScenes = TACTUS_SOURCE_DIR "/sim_node/scenes";
+
+std::string hex(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+// Lines "scene hash"; what begins with # is a comment.
+std::map<std::string, std::string> table() {
+  std::map<std::string, std::string> rows;
+  std::ifstream in(TACTUS_SOURCE_DIR "/tests/sim_node/golden/golden_hashes.txt");
+  for (std::string line; std::getline(in, line);) {
+    const auto space = line.find(' ');
+    if (!line.empty() && line[0] != '#' && space != std::string::npos)
+      rows[line.substr(0, space)] = line.substr(space + 1);
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "Every scene comes to the state of the table (scripts/golden_hashes --write when it is meant to change)") {
+  const auto golden = table();
+  std::size_t scenes = 0;
+  for (const auto& scene : scenes_in(kScenes)) {
+    INFO(scene.stem());
+    ++scenes;
+    REQUIRE(golden.contains(scene.stem()));
+    CHECK(hex(state_hash(scene)) == golden.at(scene.stem()));
+  }
+  CHECK(golden.size() == scenes);
+}
+
+TEST_CASE("Every scene comes to the same state with every instruction set that the processor has") {
+  int compared = 0;
+  for (const auto& scene : scenes_in(kScenes)) {
+    const std::uint64_t baseline = state_hash(scene, {"isa=baseline"});
+    for (const Isa isa : {Isa::kAvx2, Isa::kAvx512}) {
+      if (isa > best_isa()) continue;
+      INFO(scene.stem() << ", " << name_of(isa));
+      CHECK(state_hash(scene, {"isa=" + std::string(name_of(isa))}) == baseline);
+      ++compared;
+    }
+  }
+  CHECK((compared > 0 || best_isa() == Isa::kBaseline));
+}
+
+TEST_CASE("Meshes that touch meshes come to the same state with every instruction set") {
+  // Where the detector layers is, which has code of its own for each.
+  const auto with = [](const std::string& isa) {
+    return state_hash(kScenes / "peg_in_hole.sdf", {"detector=layers", "isa=" + isa});
+  };
+  const std::uint64_t baseline = with("baseline");
+  CHECK(baseline != state_hash(kScenes / "peg_in_hole.sdf", {"detector=ode"}));  // it does take part
+  if (best_isa() >= Isa::kAvx2) CHECK(with("avx2") == baseline);
+  if (best_isa() >= Isa::kAvx512) CHECK(with("avx512") == baseline);
+}
+
+TEST_CASE("A state hash tells one bit of one body from another, and a scene from itself after one step more") {
+  const auto scene = kScenes / "stack.sdf";
+  const std::uint64_t once = state_hash(scene, {}, 60);
+  CHECK(state_hash(scene, {}, 60) == once);
+  CHECK(state_hash(scene, {}, 61) != once);
+  CHECK(state_hash(scene, {"over_relaxation=1.31"}, 60) != once);
+}
