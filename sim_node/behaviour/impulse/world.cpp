@@ -328,12 +328,13 @@ void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build_rows(contacts);
   build_joints(h);
+  warm_.recall(contacts, motions_, h, rows_);
   const bool presses = law_.penalty.stiffness_N_m > 0;
-  if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  if (presses) shield(rows_, law_.penalty, velocity_, h);
+  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
   ask(h);
   if (presses) press(rows_, law_.penalty, velocity_, h);
-  warm_.recall(contacts, motions_, h, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();
   if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);

@@ -27,7 +27,7 @@ struct Law {
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
   double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
-  Penalty penalty = {};            // in a shell beyond that gap, instead of collisions with restitution
+  Penalty penalty = {};            // in a shell beyond that gap, instead of collisions that its springs can stop
 };
 
 struct Surface {
