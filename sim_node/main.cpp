@@ -126,7 +126,8 @@ int main(int argc, char** argv) try {
                                 .touch_models = &simulation.touch_models(),
                                 .events = steps ? &simulation.events() : &no_events,
                                 .tool_contacts = &simulation.tool_contacts(),
-                                .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }},
+                                .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
+                                          steps ? simulation.ahead() : nullptr},
                                 .game = &simulation.game()},
                                map);
     node.set_realtime_factor(pacer.realtime_factor());

@@ -37,6 +37,10 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
 // Loops of joints are found by who builds the systems.
 std::string refusal(const WorldDef& world, const Settings& settings);
 
+// The gap at which surfaces begin to act on each other, m: where springs do, and, so that nothing changes when a body goes
+// from one group to the other, in both groups of a dual simulation. Else they meet at none.
+double meeting_distance_m(const Settings& settings);
+
 // The law of an impulse world, of a model that has one.
 impulse::Law law_of(const Settings& settings);
 

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/behaviour/impulse/build_world.h"
 #include "sim_node/behaviour/ode_handles.h"
 #include "sim_node/behaviour/ode_joints.h"
 #include "sim_node/behaviour/solver.h"
@@ -21,9 +20,7 @@ struct Solver::Engine {
   dJointGroupID contact_joints;
   std::vector<dBodyID> bodies;  // null: never moves
   std::vector<bool> jointed;
-  std::unique_ptr<ode::Joints> joints;      // null when impulses solve
-  std::unique_ptr<impulse::World> impulse;  // null when ODE solves; ODE then only finds the contacts
-  std::vector<Eigen::Quaterniond> at_rest;  // orientation of each body at the start
+  std::unique_ptr<ode::Joints> joints;
   std::unique_ptr<ode::Shapes> shapes;
   struct Joined {
     ManifoldPoint* point;

@@ -14,12 +14,6 @@ using ode::to_eigen;
 // Below this a tangential speed has no direction, m/s.
 constexpr double kStill_m_s = 1e-9;
 
-void shift_depths(std::span<Manifold> contacts, double by_m) {
-  if (by_m == 0) return;
-  for (Manifold& m : contacts)
-    for (ManifoldPoint& p : m.used()) p.depth_m += by_m;
-}
-
 dMass mass_of(const BodyDef& body) {
   const Eigen::Matrix3d& i = body.inertia_kg_m2;
   const Eigen::LLT<Eigen::Matrix3d> cholesky(i);
@@ -57,9 +51,18 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
   return id;
 }
 
-Solver::Solver(const WorldDef& world, const Settings& settings)
-    : engine_(std::make_unique<Engine>()), settings_(settings), motions_(world.bodies.size()) {
+Solver::Solver(const WorldDef& world, const Settings& settings) : settings_(settings) {
   if (const std::string why = refusal(world, settings); !why.empty()) throw std::runtime_error(why);
+  if (behaviour_model(settings.solver).impulses)
+    impulse_ = std::make_unique<ImpulseSolver>(world, settings);
+  else
+    start(world);
+}
+
+void Solver::start(const WorldDef& world) {
+  const Settings& settings = settings_;
+  engine_ = std::make_unique<Engine>();
+  motions_.resize(world.bodies.size());
   const dWorldID w = engine_->world.get();
   const Eigen::Vector3d g = world.gravity_m_s2;
   dWorldSetGravity(w, g.x(), g.y(), g.z());
@@ -76,11 +79,7 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
   for (const JointDef& j : world.joints)
     for (const int body : {j.parent, j.child})
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
-  if (behaviour_model(settings.solver).impulses)
-    engine_->impulse = impulse::build_world(world, settings);
-  else
-    engine_->joints =
-        std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
+  engine_->joints = std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
   engine_->feedback.resize(kMostPoints);
   engine_->joined.reserve(kMostPoints);
@@ -99,7 +98,6 @@ Solver::Solver(const WorldDef& world, const Settings& settings)
     BodyMotion& m = motions_[i];
     m.position_m = b.pose.translation();
     m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
-    engine_->at_rest.push_back(m.orientation);
     m.centre_m = b.pose * b.centre_of_mass_m;
     m.inverse_mass_1_kg = moves ? 1 / b.mass_kg : 0;
     fall_m_s_.push_back(inert_[i].gravity_m_s);
@@ -127,34 +125,17 @@ void Solver::read_bodies() {
   }
 }
 
-// ODE's bodies are put where the impulse solver has moved them, so that it finds their contacts.
-void Solver::place_bodies() {
-  const auto moved = engine_->impulse->motions();
-  for (std::size_t i = 0; i < motions_.size(); ++i) {
-    const dBodyID id = engine_->bodies[i];
-    if (!id) continue;
-    const BodyMotion& m = moved[i];
-    dBodySetPosition(id, m.centre_m.x(), m.centre_m.y(), m.centre_m.z());
-    // A link's turn is counted from the start.
-    dQuaternion q;
-    ode::set_quaternion(engine_->jointed[i] ? m.orientation * engine_->at_rest[i] : m.orientation, q);
-    dBodySetQuaternion(id, q);
-    dBodySetLinearVel(id, m.velocity_m_s.x(), m.velocity_m_s.y(), m.velocity_m_s.z());
-    dBodySetAngularVel(id, m.spin_rad_s.x(), m.spin_rad_s.y(), m.spin_rad_s.z());
-  }
-}
-
 void Solver::add_force(int body, const Eigen::Vector3d& f, const Eigen::Vector3d& p) {
+  if (impulse_) return impulse_->add_force(body, f, p);
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id) return;
-  if (engine_->impulse) return engine_->impulse->add_force(body, f, p);
   dBodyAddForceAtPos(id, f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
   fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
 }
 
 void Solver::add_torque(int body, const Eigen::Vector3d& t) {
-  if (engine_->impulse) return engine_->impulse->add_torque(body, t);
+  if (impulse_) return impulse_->add_torque(body, t);
   if (const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)]) dBodyAddTorque(id, t.x(), t.y(), t.z());
 }
 
@@ -218,18 +199,7 @@ void Solver::join(Manifold& c) {
 }
 
 void Solver::step() {
-  if (engine_->impulse) {
-    // Depth is counted from where contact begins; that of penalty begins a shell before the surfaces meet.
-    const double shell_m = behaviour_model(settings_.solver).needs_gaps ? settings_.contact_tolerance_m : 0;
-    shift_depths(contacts_, -shell_m);
-    engine_->impulse->step(contacts_, settings_.step_s);
-    shift_depths(contacts_, shell_m);
-    place_bodies();
-    std::swap(contacts_, solved_);
-    read_bodies();
-    engine_->shapes->collide(contacts_);
-    return;
-  }
+  if (impulse_) return impulse_->step(settings_.step_s);
   // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
@@ -257,7 +227,11 @@ void Solver::step() {
   engine_->shapes->collide(contacts_);
 }
 
-std::int64_t Solver::complaints() const { return ode::message_count() - engine_->said_before; }
-double Solver::largest_joint_gap_m() const { return engine_->joints ? engine_->joints->largest_gap_m() : 0; }
+std::int64_t Solver::complaints() const { return engine_ ? ode::message_count() - engine_->said_before : 0; }
+double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
+
+double Solver::mobility(int body, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
+  return impulse_ ? impulse_->mobility(body, point, n) : sim::mobility(motions_[static_cast<std::size_t>(body)], point, n);
+}
 
 }  // namespace tactus::sim

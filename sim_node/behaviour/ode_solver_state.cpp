@@ -9,9 +9,8 @@ namespace tactus::sim {
 
 using ode::to_eigen;
 
-bool Solver::takes_settings() const { return engine_->impulse == nullptr; }
-
 void Solver::set_gravity(const Eigen::Vector3d& g) {
+  if (impulse_) return impulse_->set_gravity(g);
   dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
   for (std::size_t i = 0; i < inert_.size(); ++i) {
     if (!falls_[i]) continue;
@@ -21,6 +20,7 @@ void Solver::set_gravity(const Eigen::Vector3d& g) {
 }
 
 bool Solver::set_mass(int body, double mass_kg) {
+  if (impulse_) return impulse_->set_mass(body, mass_kg);
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id || engine_->jointed[i]) return false;
@@ -35,6 +35,7 @@ bool Solver::set_mass(int body, double mass_kg) {
 }
 
 bool Solver::set_pose(int body, const Eigen::Isometry3d& pose) {
+  if (impulse_) return impulse_->set_pose(body, pose);
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id || engine_->jointed[i]) return false;
@@ -49,6 +50,7 @@ bool Solver::set_pose(int body, const Eigen::Isometry3d& pose) {
 }
 
 bool Solver::set_velocity(int body, const Eigen::Vector3d& v) {
+  if (impulse_) return impulse_->set_velocity(body, v);
   const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
   if (!id) return false;
   dBodySetLinearVel(id, v.x(), v.y(), v.z());
@@ -57,6 +59,7 @@ bool Solver::set_velocity(int body, const Eigen::Vector3d& v) {
 }
 
 bool Solver::set_spin(int body, const Eigen::Vector3d& w) {
+  if (impulse_) return impulse_->set_spin(body, w);
   const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)];
   if (!id) return false;
   dBodySetAngularVel(id, w.x(), w.y(), w.z());
@@ -65,20 +68,24 @@ bool Solver::set_spin(int body, const Eigen::Vector3d& w) {
 }
 
 void Solver::set_friction(int body, double friction) {
+  if (impulse_) return impulse_->set_friction(body, friction);
   for (std::size_t s = 0; s < body_of_.size(); ++s)
     if (body_of_[s] == body) friction_[s] = friction;
 }
 
 void Solver::set_restitution(int body, double restitution) {
+  if (impulse_) return impulse_->set_restitution(body, restitution);
   for (std::size_t s = 0; s < body_of_.size(); ++s)
     if (body_of_[s] == body) restitution_[s] = restitution;
 }
 
 bool Solver::set_motor(const std::string& joint, int axis, double effort, double velocity) {
+  if (impulse_) return impulse_->set_motor(joint, axis, effort, velocity);
   return engine_->joints->set_motor(joint, axis, effort, velocity);
 }
 
 bool Solver::set_joint_friction(const std::string& joint, int axis, double friction) {
+  if (impulse_) return impulse_->set_joint_friction(joint, axis, friction);
   return engine_->joints->set_friction(joint, axis, friction);
 }
 
@@ -112,14 +119,14 @@ void Solver::Engine::archive(StateArchive& a, dBodyID id) {
 }
 
 void Solver::archive(StateArchive& a) {
+  if (impulse_) return impulse_->archive(a);
   a(steps_);
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     if (!engine_->bodies[i]) continue;
     engine_->archive(a, engine_->bodies[i]);
     a(motions_[i].inverse_mass_1_kg);
   }
-  if (engine_->joints) engine_->joints->archive(a);
-  if (engine_->impulse) engine_->impulse->archive(a);
+  engine_->joints->archive(a);
   dVector3 gravity;
   dWorldGetGravity(engine_->world.get(), gravity);
   Eigen::Vector3d g = to_eigen(gravity);

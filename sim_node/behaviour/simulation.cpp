@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/collision/closest_surface.h"
+#include "sim_node/dual/group_bodies.h"
 #include "sim_node/state/fingerprint.h"
 
 namespace tactus::sim {
@@ -14,19 +14,9 @@ constexpr std::size_t kMostBooks = 8;  // of a touch_model_t
 // A force may act so far outside the sphere around a body, m: the rounding of the wire and a step's motion.
 constexpr double kBeyond_m = 0.02;
 
-// Radius about its centre of mass of the sphere that holds each body.
 std::vector<double> reaches(const WorldDef& world) {
-  std::vector<double> out(world.bodies.size(), kBeyond_m);
-  for (const ShapeDef& s : world.shapes) {
-    const auto body = static_cast<std::size_t>(s.body);
-    if (world.bodies[body].is_static) continue;
-    const TriangleMesh* mesh = s.kind == ShapeKind::kMesh ? &world.meshes[static_cast<std::size_t>(s.mesh)] : nullptr;
-    const ClosestSurface surface(s, mesh);
-    const double from_centre = (s.pose * surface.centre() - world.bodies[body].centre_of_mass_m).norm();
-    // A plane that moves is a plate of its size.
-    const double bound = s.kind == ShapeKind::kPlane ? 0.5 * s.size_m.norm() : surface.bound_m();
-    out[body] = std::max(out[body], from_centre + bound + kBeyond_m);
-  }
+  std::vector<double> out = body_radii(world);
+  for (double& reach : out) reach += kBeyond_m;
   return out;
 }
 
@@ -35,9 +25,8 @@ std::vector<double> reaches(const WorldDef& world) {
 Simulation::Simulation(const WorldDef& world, const Settings& settings)
     : settings_(settings),
       step_(sync::from_seconds(settings.step_s)),
-      ids_(0),
-      solver_(world, settings),
-      tracker_(surface_traits(world, settings), settings, ids_),
+      ids_(0, 0, settings.groups == "dual" ? 2 : 1),  // the other lane names what is computed ahead
+      mechanics_(make_mechanics(world, settings, ids_)),
       game_(world.holes),
       fingerprint_(fingerprint(world, settings)) {
   tools_.reserve(world.tools.size());
@@ -52,6 +41,8 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
 
 void Simulation::start(std::int64_t incarnation) {
   ids_.restart(incarnation);
+  find_tools();
+  mechanics_->start(group_tools_, events_);
   look();
   begin_ = save();
 }
@@ -65,33 +56,41 @@ void Simulation::sort_news(std::span<const tool_state_t> messages) {
 void Simulation::step(std::span<const tool_state_t> messages) {
   if (held_) {
     for (Tool& tool : tools_) tool.news.clear();
-    motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
-    place_tools();
+    place_tools(mechanics_->motions());
     held_ = false;
   }
   sort_news(messages);
   apply_wrenches();
   for (Tool& tool : tools_)
-    for (const Push& push : tool.push.step(now(), tool.news, motions_))
-      solver_.add_force(push.body, push.force_N, push.point_m);
-  solver_.step();
+    for (const Push& push : tool.push.step(now(), tool.news, mechanics_->motions()))
+      mechanics_->add_force(push.body, push.force_N, push.point_m);
   // The events of the first instant have not been seen by anybody yet.
-  if (steps_++ > 0) events_.clear();
-  for (Tool& tool : tools_) tool.push.settle(solver_.bodies());
+  if (steps_ > 0) events_.clear();
+  find_tools();
+  mechanics_->tick(now(), group_tools_, events_);
+  ++steps_;
+  for (Tool& tool : tools_) tool.push.settle(mechanics_->motions());
   look();
 }
 
+void Simulation::find_tools() {
+  group_tools_.clear();
+  for (const Tool& tool : tools_)
+    if (tool.touch.touches()) group_tools_.push_back(tool.touch.for_groups());
+}
+
+// After a step, and at the first instant.
 void Simulation::look() {
   tool_contacts_.clear();
-  motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
-  place_tools();
-  game_.step(now(), motions_);
-  tracker_.update(now(), step_, motions_, solver_.contacts(), solver_.solved(), events_);
+  const std::span<BodyMotion> motions = mechanics_->motions();
+  place_tools(motions);
+  game_.step(now(), motions);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     ToolTouch& touch = tools_[i].touch;
-    touch.update(now(), motions_, tools_[i].news, events_);
-    touch.describe(motions_, tool_contacts_);
-    models_[i] = touch.model();
+    touch.look_only_at(mechanics_->near_tools());
+    touch.update(now(), motions, tools_[i].news, events_);
+    touch.describe(motions, tool_contacts_);
+    models_[i] = tools_[i].touch.model();
     tools_[i].push.books(models_[i].applied, kMostBooks);
     models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
   }
@@ -101,8 +100,8 @@ void Simulation::look() {
 
 void Simulation::apply_wrenches() {
   for (Wrench& w : wrenches_) {
-    solver_.add_force(w.body, w.force_N, solver_.bodies()[static_cast<std::size_t>(w.body)].centre_m);
-    solver_.add_torque(w.body, w.torque_N_m);
+    mechanics_->add_force(w.body, w.force_N, mechanics_->motions()[static_cast<std::size_t>(w.body)].centre_m);
+    mechanics_->add_torque(w.body, w.torque_N_m);
     --w.steps;
   }
   std::erase_if(wrenches_, [](const Wrench& w) { return w.steps <= 0; });
@@ -115,7 +114,7 @@ bool Simulation::push(const Wrench& wrench) {
 }
 
 void Simulation::set_friction(int body, double friction) {
-  solver_.set_friction(body, friction);
+  mechanics_->set_friction(body, friction);
   for (Tool& tool : tools_) tool.touch.set_friction(body, friction);
 }
 
@@ -123,33 +122,30 @@ void Simulation::hold(std::span<const tool_state_t> messages) {
   sort_news(messages);
   held_ = true;
   tool_contacts_.clear();
-  motions_.assign(solver_.bodies().begin(), solver_.bodies().end());
-  for (BodyMotion& m : motions_) m.velocity_m_s = m.spin_rad_s = Eigen::Vector3d::Zero();
+  const std::span<const BodyMotion> now_motions = mechanics_->motions();
+  shown_.assign(now_motions.begin(), now_motions.end());
+  for (BodyMotion& m : shown_) m.velocity_m_s = m.spin_rad_s = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    tools_[i].touch.feel(now(), motions_, tools_[i].news);
-    tools_[i].push.hold(now(), tools_[i].news, motions_);
+    tools_[i].touch.look_only_at(std::nullopt);
+    tools_[i].touch.feel(now(), shown_, tools_[i].news);
+    tools_[i].push.hold(now(), tools_[i].news, shown_);
     models_[i] = tools_[i].touch.model();
     tools_[i].push.books(models_[i].applied, kMostBooks);
     models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
   }
-  place_tools();
-  for (Tool& tool : tools_) tool.touch.describe(motions_, tool_contacts_);
+  place_tools(shown_);
+  for (Tool& tool : tools_) tool.touch.describe(shown_, tool_contacts_);
 }
 
-void Simulation::place_tools() {
+void Simulation::place_tools(std::span<BodyMotion> motions) {
   for (Tool& tool : tools_) {
     if (tool.body < 0) continue;
-    BodyMotion& m = motions_[static_cast<std::size_t>(tool.body)];
+    BodyMotion& m = motions[static_cast<std::size_t>(tool.body)];
     if (!tool.news.empty()) tool.orientation = to_eigen(tool.news.back().proxy.orientation).normalized();
     m.orientation = tool.orientation;
     m.position_m = m.centre_m = tool.touch.proxy();
     m.velocity_m_s = tool.touch.proxy_velocity();
   }
-}
-
-void Simulation::body_contacts(std::vector<contact_t>& out) const {
-  out.clear();
-  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.emplace_back());
 }
 
 }  // namespace tactus::sim

@@ -11,10 +11,10 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
+#include "sim_node/behaviour/mechanics.h"
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/behaviour/tool_push.h"
 #include "sim_node/behaviour/tool_touch.h"
-#include "sim_node/collision/contact_tracker.h"
 #include "sim_node/collision/ids.h"
 #include "sim_node/game/game.h"
 #include "sync/time.h"
@@ -65,13 +65,17 @@ class Simulation {
   const std::vector<contact_event_t>& events() const { return events_; }
   std::vector<touch_model_t>& touch_models() { return models_; }
   const std::vector<contact_t>& tool_contacts() const { return tool_contacts_; }
-  // Contacts between bodies, into `out`, which is cleared.
-  void body_contacts(std::vector<contact_t>& out) const;
-  std::span<const BodyMotion> bodies() const { return motions_; }
+  // Contacts between bodies at the present instant, into `out`, which is cleared.
+  void body_contacts(std::vector<contact_t>& out) { mechanics_->contacts(out); }
+  std::span<const BodyMotion> bodies() const {
+    return held_ ? std::span<const BodyMotion>(shown_) : mechanics_->motions();
+  }
+  // Of the bodies that are computed ahead; null: none are.
+  const Ahead* ahead() { return mechanics_->ahead(); }
   Game& game() { return game_; }
-  const Solver& solver() const { return solver_; }
   // To set what may be set while the world runs. Of friction the tools are told here.
-  Solver& solver() { return solver_; }
+  Mechanics& mechanics() { return *mechanics_; }
+  const Mechanics& mechanics() const { return *mechanics_; }
   void set_friction(int body, double friction);
   // A force and a torque, world frame, on a body at its centre of mass, for so long from the next step on. False: as many
   // act already as there may be.
@@ -87,7 +91,8 @@ class Simulation {
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
   void look();
-  void place_tools();
+  void place_tools(std::span<BodyMotion> motions);
+  void find_tools();
   void sort_news(std::span<const tool_state_t> messages);
   void apply_wrenches();
   void archive(StateArchive& a);
@@ -96,16 +101,16 @@ class Simulation {
   sync::Nanoseconds step_;
   std::int64_t steps_ = 0;
   Ids ids_;
-  Solver solver_;
-  ContactTracker tracker_;
+  std::unique_ptr<Mechanics> mechanics_;
   std::vector<Tool> tools_;
-  std::vector<BodyMotion> motions_;  // of the solver, with the tools where their proxies are
+  std::vector<GroupTool> group_tools_;
+  std::vector<BodyMotion> shown_;  // while it stands still: all at rest
   std::vector<contact_event_t> events_;
   std::vector<contact_t> tool_contacts_;
   std::vector<touch_model_t> models_;
   std::vector<Wrench> wrenches_;
   Game game_;
-  bool held_ = false;  // motions_ are shown at rest
+  bool held_ = false;  // shown_ is what is shown
   std::uint64_t fingerprint_;
   std::vector<std::uint8_t> begin_;  // the state at start()
 };

@@ -15,26 +15,27 @@ void Simulation::archive(StateArchive& a) {
   a(steps_);
   a.require(steps_ >= 0 && steps_ <= kMostSteps, "the state holds a number out of range");
   ids_.archive(a);
-  solver_.archive(a);
-  tracker_.archive(a, motions_.size());
+  mechanics_->archive(a);
+  const std::size_t bodies = mechanics_->motions().size();
   a.fixed(tools_, [&](Tool& tool) {
     tool.touch.archive(a);
-    tool.push.archive(a, motions_.size());
+    tool.push.archive(a, bodies);
     a(tool.orientation);
     if (a.reads()) tool.news.clear();
   });
-  a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
   a.list(events_, kMostEvents, [&](contact_event_t& e) { a.message(e); });
   a.list(tool_contacts_, kMostEvents, [&](contact_t& c) { a.message(c); });
   a.fixed(models_, [&](touch_model_t& m) { a.message(m); });
   a.list(wrenches_, kMostWrenches, [&](Wrench& w) {
-    a.index(w.body, motions_.size());
+    a.index(w.body, bodies);
     a.require(w.body >= 0, "the state holds a push of nothing");
     a(w.force_N), a(w.torque_N_m), a(w.steps);
     a.require(w.steps >= 0 && w.steps <= kMostSteps, "the state holds a number out of range");
   });
   a(held_);
-  game_.archive(a, motions_.size());
+  shown_.resize(held_ ? bodies : 0);
+  a.fixed(shown_, [&](BodyMotion& m) { sim::archive(a, m); });
+  game_.archive(a, bodies);
 }
 
 std::vector<std::uint8_t> Simulation::save() {
@@ -59,7 +60,7 @@ std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
 
 void Simulation::begin_life(std::int64_t incarnation) {
   ids_.rename(incarnation);
-  tracker_.rename();
+  mechanics_->rename(incarnation);
   for (contact_event_t& e : events_) {
     e.event_id = ids_.renamed(e.event_id);
     e.contact_id = ids_.renamed(e.contact_id);

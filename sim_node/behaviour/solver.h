@@ -1,5 +1,5 @@
-// The bodies of a world and the laws that move them: one step of a world at a time. This header knows no engine; ODE
-// stays behind it.
+// The bodies of a world and the laws that move them: one step of a world at a time. By impulses, with contacts that see
+// gaps; or by ODE, which stays behind this header.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
@@ -32,8 +33,6 @@ class Solver {
 
   // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
   // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
-  // takes_settings: false with the solver impulse, which has none of these.
-  bool takes_settings() const;
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
   bool set_mass(int body, double mass_kg);  // the inertia in proportion
   bool set_pose(int body, const Eigen::Isometry3d& pose);
@@ -53,10 +52,15 @@ class Solver {
   void step();
 
   // Of every body of the world, tools and fixed bodies included (they stand still).
-  std::span<const BodyMotion> bodies() const { return motions_; }
+  std::span<const BodyMotion> bodies() const { return impulse_ ? impulse_->bodies() : motions_; }
   // Contacts of the present poses, and those of the step before with the force that each point carried; both ordered.
-  std::span<const Manifold> contacts() const { return contacts_; }
-  std::span<const Manifold> solved() const { return solved_; }
+  std::span<const Manifold> contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
+  std::span<const Manifold> solved() const { return impulse_ ? impulse_->solved() : solved_; }
+  // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
+  // solve.
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
+  // What it took that nothing overlaps; of ODE none.
+  const impulse::Advance::Report* report() const { return impulse_ ? &impulse_->report() : nullptr; }
   // How often the engine said that it could not solve something, since the start.
   std::int64_t complaints() const;
   // How far apart the joints have come at most, m.
@@ -69,12 +73,13 @@ class Solver {
     Eigen::Matrix3d inverse_inertia;
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds in a step
   };
+  void start(const WorldDef& world);
   void read_bodies();
-  void place_bodies();
   void back_off(Manifold& contact, bool is_new);
   void join(Manifold& contact);
 
-  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<ImpulseSolver> impulse_;  // null when ODE solves
+  std::unique_ptr<Engine> engine_;          // null when impulses do
   Settings settings_;
   std::vector<double> friction_, restitution_;  // per shape
   std::vector<int> body_of_;                    // per shape

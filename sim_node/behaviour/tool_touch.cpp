@@ -71,6 +71,10 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     else
       moving_.push_back({static_cast<int>(i), s.traits.body, s.shape.bound_m() + s.centre_in_body.norm()});
   }
+  std::stable_sort(moving_.begin(), moving_.end(), [](const Moving& a, const Moving& b) { return a.body < b.body; });
+  first_of_.assign(world.bodies.size() + 1, moving_.size());
+  for (std::size_t i = moving_.size(); i-- > 0;) first_of_[static_cast<std::size_t>(moving_[i].body)] = i;
+  for (std::size_t i = world.bodies.size(); i-- > 0;) first_of_[i] = std::min(first_of_[i], first_of_[i + 1]);
   fixed_ = SphereTree(std::move(fixed));
   model_.tool = points ? -1 : tool;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
@@ -94,18 +98,23 @@ void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surfa
 }
 
 void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
-  const double reach = radius_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * velocity_.norm();
+  const double reach = reach_m();
   candidates_.clear();
   fixed_.near(proxy_, reach + kRounding_m, candidates_);
-  for (const Moving& m : moving_) {
+  const auto look_at = [&](const Moving& m) {
     // The position alone first: there may be a thousand of them.
     const BodyMotion& body = bodies[static_cast<std::size_t>(m.body)];
     const double about = m.bound_m + reach + kRounding_m;
-    if ((proxy_ - body.position_m).squaredNorm() > about * about) continue;
+    if ((proxy_ - body.position_m).squaredNorm() > about * about) return;
     const Surface& s = surfaces_[static_cast<std::size_t>(m.surface)];
     const double within = s.shape.bound_m() + reach;
     if ((proxy_ - body.to_world(s.centre_in_body)).squaredNorm() <= within * within) candidates_.push_back(m.surface);
-  }
+  };
+  if (!only_) std::for_each(moving_.begin(), moving_.end(), look_at);
+  if (only_)
+    for (const int body : *only_)
+      for (std::size_t i = first_of_[static_cast<std::size_t>(body)]; i < first_of_[static_cast<std::size_t>(body) + 1]; ++i)
+        look_at(moving_[i]);
   // As the scene has them, so that numbers are given out in one order.
   std::sort(candidates_.begin(), candidates_.end());
   for (const int candidate : candidates_) {

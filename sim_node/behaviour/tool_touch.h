@@ -2,6 +2,7 @@
 // tool is a ghost at its proxy's pose; the force is the haptic node's. Pure.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/behaviour/group_tool.h"
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
@@ -40,6 +42,14 @@ class ToolTouch {
   const Eigen::Vector3d& proxy_velocity() const { return proxy_velocity_; }
   // Contacts of the tool.
   void describe(std::span<const BodyMotion> bodies, std::vector<contact_t>& out) const;
+
+  // From now on only these bodies that move are looked at, beside what never moves; ascending, and alive until the next
+  // call; none: all.
+  void look_only_at(std::optional<std::span<const int>> bodies) { only_ = bodies; }
+  // False: it only points.
+  bool touches() const { return model_.tool >= 0; }
+  // As grouping sees it: with the margin within which surfaces are in its model.
+  GroupTool for_groups() const { return {proxy_, proxy_velocity_, reach_m()}; }
 
   // The friction of a body's shapes against other bodies has been set: that of the tool against them follows.
   void set_friction(int body, double friction);
@@ -74,6 +84,9 @@ class ToolTouch {
     double closing_m_s = 0;   // speed at which the device came nearer, before
   };
 
+  double reach_m() const {
+    return radius_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * velocity_.norm();
+  }
   void look_around(sync::SimTime now, std::span<const BodyMotion> bodies);
   void follow(sync::SimTime now, const SurfacePlane& plane, std::size_t surface);
   void take(const tool_state_t& m, sync::SimTime now, std::span<const BodyMotion> bodies,
@@ -100,7 +113,9 @@ class ToolTouch {
     int surface, body;
     double bound_m;  // about the origin of its body
   };
-  std::vector<Moving> moving_;
+  std::vector<Moving> moving_;          // by body
+  std::vector<std::size_t> first_of_;   // of each body, in moving_; and one past the last
+  std::optional<std::span<const int>> only_;
   std::vector<int> candidates_;
   std::vector<Near> near_;
   std::vector<SurfacePlane> found_;

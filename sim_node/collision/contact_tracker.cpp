@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lcmtypes/vectors.h"
+#include "sim_node/behaviour/behaviour_model.h"
 
 namespace tactus::sim {
 
@@ -17,8 +18,8 @@ constexpr double kRearm = 0.5;
 // than this beyond the motion of the surfaces did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces nearer than this touch: design: four times what the solver leaves between surfaces that rest (impulse::Law),
-// so that its residual is no gap. What touched parts when it is further away than this.
+// Surfaces nearer than this touch: design: twice what the solver leaves between surfaces that rest (impulse::Law), so
+// that its residual is no gap. What touched parts when it is further away than this.
 constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
@@ -51,7 +52,7 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), ids_(ids) {}
+    : surfaces_(std::move(surfaces)), settings_(settings), meets_at_m_(meeting_distance_m(settings)), ids_(ids) {}
 
 // At the point whose surfaces close fastest.
 ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<const BodyMotion> bodies) const {
@@ -64,7 +65,7 @@ ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<con
     best.speed_m_s = speed;
     fastest = &p;
   }
-  best.depth_m = std::max(0.0, fastest->depth_m);
+  best.depth_m = std::max(0.0, fastest->depth_m + meets_at_m_);
   best.place_m = fastest->point_m;
   best.normal = fastest->normal;
   best.mass_kg = effective_mass(a, b, best.place_m, best.normal);
@@ -111,6 +112,12 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.curvature_1_m = static_cast<float>(how.curvature_1_m);
 }
 
+void ContactTracker::tell(LiveContact& c, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+                          std::vector<contact_event_t>& events) {
+  events_ = &events;
+  emit(c, kind, when, meeting(c.manifold, bodies));
+}
+
 // Takes the newest manifold as the state of the contact.
 void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const BodyMotion> bodies, bool rolls) {
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
@@ -148,7 +155,7 @@ bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* 
   const Manifold& m = c.manifold;
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
   const Vector3d on_a = a.to_world(c.a_body_m), on_b = b.to_world(c.b_body_m), n = m.points[0].normal;
-  c.gap_m = near ? -deepest(*near) : (on_b - on_a).dot(n);
+  c.gap_m = (near ? -deepest(*near) : (on_b - on_a).dot(n)) - meets_at_m_;
   if (c.touching || struck) {
     const double opening = (b.velocity_at(on_b) - a.velocity_at(on_a)).dot(n);
     const double since_s = struck        ? step_s_ - struck->impact.last_s
@@ -174,7 +181,8 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
                             std::span<const BodyMotion> bodies) {
   const Manifold* struck = solved && solved->impact.blows > 0 ? solved : nullptr;
   const bool touched = before && before->touching;
-  const bool touches = near && -deepest(*near) <= (touched ? kParted_m : kTouch_m);
+  const double within = meets_at_m_ + (touched ? kParted_m : kTouch_m);
+  const bool touches = near && -deepest(*near) <= within;
   if (!before && !struck && !touches) return;
   LiveContact& c = next_.emplace_back();
   if (before)
@@ -195,7 +203,8 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
     meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), meeting(met, i));
   }
   if (touches) {
-    const Manifold met = of_points(*near, [](const ManifoldPoint& p) { return -p.depth_m <= kParted_m; });
+    const double far = meets_at_m_ + kParted_m;
+    const Manifold met = of_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; });
     remember(c, met, bodies, touched);
     if (struck) return;
     // The impact was inside the step: where the overlap began.
@@ -253,7 +262,7 @@ void ContactTracker::describe(const LiveContact& c, std::span<const BodyMotion> 
   out.material_b = sb.material;
   out.tool = -1;
   out.normal = to_vec3f(deepest.normal);
-  out.depth_m = static_cast<float>(c.touching ? deepest.depth_m : -c.gap_m);
+  out.depth_m = static_cast<float>(c.touching ? deepest.depth_m + meets_at_m_ : -c.gap_m);
   out.area_m2 = static_cast<float>(contact_area(m, kind, c.normal_force_N, curvature_of(m, deepest, bodies),
                                                 sa.compliance_1_Pa + sb.compliance_1_Pa));
   out.normal_force_N = static_cast<float>(c.normal_force_N);

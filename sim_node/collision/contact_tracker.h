@@ -51,8 +51,17 @@ class ContactTracker {
   // The contact as a message.
   void describe(const LiveContact& contact, std::span<const BodyMotion> bodies, contact_t& out) const;
 
+  // Contacts of marked bodies (a mark for each of the world) go elsewhere, appended to `out` in order, and come from there.
+  // Realtime-safe once the lists have grown.
+  void take(std::span<const char> marked, std::vector<LiveContact>& out);
+  void put(std::span<const LiveContact> contacts);
+  // Says something of a contact that the steps did not: its begin, for who was not told of it.
+  void tell(LiveContact& contact, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+            std::vector<contact_event_t>& events);
+
   // bodies: how many the world has.
   void archive(StateArchive& a, std::size_t bodies);
+  void archive(StateArchive& a, LiveContact& contact, std::size_t bodies);
   // The ids have been renamed.
   void rename();
 
@@ -78,6 +87,7 @@ class ContactTracker {
 
   std::vector<SurfaceTraits> surfaces_;
   Settings settings_;
+  double meets_at_m_;  // surfaces act on each other from this gap on, and touch
   Ids& ids_;
   sync::SimTime now_{};
   sync::Nanoseconds step_{};

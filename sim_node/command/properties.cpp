@@ -78,24 +78,24 @@ std::string set_of_body(Simulation& s, const WorldDef& world, int body, const st
     return "";
   }
   if (property == "restitution") {
-    s.solver().set_restitution(body, v[0]);
+    s.mechanics().set_restitution(body, v[0]);
     return "";
   }
   if (const std::string why = may_move(world, body); !why.empty()) return why;
-  if (property == "mass") return s.solver().set_mass(body, v[0]) ? "" : on_joint;
-  if (property == "pose") return s.solver().set_pose(body, pose_of(v)) ? "" : on_joint;
-  if (property == "velocity") s.solver().set_velocity(body, Vector3d(v.data()));
-  if (property == "spin") s.solver().set_spin(body, Vector3d(v.data()));
+  if (property == "mass") return s.mechanics().set_mass(body, v[0]) ? "" : on_joint;
+  if (property == "pose") return s.mechanics().set_pose(body, pose_of(v)) ? "" : on_joint;
+  if (property == "velocity") s.mechanics().set_velocity(body, Vector3d(v.data()));
+  if (property == "spin") s.mechanics().set_spin(body, Vector3d(v.data()));
   return "";
 }
 
 std::string set_of_joint(Simulation& s, const std::string& joint, const std::string& property,
                          std::span<const double> v) {
   const std::string no_axis = quoted(joint) + " has no axis to drive or to brake";
-  if (property == "friction") return s.solver().set_joint_friction(joint, 0, v[0]) ? "" : no_axis;
+  if (property == "friction") return s.mechanics().set_joint_friction(joint, 0, v[0]) ? "" : no_axis;
   // As a scene says it: a torque against the axis is one that wants the other direction.
   const double speed = v[0] < 0 ? -std::abs(v[1]) : std::abs(v[1]);
-  return s.solver().set_motor(joint, 0, std::abs(v[0]), speed) ? "" : no_axis;
+  return s.mechanics().set_motor(joint, 0, std::abs(v[0]), speed) ? "" : no_axis;
 }
 
 }  // namespace
@@ -124,11 +124,9 @@ std::string set_property(Simulation& simulation, const WorldDef& world, const st
                                 [&](const PropertyRow& r) { return r.owner == owner && r.name == property; });
   if (row == kProperties.end()) return no_such_property(owner, property);
   if (const std::string why = fits(*row, values); !why.empty()) return why;
-  if (!simulation.solver().takes_settings())
-    return "the solver impulse takes no changes while the world runs; choose solver = quick or step in the scene";
   if (owner == Owner::kBody) return set_of_body(simulation, world, body, property, values);
   if (owner == Owner::kJoint) return set_of_joint(simulation, of, property, values);
-  simulation.solver().set_gravity(Vector3d(values.data()));
+  simulation.mechanics().set_gravity(Vector3d(values.data()));
   return "";
 }
 

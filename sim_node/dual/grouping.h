@@ -20,7 +20,9 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/behaviour/group_tool.h"
 #include "sim_node/dual/ways.h"
+#include "sim_node/state/state_archive.h"
 #include "sync/time.h"
 
 namespace tactus::sim {
@@ -32,11 +34,6 @@ struct GroupBody {
   double radius_m = 0;  // of a sphere about the centre of mass that holds it
   double inverse_mass_1_kg = 0;
   int system = -1;  // bodies of one system, joined by joints, move between the groups together; -1: none
-};
-
-struct GroupTool {
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero(), velocity_m_s = Eigen::Vector3d::Zero();
-  double radius_m = 0;
 };
 
 struct GroupingLimits {
@@ -70,11 +67,20 @@ class Grouping {
   // The step is over and the next is not there: what is outside stands still where it came to. Bodies only enter.
   void hold_step(sync::SimTime now, std::span<const BodyMotion> bodies,
                  std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
+  // How long the next steps last, with all that a word of a tool may be old.
+  void set_horizon(sync::Nanoseconds horizon) { limits_.horizon = horizon; }
   // From the next call on the body is in the group for a while, whatever reaches it: something acts on it.
   void want(int body) { asked_.push_back(body); }
   // A haptic tick, before its contacts are sought: where something is further from its straight way than its pad,
   // the group is closed anew from what is true now; bodies only enter. Cost: of the group, not of all bodies.
   void watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+
+  // All but the ways: after reading, resume() with those of the step that is going on. Throws BadState.
+  void archive(StateArchive& a);
+  void resume(const Ways& ways) {
+    ways_ = &ways;
+    all_have_ways_ = false;
+  }
 
   bool is_haptic(int body) const { return member_[static_cast<std::size_t>(body)] != 0; }
   // Ascending; entered and left: in the last call.

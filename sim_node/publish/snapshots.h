@@ -15,20 +15,10 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/publish/ahead.h"
 #include "sim_node/publish/page_scheduler.h"
 
 namespace tactus::sim {
-
-// Of the bodies that are computed ahead.
-struct Ahead {
-  sync::SimTime time{};                                   // the end of the visual step that runs
-  std::span<const int> bodies;                            // their numbers, ascending
-  std::span<const BodyMotion> motions;                    // of each of `bodies`, at `time`
-  std::function<void(std::vector<contact_t>&)> contacts;  // of the group AHEAD, at `time`; clears the list first
-  bool fresh = false;                                     // the step begins in this tick
-  bool held = false;              // the step is late: until it begins they stay where they are
-  std::span<const int> promoted;  // that were computed ahead and from this tick on are not; ascending
-};
 
 // What is read when a snapshot is taken.
 struct StateSource {

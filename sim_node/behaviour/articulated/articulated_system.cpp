@@ -52,7 +52,7 @@ Eigen::Quaterniond load(const double* q) { return {q[0], q[1], q[2], q[3]}; }
 }  // namespace
 
 ArticulatedSystem::ArticulatedSystem(const std::vector<LinkDef>& links, double step_s, Accuracy accuracy)
-    : tree_(std::make_unique<const Tree>(links)),
+    : tree_(std::make_unique<Tree>(links)),
       accuracy_(accuracy),
       dynamics_(*tree_),
       loads_(*tree_),
@@ -88,6 +88,12 @@ void ArticulatedSystem::set_state(const State& state) {
   slope_known_ = placed_ = false;
 }
 
+void ArticulatedSystem::set_burden(const Burden& burden) {
+  loads_ = burden.loads;
+  loaded_ = burden.loaded;
+  slope_known_ = false;
+}
+
 void ArticulatedSystem::add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
   loads_.force_N[static_cast<std::size_t>(link)] += force_N;
   add_moment(link, (point_m - dynamics().centre_m(link)).cross(force_N));
@@ -102,6 +108,20 @@ void ArticulatedSystem::add_moment(int link, const Eigen::Vector3d& moment_N_m) 
 void ArticulatedSystem::set_torque(int dof, double torque) {
   loads_.torque[static_cast<std::size_t>(dof)] = torque;
   slope_known_ = false;
+}
+
+void ArticulatedSystem::set_gravity(int link, const Eigen::Vector3d& gravity_m_s2) {
+  tree_->links[static_cast<std::size_t>(link)].def.gravity_m_s2 = gravity_m_s2;
+  slope_known_ = false;
+}
+
+void ArticulatedSystem::set_motor(int dof, double effort, double rate) {
+  tree_->dofs[static_cast<std::size_t>(dof)].motor_effort = effort;
+  tree_->dofs[static_cast<std::size_t>(dof)].motor_velocity = rate;
+}
+
+void ArticulatedSystem::set_friction(int dof, double friction) {
+  tree_->dofs[static_cast<std::size_t>(dof)].friction = friction;
 }
 
 void ArticulatedSystem::slope_of(const std::vector<double>& y, std::vector<double>& slope) {

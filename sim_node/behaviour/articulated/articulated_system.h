@@ -35,11 +35,24 @@ class ArticulatedSystem {
   const State& state() const { return state_; }
   void set_state(const State& state);
 
+  // The loads of the next step, copied out and in likewise.
+  struct Burden {
+    Loads loads;
+    bool loaded;
+  };
+  Burden burden() const { return {loads_, loaded_}; }
+  void copy_burden(Burden& out) const { out.loads = loads_, out.loaded = loaded_; }
+  void set_burden(const Burden& burden);
+
   // Act during the next step only; force N at a point of the world m, moment N m.
   void add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
   void add_moment(int link, const Eigen::Vector3d& moment_N_m);
   // Acts along a degree of freedom from now on, N m or N.
   void set_torque(int dof, double torque);
+  // Hold from now on.
+  void set_gravity(int link, const Eigen::Vector3d& gravity_m_s2);
+  void set_motor(int dof, double effort, double rate);
+  void set_friction(int dof, double friction);
 
   // Of every dof, at the present state. Realtime-safe: yes.
   std::span<const double> accelerations();
@@ -66,7 +79,7 @@ class ArticulatedSystem {
   void refresh();
   double relative_error() const;
 
-  std::unique_ptr<const Tree> tree_;
+  std::unique_ptr<Tree> tree_;
   Accuracy accuracy_;
   Dynamics dynamics_;
   Loads loads_;

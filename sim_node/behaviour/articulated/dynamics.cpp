@@ -272,6 +272,13 @@ void Dynamics::strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vec
   spread(rates);
 }
 
+void Dynamics::twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates) {
+  Spatial couple = Spatial::Zero();
+  couple.head<3>() = impulse;
+  send(link, couple);
+  spread(rates);
+}
+
 void Dynamics::strike_dof(int dof, std::span<double> rates) {
   const int link = tree_.dofs[index(dof)].link;
   const Link& l = tree_.links[index(link)];

@@ -48,6 +48,8 @@ class Dynamics {
   // The following need an evaluate() of the present pose.
   // Change of every rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: all links once.
   void strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse, std::span<double> rates);
+  // The same by an impulse of torque, N m s.
+  void twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates);
   // Change of every rate by a unit impulse along one dof.
   void strike_dof(int dof, std::span<double> rates);
   // Change of velocity of one point by a unit impulse at another, per axis: J_to M^-1 J_from^T, 1/kg. Cost: the

@@ -52,6 +52,7 @@ Tree::Tree(const std::vector<LinkDef>& defs) {
       dof.link = static_cast<int>(i);
       if (ball) {
         dof.damping = d.axes[0].damping;
+        dof.friction = d.axes[0].friction;
       } else if (!d.is_free) {
         const JointAxis& a = d.axes[k];
         dof = {static_cast<int>(i), coordinates + k, a.damping, a.stiffness,      a.reference,

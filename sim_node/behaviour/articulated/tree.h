@@ -17,7 +17,7 @@ struct LinkDef {
   bool is_free = false;  // the first link only: it hangs on nothing
   JointKind joint = JointKind::kRevolute;
   Eigen::Vector3d anchor_m = Eigen::Vector3d::Zero();  // world, at rest
-  JointAxis axes[2];  // a universal's first belongs to the parent; a ball takes the damping of the first
+  JointAxis axes[2];  // a universal's first belongs to the parent; a ball takes damping and friction of the first
   double mass_kg = 1;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();           // world, at rest
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // about the centre, world axes, at rest

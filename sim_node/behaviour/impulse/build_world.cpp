@@ -125,7 +125,22 @@ class Builder {
         add(moves(other) ? other : bodies_[link], static_cast<int>(link), &joint, back);
       }
     articulated::ArticulatedSystem system(links_, settings_.step_s);
+    set_off(system);
     world_->make_system(bodies_, std::move(system));
+  }
+
+  // The velocities that its bodies have at the start: the joints share them as they would blows of such momenta on the
+  // system at rest, which is the motion of joints nearest to them, by kinetic energy.
+  void set_off(articulated::ArticulatedSystem& system) const {
+    std::vector<double> rates(system.tree().dofs.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const BodyDef& b = def_.bodies[index(bodies_[i])];
+      if (b.velocity_m_s.isZero(0)) continue;
+      const int link = static_cast<int>(i);
+      articulated::Dynamics& d = system.dynamics();
+      d.strike(link, d.centre_m(link), b.mass_kg * b.velocity_m_s, rates);
+      system.add_rates(rates);
+    }
   }
 
   const WorldDef& def_;

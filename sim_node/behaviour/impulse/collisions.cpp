@@ -12,6 +12,8 @@ constexpr int kMostSweeps = 50;
 constexpr double kSettled_m_s = 1e-12;
 // Blows of one step per group: a row of n balls needs up to n/2 for each; beyond, the contact solver ends it.
 constexpr std::size_t kMostBlows = 16;
+// A gap below this is none: the residual of the sweeps, m.
+constexpr double kTouching_m = 2e-6;
 
 }  // namespace
 
@@ -53,8 +55,12 @@ bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
     t = std::max(t, -h_);
   }
   out = {t, -(speed + 2 * bend * t)};
-  // What acts within a step, weight for one, is no collision.
-  return out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
+  return true;
+}
+
+// What acts within a step, weight for one, is no collision.
+bool Collisions::collides(const ContactPoint& p, Meeting& out) const {
+  return meets(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
 }
 
 double Collisions::approach(const ContactGroup& g) const {
@@ -63,23 +69,54 @@ double Collisions::approach(const ContactGroup& g) const {
   for (int i = g.first; i < g.first + g.count; ++i) {
     Meeting m;
     const ContactPoint& p = rows_->points[static_cast<std::size_t>(i)];
-    if (meets(p, m)) fastest = std::max(fastest, m.speed_m_s);
+    if (collides(p, m)) fastest = std::max(fastest, m.speed_m_s);
     overlaps |= p.gap_m < 0;
   }
-  // Without restitution, and ahead, the contact solver lets the gap close and no further.
-  return g.restitution > 0 || overlaps ? fastest : 0;
+  if (g.restitution > 0 || overlaps) return fastest;
+  // Joints cannot be set aside: ahead of them the contact solver lets the gap close and no further.
+  const int twists = static_cast<int>(velocity_->twists.size());
+  return g.blows == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
 }
 
-void Collisions::rebound(const ContactGroup& g) {
+// Where the free motion leads a pair that took no blow, from a gap that is open.
+void Collisions::foresee(ContactGroup& g) const {
+  g.first_s = h_;
+  for (int i = 0; i < g.count; ++i) {
+    Meeting m;
+    const ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
+    if (p.gap_m < kTouching_m) {
+      g.met = -1;
+      return;
+    }
+    if (!meets(p, m) || (g.met >= 0 && m.time_s >= g.first_s)) continue;
+    g.met = i;
+    g.first_s = g.last_s = std::max(0.0, m.time_s);
+    g.speed_m_s = m.speed_m_s;
+  }
+}
+
+void Collisions::rebound(ContactGroup& g) {
   std::array<Eigen::Vector3d, 4> impulse;
   std::array<double, 4> wanted;
   std::array<bool, 4> takes_part{};
   Meeting first{h_, 0}, m;
   const auto point = [&](int i) -> ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
   const int count = std::min(g.count, 4);
+  int struck = 0;
   for (int i = 0; i < count; ++i)
-    if (meets(point(i), m) && m.time_s < first.time_s) first = m;
+    if (collides(point(i), m) && m.time_s < first.time_s) {
+      first = m;
+      struck = i;
+    }
   const double t = first.time_s;
+  g.last_s = std::max(0.0, t);
+  if (g.blows++ == 0) {
+    g.met = struck;
+    g.first_s = g.last_s;
+    g.speed_m_s = first.speed_m_s;
+  } else if (g.last_s < g.first_s) {
+    std::swap(g.first_s, g.last_s);
+  }
   for (int i = 0; i < count; ++i) {
     const ContactPoint& p = point(i);
     const auto k = static_cast<std::size_t>(i);
@@ -133,8 +170,8 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   const std::size_t most = kMostBlows * rows.groups.size();
   for (std::size_t blow = 0; blow < most; ++blow) {
     const auto fastest = std::max_element(approach_.begin(), approach_.end());
-    if (*fastest <= 0) return;
-    const ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
+    if (*fastest <= 0) break;
+    ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
     rebound(struck);
     const auto shares = [&](int mover) {
       return mover >= 0 && (mover == struck.mover_a || mover == struck.mover_b);
@@ -143,6 +180,8 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
       if (shares(rows.groups[i].mover_a) || shares(rows.groups[i].mover_b))
         approach_[i] = approach(rows.groups[i]);
   }
+  for (ContactGroup& g : rows.groups)
+    if (g.blows == 0) foresee(g);
 }
 
 }  // namespace tactus::sim::impulse

@@ -22,6 +22,8 @@ class Collisions {
   // the step with the new velocity and this offset, they lie on the path that turns at t. An overlap that came
   // about in the last step is such an instant before the start. first_rate: of each system, and one past the last.
   // Realtime-safe once its lists have grown.
+  // Each group is told how it meets. Without restitution a pair of free bodies takes one blow, so that it stops where and
+  // when it met; what follows is left to the contact solver, and all of it where joints are struck.
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, Velocities& velocity,
                Velocities& aside);
 
@@ -30,8 +32,10 @@ class Collisions {
     double time_s = 0, speed_m_s = 0;
   };
   bool meets(const ContactPoint& p, Meeting& out) const;
+  bool collides(const ContactPoint& p, Meeting& out) const;
   double approach(const ContactGroup& g) const;
-  void rebound(const ContactGroup& g);
+  void rebound(ContactGroup& g);
+  void foresee(ContactGroup& g) const;
   template <class F>
   void of_mover(int mover, F&& each);
 

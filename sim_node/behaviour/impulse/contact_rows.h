@@ -57,6 +57,10 @@ struct ContactGroup {
   int first = 0, count = 0, manifold = 0;
   int mover_a = -1, mover_b = -1;  // what they move: a twist, or beyond those a system; -1: nothing
   double restitution = 0;
+  // How the surfaces meet in the step: blows so far, at their first and last instants after its start, and the point
+  // and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
+  int blows = 0, met = -1;
+  double first_s = 0, last_s = 0, speed_m_s = 0;
 };
 
 class ContactRows {

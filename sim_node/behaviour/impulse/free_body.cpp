@@ -89,6 +89,11 @@ void land(FreeBody& body, const Flight& f, const Eigen::Vector3d& mean_m_s, cons
   body.moment_N_m.setZero();
 }
 
+void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad) {
+  body.centre_m += by_m;
+  body.orientation = turned(body.orientation, by_rad);
+}
+
 Eigen::Vector3d velocity_for(const FreeBody& body, double step_s) {
   if (body.step_s < 0 || body.step_s == step_s) return body.velocity_m_s;
   return body.velocity_m_s + (body.step_s - step_s) / 2 * body.gravity_m_s2;

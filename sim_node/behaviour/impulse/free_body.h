@@ -41,6 +41,9 @@ Flight fly(const FreeBody& body, double h_s);
 void land(FreeBody& body, const Flight& flight, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
           const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h_s);
 
+// Sets a body aside (m, rad); its velocities stay.
+void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad);
+
 // The velocity as of the middle of a step of another length; 0: of now.
 Eigen::Vector3d velocity_for(const FreeBody& body, double step_s);
 

@@ -12,6 +12,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::max();
 // A limit further away than this many steps at the present rate, and this far besides, is left out, rad or m.
 constexpr double kStepsAhead = 4, kAhead = 0.05;
 
+bool of_ball(const articulated::Tree& tree, const articulated::Dof& d) {
+  return tree.links[static_cast<std::size_t>(d.link)].dofs == 3;
+}
+
 }  // namespace
 
 bool needs_rows(const articulated::ArticulatedSystem& system) {
@@ -37,7 +41,8 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     const bool low = d.lower > -kNoLimit && q - d.lower < ahead, high = d.upper < kNoLimit && d.upper - q < ahead;
     const bool stiff = system.is_stiff(static_cast<int>(j));
     if (!low && !high) memory.limit[j] = 0;
-    if (!(d.friction > 0 || d.motor_effort > 0 || low || high || stiff)) continue;
+    const bool ball = of_ball(system.tree(), d);
+    if (!((d.friction > 0 && !ball) || d.motor_effort > 0 || low || high || stiff)) continue;
     JointRow row;
     row.rate = first_rate + j;
     row.first_rate = first_rate;
@@ -61,10 +66,33 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
       add(-h * d.stiffness * (q - d.reference) * softness, softness, -kUnbounded, kUnbounded, memory.spring[j]);
     }
     if (d.motor_effort > 0) add(d.motor_velocity, 0, -h * d.motor_effort, h * d.motor_effort, memory.motor[j]);
-    if (d.friction > 0) add(0, 0, -h * d.friction, h * d.friction, memory.friction[j]);
+    if (d.friction > 0 && !ball) add(0, 0, -h * d.friction, h * d.friction, memory.friction[j]);
     const auto parting = [&](double room) { return room >= 0 ? -room / h : -repair * room / h; };
     if (low) add(parting(q - d.lower), 0, 0, kUnbounded, memory.limit[j]);
     if (high) add(-parting(d.upper - q), 0, -kUnbounded, 0, memory.limit[j]);
+  }
+}
+
+void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h,
+                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+  const auto& tree = system.tree();
+  const std::size_t n = tree.dofs.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    const articulated::Dof& d = tree.dofs[j];
+    if (!of_ball(tree, d) || !(d.friction > 0)) continue;
+    JointRow row;
+    row.rate = first_rate + j;
+    row.first_rate = first_rate;
+    row.rates = n;
+    row.response = pool.size();
+    pool.resize(pool.size() + n);
+    system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
+    row.mobility = pool[row.response + j];
+    row.most = h * d.friction;
+    row.impulse = std::clamp(memory.friction[j], -row.most, row.most);
+    row.memory = &memory.friction[j];
+    row.ball = static_cast<int>(j) == tree.links[static_cast<std::size_t>(d.link)].first_dof ? 3 : 1;
+    rows.push_back(row);
   }
 }
 
@@ -74,7 +102,30 @@ void apply(const JointRow& row, double impulse, const std::vector<double>& pool,
   for (std::size_t i = 0; i < row.rates; ++i) rates[i] += response[i] * impulse;
 }
 
+namespace {
+
+// Three rows of one torque, bounded as a whole: towards standing still by the weakest of the three answers, then into
+// the ball of what friction can give. Fixed points are still, or have all of the torque against the turning.
+double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v) {
+  double mobility = 0;
+  for (int k = 0; k < 3; ++k) mobility += rows[k].mobility;
+  Eigen::Vector3d next;
+  for (int k = 0; k < 3; ++k) next[k] = rows[k].impulse - v.rates[rows[k].rate] / mobility;
+  if (next.norm() > rows[0].most) next *= rows[0].most / next.norm();
+  double change = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double by = next[k] - rows[k].impulse;
+    rows[k].impulse = next[k];
+    apply(rows[k], by, pool, v);
+    change = std::max(change, std::abs(by) * mobility);
+  }
+  return change;
+}
+
+}  // namespace
+
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v) {
+  if (row.ball) return row.ball == 3 ? sweep_ball(&row, pool, v) : 0;
   const double missing = row.wanted - v.rates[row.rate] - row.softness * row.impulse;
   const double impulse = std::clamp(row.impulse + missing / (row.mobility + row.softness), row.least, row.most);
   const double by = impulse - row.impulse;

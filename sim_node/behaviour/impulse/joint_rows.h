@@ -17,6 +17,7 @@ struct JointRow {
   double softness = 0;         // a soft row asks for rate + softness * impulse = wanted
   double least = 0, most = 0;  // impulse, N m s or N s
   double impulse = 0;
+  int ball = 0;              // of dry friction in a ball joint: 3, the first of three rows of one torque; 1: another of them
   int mover = 0;             // its system, numbered as for contacts
   double* memory = nullptr;  // where it is kept for the next step
 };
@@ -34,6 +35,10 @@ bool needs_rows(const articulated::ArticulatedSystem& system);
 // back in a step. Responses go to the pool.
 void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, double repair,
                  JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+
+// The same for the dry friction of ball joints, three rows for each.
+void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
+                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
 
 // Adds to the impulse of a row, within its bounds; returns by how much the rate was off, rad/s or m/s.
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v);

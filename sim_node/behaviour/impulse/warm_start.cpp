@@ -16,7 +16,7 @@ Eigen::Vector3d place(const Manifold& m, const ManifoldPoint& p, std::span<const
 
 }  // namespace
 
-void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
+void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h,
                        ContactRows& rows) const {
   auto kept = kept_.begin();
   for (const ContactGroup& g : rows.groups) {
@@ -33,14 +33,14 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
         const double apart = (k->place_m - here).squaredNorm();
         if (apart >= nearest) continue;
         nearest = apart;
-        p.impulse = p.axes * k->impulse_N_s;
+        p.impulse = h * (p.axes * k->force_N);
         p.impulse.x() = std::max(0.0, p.impulse.x());
       }
     }
   }
 }
 
-void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
+void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h,
                      const ContactRows& rows) {
   kept_.clear();
   for (const ContactGroup& g : rows.groups) {
@@ -49,7 +49,7 @@ void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMot
       const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
       if (p.impulse.x() <= 0) continue;
       kept_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
-                       p.axes.transpose() * p.impulse});
+                       p.axes.transpose() * p.impulse / h});
     }
   }
 }

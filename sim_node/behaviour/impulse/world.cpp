@@ -132,9 +132,8 @@ void World::couple(ContactPoint& p, int system, int link_a, int link_b, const Ei
   ++p.couplings;
 }
 
-void World::build(std::span<const Manifold> contacts, double h) {
+void World::build_rows(std::span<const Manifold> contacts) {
   rows_.clear();
-  joints_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Manifold& m = contacts[i];
     const Mover &a = mover(m.body_a), &b = mover(m.body_b);
@@ -172,10 +171,15 @@ void World::build(std::span<const Manifold> contacts, double h) {
     }
     rows_.groups.push_back(g);
   }
+}
+
+void World::build_joints(double h) {
+  joints_.clear();
   for (std::size_t s = 0; s < systems_.size(); ++s)
     if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
       append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
+      append_ball_friction(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
         joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
     }
@@ -295,25 +299,47 @@ void World::add_drift() {
   }
 }
 
+// What the step did to each contact: forces, and how it met.
+void World::tell(std::span<Manifold> contacts, double h) const {
+  for (const ContactGroup& g : rows_.groups) {
+    Manifold& m = contacts[index(g.manifold)];
+    for (int i = 0; i < g.count; ++i) {
+      const ContactPoint& p = rows_.points[index(g.first + i)];
+      m.points[index(i)].normal_force_N = (p.blow_N_s + p.impulse.x()) / h;
+    }
+    m.impact = {};
+    if (g.met < 0 || m.points[index(g.met)].normal_force_N <= 0) continue;
+    const ManifoldPoint& at = m.points[index(g.met)];
+    const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
+    const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
+    m.impact.blows = std::max(1, g.blows);
+    m.impact.first_s = std::min(g.first_s, h);
+    m.impact.last_s = std::min(g.last_s, h);
+    m.impact.speed_m_s = g.speed_m_s;
+    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.met)].mobility(0, 0);
+    m.impact.place_m = (on_a + g.first_s * a.velocity_at(on_a) + on_b + g.first_s * b.velocity_at(on_b)) / 2;
+    m.impact.normal = at.normal;
+    m.impact.a_body_m = a.to_body(on_a), m.impact.b_body_m = b.to_body(on_b);
+    m.impact.triangle_a = at.triangle_a, m.impact.triangle_b = at.triangle_b;
+  }
+}
+
 void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
-  build(contacts, h);
+  build_rows(contacts);
+  build_joints(h);
   const bool presses = law_.penalty.stiffness_N_m > 0;
   if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
   ask(h);
   if (presses) press(rows_, law_.penalty, velocity_, h);
-  warm_.recall(contacts, motions_, rows_);
+  warm_.recall(contacts, motions_, h, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();
   if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);
-  warm_.keep(contacts, motions_, rows_);
+  warm_.keep(contacts, motions_, h, rows_);
   for (const JointRow& row : joints_) *row.memory = row.impulse;
-  for (const ContactGroup& g : rows_.groups)
-    for (int i = 0; i < g.count; ++i) {
-      const ContactPoint& p = rows_.points[index(g.first + i)];
-      contacts[index(g.manifold)].points[index(i)].normal_force_N = (p.blow_N_s + p.impulse.x()) / h;
-    }
+  tell(contacts, h);
   finish(h);
 }
 

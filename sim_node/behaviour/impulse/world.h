@@ -65,6 +65,8 @@ class World {
   // does not move. unit_bodies: its bodies, into `out`, appended.
   int units() const { return static_cast<int>(free_.size() + systems_.size()); }
   int unit_of(int body) const;
+  // The body that a link's joint hangs it on; -1: the world, or no link.
+  int parent_of(int body) const;
   void unit_bodies(int unit, std::vector<int>& out) const;
   // Only these units, ascending, are there from now on: the others keep their state, and stand still for what
   // touches them. All of them at first. A step costs what the active ones do. Realtime-safe once its lists have
@@ -88,6 +90,42 @@ class World {
   // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
   void archive(StateArchive& a);
 
+  // All that a step changes of the active units, so that it can be taken back.
+  struct Kept {
+    std::vector<FreeBody> free;
+    std::vector<articulated::ArticulatedSystem::State> states;
+    std::vector<articulated::ArticulatedSystem::Burden> burdens;
+    std::vector<JointMemory> memories;
+    std::vector<BodyMotion> motions;  // of the active bodies
+    WarmStart warm;
+  };
+  // Realtime-safe once the lists of `out` have grown. The active units must be the same until it is taken back.
+  void keep(Kept& out);
+  void take_back(const Kept& kept);
+  // What acted in the step after which this was kept acts in the next one too.
+  void load_again(const Kept& kept);
+  // Puts a unit where it was, at rest.
+  void hold(int unit, const Kept& kept);
+  // Moves what overlaps apart, along the shortest way that the contacts leave and as inertia divides it: positions
+  // alone, no speed comes of it. contacts: of the present poses; overlaps deeper than most_m are left alone.
+  void separate(std::span<const Manifold> contacts, double most_m);
+
+  // What may be set between steps; each holds from the next one on. Velocities of a link are those that it has at the
+  // instant when its joints begin to hold: the others take their share, as from a blow (Featherstone 2008, section
+  // 11.7). False: the body is not free, or has no such axis.
+  void set_gravity(int body, const Eigen::Vector3d& gravity_m_s2);
+  bool set_mass(int body, double mass_kg);  // the inertia in proportion
+  bool set_pose(int body, const Eigen::Vector3d& centre_m, const Eigen::Quaterniond& orientation);
+  void set_velocity(int body, const Eigen::Vector3d& velocity_m_s);
+  void set_spin(int body, const Eigen::Vector3d& spin_rad_s);
+  void set_surface(int shape, const Surface& surface) { surfaces_[index(shape)] = surface; }
+  const Surface& surface(int shape) const { return surfaces_[index(shape)]; }
+  // axis: of the joint that carries this link, as its LinkDef numbers them.
+  bool set_motor(int body, int axis, double effort, double rate);
+  bool set_joint_friction(int body, int axis, double friction);
+  // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
+
   // After a step (or none): velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
@@ -109,9 +147,16 @@ class World {
   void activate_all();
   void add_drift();
   void start_velocities(std::span<const Manifold> contacts, double h);
-  void build(std::span<const Manifold> contacts, double h);
+  void build_rows(std::span<const Manifold> contacts);
+  void build_joints(double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
   void ask(double h);
+  void tell(std::span<Manifold> contacts, double h) const;
+  void weigh_anew(std::span<const Manifold> contacts);
+  void separate(std::size_t system);
+  void refresh(System& system);
+  int dof_of(int body, int axis) const;
+  static void place(BodyMotion& m, const BodyMotion& at);
   void sweep();
   void finish(double h);
   void finish(std::size_t system, double h);

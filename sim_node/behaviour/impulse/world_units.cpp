@@ -11,6 +11,14 @@ int World::unit_of(int body) const {
   return m.kind == Kind::kFree ? m.index : static_cast<int>(free_.size()) + m.index;
 }
 
+int World::parent_of(int body) const {
+  const Mover& m = movers_[index(body)];
+  if (m.kind != Kind::kLink) return -1;
+  const System& s = systems_[index(m.index)];
+  const int parent = s.system.tree().links[index(m.link)].def.parent;
+  return parent < 0 ? -1 : s.bodies[index(parent)];
+}
+
 void World::unit_bodies(int unit, std::vector<int>& out) const {
   if (index(unit) < free_.size()) {
     out.push_back(body_of_[index(unit)]);

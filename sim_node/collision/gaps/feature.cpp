@@ -11,6 +11,8 @@ namespace {
 // A cylinder turns its cap where that is the nearer direction, else the line of its side; a triangle its face as
 // long as it is seen under more than this angle from the side, else an edge. Cosines.
 constexpr double kCap = 0.70711, kFace = 0.2;
+// Seen so nearly from its end, within 2.6 degrees, a line is a point. Cosine.
+constexpr double kUpright = 0.999;
 
 Feature box_face(const Vector3d& h, const Vector3d& d) {
   Eigen::Index axis = 0;
@@ -50,6 +52,13 @@ Feature line(const Vector3d& from, const Vector3d& to) {
   return f;
 }
 
+Feature point(const Vector3d& at) {
+  Feature f;
+  f.count = 1;
+  f.corners[0] = at;
+  return f;
+}
+
 Feature of_triangle(const std::array<Vector3d, 3>& t, const Vector3d& d) {
   const Vector3d across = (t[1] - t[0]).cross(t[2] - t[0]);
   const double area = across.norm();
@@ -71,7 +80,9 @@ Feature of_triangle(const std::array<Vector3d, 3>& t, const Vector3d& d) {
 Feature local(const Convex& c, const Vector3d& d) {
   switch (c.core) {
     case Core::kBox: return box_face(c.half_m, d);
-    case Core::kSegment: return line({0, 0, -c.half_m.z()}, {0, 0, c.half_m.z()});
+    case Core::kSegment:
+      if (std::abs(d.z()) > kUpright) return point({0, 0, d.z() < 0 ? -c.half_m.z() : c.half_m.z()});
+      return line({0, 0, -c.half_m.z()}, {0, 0, c.half_m.z()});
     case Core::kTriangle: return of_triangle(c.corners_m, d);
     case Core::kCylinder: {
       if (std::abs(d.z()) > kCap) return cap(c.half_m, d);
@@ -80,10 +91,7 @@ Feature local(const Convex& c, const Vector3d& d) {
     }
     case Core::kPoint: break;
   }
-  Feature f;
-  f.count = 1;
-  f.corners[0].setZero();
-  return f;
+  return point({0, 0, 0});
 }
 
 }  // namespace

@@ -1,0 +1,13 @@
+// A tool as the groups of a dual simulation see it. Plain data.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tactus::sim {
+
+struct GroupTool {
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero(), velocity_m_s = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,70 @@
+// What moves the bodies of a world and follows their contacts, one tick at a time: all bodies in one world, or in
+// two groups.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <vector>
+
+#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/behaviour/group_tool.h"
+#include "sim_node/collision/ids.h"
+#include "sim_node/publish/ahead.h"
+#include "sim_node/scene/world_def.h"
+#include "sim_node/settings.gen.h"
+#include "sim_node/state/state_archive.h"
+#include "sync/time.h"
+
+namespace tactus::sim {
+
+class Mechanics {
+ public:
+  virtual ~Mechanics() = default;
+
+  // The world at its first instant: appends the events of what touches then. Once, before the first tick.
+  virtual void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
+
+  // Act during the next tick, N at a point of the world m, N m. What never moves ignores it.
+  virtual void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) = 0;
+  virtual void add_torque(int body, const Eigen::Vector3d& torque_N_m) = 0;
+
+  // One tick, from `now` on; appends the events that it reached, in any order. tools: as they are now.
+  // Deterministic, but for when what is computed ahead is there. Realtime-safe once the lists have grown.
+  virtual void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
+
+  // Of every body. The entries of tools are the caller's to write.
+  virtual std::span<BodyMotion> motions() = 0;
+  // Bodies that move and that a tool may touch, ascending; none: any may be.
+  virtual std::optional<std::span<const int>> near_tools() const { return std::nullopt; }
+  // Contacts between bodies that are told of at the present instant; clears the list.
+  virtual void contacts(std::vector<contact_t>& out) = 0;
+  // Of the bodies that are computed ahead; null: none ever are.
+  virtual const Ahead* ahead() { return nullptr; }
+
+  // What may be set while the world runs; each holds from the next tick on. Values are not checked here. False: it
+  // has none, as a body that does not move has no velocity, and one on a joint no pose and no mass.
+  virtual void set_gravity(const Eigen::Vector3d& gravity_m_s2) = 0;
+  virtual bool set_mass(int body, double mass_kg) = 0;
+  virtual bool set_pose(int body, const Eigen::Isometry3d& pose) = 0;
+  virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
+  virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
+  virtual void set_friction(int body, double friction) = 0;
+  virtual void set_restitution(int body, double restitution) = 0;
+  virtual bool set_motor(const std::string& joint, int axis, double effort, double velocity) = 0;
+  virtual bool set_joint_friction(const std::string& joint, int axis, double friction) = 0;
+
+  // All that the next ticks depend on. Throws BadState when what is read does not fit; this is then half changed.
+  virtual void archive(StateArchive& a) = 0;
+  // The ids of contacts and events go by another incarnation, under which `ids` go already.
+  virtual void rename(std::int64_t incarnation) = 0;
+};
+
+// As the settings say. Throws std::runtime_error with one sentence when the world cannot be simulated.
+std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids);
+
+}  // namespace tactus::sim

@@ -1,0 +1,38 @@
+#include "sim_node/behaviour/single_group.h"
+
+#include "sim_node/state/archive_motion.h"
+
+namespace tactus::sim {
+
+SingleGroup::SingleGroup(const WorldDef& world, const Settings& settings, Ids& ids)
+    : step_(sync::from_seconds(settings.step_s)),
+      solver_(world, settings),
+      tracker_(surface_traits(world, settings), settings, ids),
+      motions_(solver_.bodies().begin(), solver_.bodies().end()) {}
+
+void SingleGroup::look(sync::SimTime now, std::vector<contact_event_t>& events) {
+  // Tools stand where the caller has put them.
+  for (std::size_t i = 0; i < motions_.size(); ++i)
+    if (solver_.bodies()[i].moves()) motions_[i] = solver_.bodies()[i];
+  tracker_.update(now, step_, motions_, solver_.contacts(), solver_.solved(), events);
+}
+
+void SingleGroup::start(std::span<const GroupTool>, std::vector<contact_event_t>& events) { look({}, events); }
+
+void SingleGroup::tick(sync::SimTime now, std::span<const GroupTool>, std::vector<contact_event_t>& events) {
+  solver_.step();
+  look(now + step_, events);
+}
+
+void SingleGroup::contacts(std::vector<contact_t>& out) {
+  out.clear();
+  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.emplace_back());
+}
+
+void SingleGroup::archive(StateArchive& a) {
+  solver_.archive(a);
+  tracker_.archive(a, motions_.size());
+  a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
+}
+
+}  // namespace tactus::sim

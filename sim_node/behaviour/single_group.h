@@ -1,0 +1,53 @@
+// All bodies in one world, at the rate of the ticks.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/behaviour/mechanics.h"
+#include "sim_node/behaviour/solver.h"
+#include "sim_node/collision/contact_tracker.h"
+
+namespace tactus::sim {
+
+class SingleGroup : public Mechanics {
+ public:
+  SingleGroup(const WorldDef& world, const Settings& settings, Ids& ids);
+
+  void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
+  void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) override {
+    solver_.add_force(body, force_N, point_m);
+  }
+  void add_torque(int body, const Eigen::Vector3d& torque_N_m) override { solver_.add_torque(body, torque_N_m); }
+  void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
+  std::span<BodyMotion> motions() override { return motions_; }
+  void contacts(std::vector<contact_t>& out) override;
+
+  void set_gravity(const Eigen::Vector3d& gravity_m_s2) override { solver_.set_gravity(gravity_m_s2); }
+  bool set_mass(int body, double mass_kg) override { return solver_.set_mass(body, mass_kg); }
+  bool set_pose(int body, const Eigen::Isometry3d& pose) override { return solver_.set_pose(body, pose); }
+  bool set_velocity(int body, const Eigen::Vector3d& v) override { return solver_.set_velocity(body, v); }
+  bool set_spin(int body, const Eigen::Vector3d& spin) override { return solver_.set_spin(body, spin); }
+  void set_friction(int body, double friction) override { solver_.set_friction(body, friction); }
+  void set_restitution(int body, double restitution) override { solver_.set_restitution(body, restitution); }
+  bool set_motor(const std::string& joint, int axis, double effort, double velocity) override {
+    return solver_.set_motor(joint, axis, effort, velocity);
+  }
+  bool set_joint_friction(const std::string& joint, int axis, double friction) override {
+    return solver_.set_joint_friction(joint, axis, friction);
+  }
+
+  void archive(StateArchive& a) override;
+  void rename(std::int64_t) override { tracker_.rename(); }
+
+  const Solver& solver() const { return solver_; }
+
+ private:
+  void look(sync::SimTime now, std::vector<contact_event_t>& events);
+
+  sync::Nanoseconds step_;
+  Solver solver_;
+  ContactTracker tracker_;
+  std::vector<BodyMotion> motions_;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,222 @@
+#include "sim_node/dual/dual_groups.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/dual/group_bodies.h"
+
+namespace tactus::sim {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
+  GroupingLimits l;
+  l.horizon = sync::from_seconds(1 / s.visual_rate_Hz + s.tool_jitter_s);
+  l.leave_after = 2 * l.horizon;
+  l.tool_force_N = s.tool_force_limit_N;
+  l.gravity_m_s2 = def.gravity_m_s2.norm();
+  return l;
+}
+
+}  // namespace
+
+DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids)
+    : settings_(settings),
+      frames_(def),
+      world_(impulse::build_world(def, for_haptic_group(settings))),
+      finder_(def, settings),
+      ids_(ids),
+      tracker_(surface_traits(def, settings), settings, ids),
+      catching_up_(surface_traits(def, settings), settings, ids),
+      grouping_(group_bodies(def, *world_), limits_of(def, settings),
+                settings.grouping == "kim2005" ? GroupingRule::kKim2005 : GroupingRule::kSound),
+      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def), Ids(ids.incarnation(), 1, 2))),
+      rate_(settings.visual_rate_Hz, sync::from_seconds(settings.step_s)),
+      motions_(frames_.at_start(def)),
+      mask_(def.bodies.size()) {
+  activate();
+}
+
+void DualGroups::start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
+  // Nothing is late at the first instant.
+  visual_.halt().restart(ids_.incarnation());
+  task_ = {};
+  task_.length = rate_.next();
+  visual_.ask(task_);
+  visual_.take(step_);
+  begin_step(sync::SimTime{}, tools, events);
+  tell_due(sync::SimTime{}, events);
+  if (settings_.visual_thread == "own") visual_.start();
+}
+
+void DualGroups::act(const Load& load) {
+  if (world_->unit_of(load.body) < 0) return;
+  if (!is_haptic(load.body)) grouping_.want(load.body);
+  loads_.push_back(load);
+}
+
+void DualGroups::add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
+  act({body, force_N, point_m, Eigen::Vector3d::Zero()});
+}
+
+void DualGroups::add_torque(int body, const Eigen::Vector3d& torque_N_m) {
+  act({body, Eigen::Vector3d::Zero(), motions_[index(body)].centre_m, torque_N_m});
+}
+
+void DualGroups::gather_units(std::span<const int> bodies) {
+  units_.clear();
+  for (const int body : bodies) units_.push_back(world_->unit_of(body));
+  std::sort(units_.begin(), units_.end());
+  units_.erase(std::unique(units_.begin(), units_.end()), units_.end());
+}
+
+void DualGroups::activate() {
+  gather_units(grouping_.haptic());
+  world_->set_active(units_);
+  stale_ = true;
+}
+
+void DualGroups::read_motions(std::span<const int> bodies) {
+  for (const int body : bodies) motions_[index(body)] = frames_.motion(body, world_->motions()[index(body)]);
+}
+
+// Of the haptic group.
+void DualGroups::note_touching() {
+  touching_.clear();
+  for (const LiveContact& c : tracker_.live())
+    if (motions_[index(c.manifold.body_a)].moves() && motions_[index(c.manifold.body_b)].moves())
+      touching_.emplace_back(c.manifold.body_a, c.manifold.body_b);
+}
+
+// Events of the visual group until then; those of bodies that have come into the haptic group since do not happen.
+void DualGroups::tell_due(sync::SimTime until, std::vector<contact_event_t>& events) {
+  if (!step_) return;
+  for (; told_ < step_->events.size(); ++told_) {
+    contact_event_t e = step_->events[told_];
+    e.time_ns += ahead_.count();
+    if (sync::sim_time(e.time_ns) > until) break;
+    const auto gone = [&](int body) { return motions_[index(body)].moves() && is_haptic(body); };
+    if (!gone(e.body_a) && !gone(e.body_b)) events.push_back(e);
+  }
+}
+
+void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
+  const sync::Nanoseconds h = sync::from_seconds(settings_.step_s);
+  began_ = false;
+  promoted_.clear();
+  released_.clear();
+  if (now >= ends_) {
+    if (visual_.take(step_))
+      begin_step(now, tools, events);
+    else
+      hold(now, tools, events);
+  } else {
+    grouping_.watch(now, motions_, tools);
+    promote(now, events);
+  }
+  const auto active = world_->active_bodies();
+  if (stale_) finder_.find(motions_, active, settings_.step_s, contacts_);
+  stale_ = false;
+  for (const Load& load : loads_) {
+    world_->add_force(load.body, load.force_N, load.point_m);
+    world_->add_torque(load.body, load.torque_N_m);
+  }
+  loads_.clear();
+  world_->step(contacts_, settings_.step_s);
+  std::swap(contacts_, solved_);
+  read_motions(active);
+  finder_.find(motions_, active, settings_.step_s, contacts_);
+  tracker_.update(now + h, h, motions_, contacts_, solved_, events);
+  tell_due(now + h, events);
+}
+
+void DualGroups::begin_step(sync::SimTime now, std::span<const GroupTool> tools,
+                            std::vector<contact_event_t>& events) {
+  began_ = true;
+  holds_ = false;
+  begins_ = now;
+  ends_ = now + step_->task.length;
+  ahead_ = now - step_->begins;
+  told_ = 0;
+  // All that has not been in the haptic group meanwhile.
+  list_.assign(world_->active_bodies().begin(), world_->active_bodies().end());
+  std::swap(motions_, step_->begin);
+  read_motions(list_);
+  note_touching();
+  grouping_.set_horizon(step_->task.length + sync::from_seconds(settings_.tool_jitter_s));
+  grouping_.begin_step(now, step_->ways, motions_, touching_, tools);
+  late_.clear();
+  promote(now, events);
+  release();
+  ask_for_next();
+}
+
+void DualGroups::ask_for_next() {
+  task_.number = ++number_;
+  task_.missed = step_->task.length;
+  task_.length = rate_.next();
+  task_.enters = late_;
+  for (LiveContact& c : task_.enters.contacts) shift(c, -ahead_);
+  // Whoever was in the step that has just been taken, and has been promoted while it was computed.
+  task_.leaves.clear();
+  const auto haptic = world_->active_units();
+  for (const int unit : step_->units)
+    if (std::binary_search(haptic.begin(), haptic.end(), unit) || late_.find(unit) >= 0)
+      task_.leaves.push_back(unit);
+  visual_.ask(task_);
+}
+
+void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
+  ++held_ticks_;
+  if (!holds_) {
+    holds_ = true;
+    ++late_steps_;
+    held_until_ = now;
+    list_.assign(world_->active_bodies().begin(), world_->active_bodies().end());
+    std::swap(motions_, step_->end);
+    read_motions(list_);
+  }
+  if (now >= held_until_) {
+    held_until_ = now + step_->task.length;
+    note_touching();
+    grouping_.hold_step(now, motions_, touching_, tools);
+  } else {
+    grouping_.watch(now, motions_, tools);
+  }
+  promote(now, events);
+}
+
+// Who has just left is told of here until its way is known.
+void DualGroups::contacts(std::vector<contact_t>& out) {
+  out.clear();
+  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.emplace_back());
+  for (const LiveContact& c : late_.contacts) tracker_.describe(c, motions_, out.emplace_back());
+}
+
+const Ahead* DualGroups::ahead() {
+  ahead_now_.fresh = began_;
+  ahead_now_.held = holds_;
+  ahead_now_.promoted = promoted_;
+  if (began_ || !promoted_.empty()) {
+    ahead_now_.time = ends_;
+    ahead_bodies_.clear();
+    ahead_motions_.clear();
+    for (const int body : step_->bodies) {
+      if (is_haptic(body) || late_.find(world_->unit_of(body)) >= 0) continue;
+      ahead_bodies_.push_back(body);
+      ahead_motions_.push_back(holds_ ? motions_[index(body)] : step_->end[index(body)]);
+    }
+    ahead_now_.bodies = ahead_bodies_;
+    ahead_now_.motions = ahead_motions_;
+    ahead_now_.contacts = [this](std::vector<contact_t>& out) {
+      out.clear();
+      const auto gone = [this](int body) { return motions_[index(body)].moves() && is_haptic(body); };
+      for (const contact_t& c : step_->contacts)
+        if (!gone(c.body_a) && !gone(c.body_b)) out.push_back(c);
+    };
+  }
+  return &ahead_now_;
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,126 @@
+// A world in two groups (Kim, Sung, Park 2005): what a tool can reach is moved at the haptic rate, with penalty
+// contact; all else in visual steps, ahead of time. Bodies go from one to the other with their joints, velocities
+// and contacts.
+//
+// Time of a visual step n, which begins at t_n: until t_n, step n has been computed; its ways are known when the
+// groups are made for it. Who is promoted takes the state that its way had at that instant, with all that it
+// touches in that step. Who is let go at t_n has no part in step n: it catches up by itself, since it can reach
+// nobody else in it, and takes part in step n + 1, whose computation begins now.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim_node/behaviour/mechanics.h"
+#include "sim_node/dual/grouping.h"
+#include "sim_node/dual/visual_rate.h"
+#include "sim_node/dual/visual_thread.h"
+
+namespace tactus::sim {
+
+class DualGroups : public Mechanics {
+ public:
+  // ids: how the contacts of the haptic group are named, every other number of which is the visual group's. Throws
+  // std::runtime_error with one sentence when the world cannot be simulated.
+  DualGroups(const WorldDef& world, const Settings& settings, Ids& ids);
+
+  void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
+  // Bodies that are acted on are in the haptic group from then on.
+  void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) override;
+  void add_torque(int body, const Eigen::Vector3d& torque_N_m) override;
+  // Never waits for the visual group.
+  void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
+
+  // Of the haptic group as it is, of the visual group as it was when its step began.
+  std::span<BodyMotion> motions() override { return motions_; }
+  std::optional<std::span<const int>> near_tools() const override { return grouping_.haptic(); }
+  void contacts(std::vector<contact_t>& out) override;
+  const Ahead* ahead() override;
+
+  void set_gravity(const Eigen::Vector3d& gravity_m_s2) override;
+  bool set_mass(int body, double mass_kg) override;
+  bool set_pose(int body, const Eigen::Isometry3d& pose) override;
+  bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) override;
+  bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) override;
+  void set_friction(int body, double friction) override;
+  void set_restitution(int body, double restitution) override;
+  bool set_motor(const std::string& joint, int axis, double effort, double velocity) override;
+  bool set_joint_friction(const std::string& joint, int axis, double friction) override;
+
+  void archive(StateArchive& a) override;
+  void rename(std::int64_t incarnation) override;
+
+  std::span<const int> haptic() const { return grouping_.haptic(); }
+  bool is_haptic(int body) const { return grouping_.is_haptic(body); }
+  const Grouping& grouping() const { return grouping_; }
+  // The visual step that is going on, and when it ends.
+  const VisualStep* step() const { return step_.get(); }
+  sync::SimTime step_ends() const { return ends_; }
+  // Steps that were not there in time; sum of the ticks for which bodies stood still.
+  std::int64_t late_steps() const { return late_steps_; }
+  std::int64_t held_ticks() const { return held_ticks_; }
+  VisualRate& rate() { return rate_; }
+
+ private:
+  struct Load {
+    int body;
+    Eigen::Vector3d force_N, point_m, torque_N_m;
+  };
+  void act(const Load& load);
+  void begin_step(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events);
+  void ask_for_next();
+  void hold(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events);
+  void promote(sync::SimTime now, std::vector<contact_event_t>& events);
+  void release();
+  void activate();
+  void read_motions(std::span<const int> bodies);
+  void note_touching();
+  void gather_units(std::span<const int> bodies);
+  void catch_up(std::span<const int> units, sync::SimTime from, sync::SimTime to,
+                std::vector<contact_event_t>& events);
+  void reconcile(sync::SimTime from, sync::SimTime to, std::vector<contact_event_t>& events);
+  void mark(std::span<const int> units, char as);
+  void tell_due(sync::SimTime until, std::vector<contact_event_t>& events);
+
+  Settings settings_;
+  impulse::BodyFrames frames_;
+  std::unique_ptr<impulse::World> world_;  // of the haptic group
+  ContactFinder finder_;
+  Ids& ids_;
+  ContactTracker tracker_, catching_up_;
+  Grouping grouping_;
+  VisualThread visual_;
+  VisualRate rate_;
+
+  std::unique_ptr<VisualStep> step_;
+  VisualTask task_;  // of the next step
+  sync::SimTime begins_{}, ends_{}, held_until_{};
+  sync::Nanoseconds ahead_{};  // the clock of the simulation, less that of the visual group
+  Handover late_;              // who left when the step began
+  std::size_t told_ = 0;       // of the step's events
+  std::int64_t number_ = 0, late_steps_ = 0, held_ticks_ = 0;
+  std::optional<std::int64_t> rename_to_;
+  bool began_ = false, holds_ = false, stale_ = true;
+
+  std::vector<BodyMotion> motions_;
+  std::vector<Manifold> contacts_, solved_;
+  std::vector<std::pair<int, int>> touching_;
+  std::vector<int> units_, from_late_, from_step_, promoted_, released_, list_;
+  std::vector<char> mask_;
+  std::vector<LiveContact> moved_;
+  std::vector<Load> loads_;
+  struct Told {
+    std::int64_t contact;
+    int body_a, body_b;
+    bool known;
+  };
+  std::vector<Told> open_;  // contacts of who is promoted that have been told of and not ended
+  std::vector<contact_event_t> unheard_;
+  // To tell of what is computed ahead.
+  Ahead ahead_now_;
+  std::vector<int> ahead_bodies_, told_promoted_;
+  std::vector<BodyMotion> ahead_motions_;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,12 @@
+#include "sim_node/behaviour/mechanics.h"
+#include "sim_node/behaviour/single_group.h"
+#include "sim_node/dual/dual_groups.h"
+
+namespace tactus::sim {
+
+std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids) {
+  if (settings.groups == "dual") return std::make_unique<DualGroups>(world, settings, ids);
+  return std::make_unique<SingleGroup>(world, settings, ids);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,128 @@
+#include "sim_node/dual/resting.h"
+
+#include <algorithm>
+
+namespace tactus::sim {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+int root(std::vector<int>& parent, int i) {
+  while (parent[index(i)] != i) i = parent[index(i)] = parent[index(parent[index(i)])];
+  return i;
+}
+
+// What comes nearer than this wakes, m: design: ten times what a resting contact wavers by.
+constexpr double kNear_m = 0.001;
+
+}  // namespace
+
+Resting::Resting(std::vector<char> may_rest)
+    : may_rest_(std::move(may_rest)),
+      still_for_(may_rest_.size()),
+      island_(may_rest_.size(), -1),
+      parent_(may_rest_.size()),
+      calm_(may_rest_.size()) {}
+
+std::span<const int> Resting::settle(std::span<const int> bodies, std::span<const BodyMotion> motions,
+                                     std::span<const std::pair<int, int>> touching,
+                                     std::span<const char> supported, sync::Nanoseconds length) {
+  changed_.clear();
+  for (const int i : bodies) {
+    const BodyMotion& m = motions[index(i)];
+    const bool still =
+        m.velocity_m_s.norm() < kStill_m_s && m.spin_rad_s.norm() < kStill_rad_s && supported[index(i)];
+    still_for_[index(i)] = still ? std::min(still_for_[index(i)] + length, kStillFor) : sync::Nanoseconds(0);
+    parent_[index(i)] = i;
+    calm_[index(i)] = 1;  // of an island: its least body's
+  }
+  const auto moves = [&](int i) { return motions[index(i)].moves() && !rests(i); };
+  for (const auto& [a, b] : touching) {
+    if (!moves(a) || !moves(b)) continue;
+    const int x = root(parent_, a), y = root(parent_, b);
+    parent_[index(std::max(x, y))] = std::min(x, y);
+  }
+  for (const int i : bodies)
+    if (!(may_rest_[index(i)] && still_for_[index(i)] >= kStillFor)) calm_[index(root(parent_, i))] = 0;
+  for (const int i : bodies)
+    if (calm_[index(root(parent_, i))]) changed_.push_back(i);
+  for (const int i : changed_) island_[index(i)] = root(parent_, i);
+  if (!changed_.empty()) {
+    resting_.insert(resting_.end(), changed_.begin(), changed_.end());
+    std::sort(resting_.begin(), resting_.end());
+    stale_ = true;
+  }
+  return changed_;
+}
+
+void Resting::rebuild(std::span<const BodyMotion> motions, std::span<const double> radii_m) {
+  boxes_.clear();
+  for (const int i : resting_)
+    boxes_.push_back(
+        bounds_of({motions[index(i)].centre_m, Eigen::Vector3d::Zero(), radii_m[index(i)], kNear_m}, 0));
+  grid_.build(boxes_);
+  stale_ = false;
+}
+
+// Of the islands in woken_islands_.
+std::span<const int> Resting::wake_islands() {
+  changed_.clear();
+  if (woken_islands_.empty()) return changed_;
+  std::sort(woken_islands_.begin(), woken_islands_.end());
+  const auto wakes = [&](int i) {
+    return std::binary_search(woken_islands_.begin(), woken_islands_.end(), island_[index(i)]);
+  };
+  std::copy_if(resting_.begin(), resting_.end(), std::back_inserter(changed_), wakes);
+  std::erase_if(resting_, wakes);
+  for (const int i : changed_) {
+    island_[index(i)] = -1;
+    still_for_[index(i)] = sync::Nanoseconds(0);
+  }
+  stale_ = true;
+  return changed_;
+}
+
+std::span<const int> Resting::near(std::span<const SweptSphere> ways, std::span<const BodyMotion> motions,
+                                   std::span<const double> radii_m, double horizon_s) {
+  near_.clear();
+  if (resting_.empty()) return near_;
+  if (stale_) rebuild(motions, radii_m);
+  for (const SweptSphere& way : ways) {
+    found_.clear();
+    grid_.find(bounds_of(way, horizon_s), found_);
+    for (const int k : found_) near_.push_back(resting_[index(k)]);
+  }
+  std::sort(near_.begin(), near_.end());
+  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  return near_;
+}
+
+std::span<const int> Resting::wake_with(std::span<const int> bodies) {
+  woken_islands_.clear();
+  for (const int i : bodies)
+    if (rests(i)) woken_islands_.push_back(island_[index(i)]);
+  return wake_islands();
+}
+
+std::span<const int> Resting::wake_all() {
+  woken_islands_.clear();
+  for (const int i : resting_) woken_islands_.push_back(island_[index(i)]);
+  return wake_islands();
+}
+
+void Resting::archive(StateArchive& a) {
+  a.fixed(still_for_, [&](sync::Nanoseconds& t) {
+    std::int64_t ns = t.count();
+    a(ns);
+    a.require(ns >= 0 && ns <= kStillFor.count(), "the state holds a number out of range");
+    t = sync::Nanoseconds(ns);
+  });
+  a.fixed(island_, [&](int& i) { a.index(i, island_.size()); });
+  if (!a.reads()) return;
+  resting_.clear();
+  for (std::size_t i = 0; i < island_.size(); ++i)
+    if (island_[i] >= 0) resting_.push_back(static_cast<int>(i));
+  stale_ = true;
+}
+
+}  // namespace tactus::sim

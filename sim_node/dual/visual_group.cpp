@@ -1,0 +1,258 @@
+#include "sim_node/dual/visual_group.h"
+
+#include <algorithm>
+
+#include "sim_node/dual/group_bodies.h"
+
+namespace tactus::sim {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// Bodies touch within this, m: design: what a contact is told of before it closes.
+constexpr double kTouching_m = 0.001;
+
+std::vector<char> may_rest(const WorldDef& def) {
+  std::vector<char> out;
+  for (const BodyDef& b : def.bodies) out.push_back(!b.is_static && b.tool < 0);
+  for (const JointDef& j : def.joints)
+    for (const int body : {j.parent, j.child})
+      if (body >= 0) out[index(body)] = 0;
+  return out;
+}
+
+}  // namespace
+
+VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vector<double> radii_m, Ids ids)
+    : settings_(for_visual_group(settings)),
+      radii_m_(std::move(radii_m)),
+      frames_(def),
+      world_(impulse::build_world(def, settings_)),
+      finder_(def, settings_),
+      ids_(ids),
+      tracker_(surface_traits(def, settings_), settings_, ids_),
+      newcomers_(surface_traits(def, settings_), settings_, ids_),
+      resting_(may_rest(def)),
+      mask_(def.bodies.size()),
+      motions_(frames_.at_start(def)) {
+  for (int i = 0; i < world_->units(); ++i) units_.push_back(i);
+  activate();
+  read_motions();
+}
+
+// What rests is of the group, but not computed.
+void VisualGroup::activate() {
+  awake_.clear();
+  for (const int unit : units_) {
+    list_.clear();
+    world_->unit_bodies(unit, list_);
+    if (!resting_.rests(list_.front())) awake_.push_back(unit);
+  }
+  world_->set_active(awake_);
+}
+
+void VisualGroup::read_motions() {
+  for (const int body : world_->active_bodies())
+    motions_[index(body)] = frames_.motion(body, world_->motions()[index(body)]);
+}
+
+// Their bodies, which are left in list_.
+void VisualGroup::mark(std::span<const int> units, char as) {
+  list_.clear();
+  for (const int unit : units) world_->unit_bodies(unit, list_);
+  for (const int body : list_) mask_[index(body)] = as;
+}
+
+// The contacts of who wakes are followed again.
+void VisualGroup::wake(std::span<const int> woken) {
+  if (woken.empty()) return;
+  for (const int body : woken) mask_[index(body)] = 1;
+  const auto wakes = [&](const LiveContact& c) {
+    return mask_[index(c.manifold.body_a)] || mask_[index(c.manifold.body_b)];
+  };
+  moved_.clear();
+  std::copy_if(resting_contacts_.begin(), resting_contacts_.end(), std::back_inserter(moved_), wakes);
+  std::erase_if(resting_contacts_, wakes);
+  tracker_.put(moved_);
+  for (const int body : woken) mask_[index(body)] = 0;
+}
+
+void VisualGroup::settle(sync::Nanoseconds length) {
+  const auto calm = resting_.settle(world_->active_bodies(), motions_, touching_, supported_, length);
+  if (calm.empty()) return;
+  for (const int body : calm) mask_[index(body)] = 1;
+  tracker_.take(mask_, resting_contacts_);
+  for (const int body : calm) {
+    motions_[index(body)].velocity_m_s.setZero();
+    motions_[index(body)].spin_rad_s.setZero();
+    mask_[index(body)] = 0;
+  }
+}
+
+void VisualGroup::let_go(const VisualTask& task) {
+  if (task.leaves.empty()) return;
+  mark(task.leaves, 0);
+  wake(resting_.wake_with(list_));
+  mark(task.leaves, 1);
+  moved_.clear();
+  tracker_.take(mask_, moved_);
+  mark(task.leaves, 0);
+  std::erase_if(units_,
+                [&](int unit) { return std::binary_search(task.leaves.begin(), task.leaves.end(), unit); });
+}
+
+// Those that come were in the haptic group at the beginning of the step before: they catch up by themselves, since
+// they reach nobody else in it.
+void VisualGroup::take_over(const VisualTask& task, VisualStep& out) {
+  const Handover& enters = task.enters;
+  if (enters.units.empty()) return;
+  for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
+  world_->set_active(enters.units);
+  read_motions();
+  newcomers_.put(enters.contacts);
+  sub_steps(newcomers_, now_ - task.missed, task.missed, out, false);
+  moved_.clear();
+  std::fill(mask_.begin(), mask_.end(), 1);
+  newcomers_.take(mask_, moved_);
+  std::fill(mask_.begin(), mask_.end(), 0);
+  tracker_.put(moved_);
+  units_.insert(units_.end(), enters.units.begin(), enters.units.end());
+  std::sort(units_.begin(), units_.end());
+}
+
+// Whether one that is awake is about to strike one that rests.
+bool VisualGroup::meets(const Manifold& m, int awake, double h) const {
+  const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
+  return motions_[index(awake)].moves() &&
+         std::any_of(m.used().begin(), m.used().end(), [&](const ManifoldPoint& p) {
+           const double closing = (a.velocity_at(p.point_m) - b.velocity_at(p.point_m)).dot(p.normal);
+           return closing > Resting::kStill_m_s && -p.depth_m <= closing * h;
+         });
+}
+
+// The contacts of a sub-step. What rests is there where something awake is near: it stands as if fixed, and wakes
+// when it is about to be struck.
+void VisualGroup::find(double h) {
+  while (true) {
+    const auto awake = world_->active_bodies();
+    straight_.clear();
+    if (resting_.count() > 0)
+      for (const int body : awake) {
+        const BodyMotion& m = motions_[index(body)];
+        straight_.push_back({m.centre_m, m.velocity_m_s, radii_m_[index(body)], kTouching_m});
+      }
+    const auto near = resting_.near(straight_, motions_, radii_m_, h);
+    if (near.empty()) return finder_.find(motions_, awake, h, contacts_);
+    looked_after_.assign(awake.begin(), awake.end());
+    looked_after_.insert(looked_after_.end(), near.begin(), near.end());
+    std::sort(looked_after_.begin(), looked_after_.end());
+    finder_.find(motions_, looked_after_, h, contacts_);
+    const auto asleep = [&](int body) { return resting_.rests(body) || !motions_[index(body)].moves(); };
+    std::erase_if(contacts_, [&](const Manifold& m) { return asleep(m.body_a) && asleep(m.body_b); });
+    list_.clear();
+    for (const Manifold& m : contacts_) {
+      if (resting_.rests(m.body_a) && meets(m, m.body_b, h)) list_.push_back(m.body_a);
+      if (resting_.rests(m.body_b) && meets(m, m.body_a, h)) list_.push_back(m.body_b);
+    }
+    if (list_.empty()) return;
+    wake(resting_.wake_with(list_));
+    activate();
+  }
+}
+
+void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::Nanoseconds length,
+                            VisualStep& out, bool noted) {
+  const auto at = [&](int k) { return sync::Nanoseconds(length.count() * k / settings_.visual_substeps); };
+  const auto find_for = [&](sync::Nanoseconds h) {
+    if (noted)
+      find(sync::to_seconds(h));
+    else
+      finder_.find(motions_, world_->active_bodies(), sync::to_seconds(h), contacts_);
+  };
+  find_for(at(1));
+  for (int k = 0; k < settings_.visual_substeps; ++k) {
+    const sync::Nanoseconds h = at(k + 1) - at(k);
+    if (noted) note_sub_step(index(k), at(k), out);
+    world_->step(contacts_, sync::to_seconds(h));
+    std::swap(contacts_, solved_);
+    read_motions();
+    find_for(h);
+    const std::size_t first = out.events.size();
+    tracker.update(begin + at(k + 1), h, motions_, contacts_, solved_, out.events);
+    for (const LiveContact& c : tracker.live()) note_touching(c.manifold.body_a, c.manifold.body_b);
+    for (std::size_t i = first; i < out.events.size(); ++i)
+      note_touching(out.events[i].body_a, out.events[i].body_b);
+    if (noted)
+      for (const int body : out.bodies) places_.push_back(motions_[index(body)].centre_m);
+  }
+}
+
+void VisualGroup::note_touching(int a, int b) {
+  supported_[index(a)] = supported_[index(b)] = 1;
+  if (motions_[index(a)].moves() && motions_[index(b)].moves())
+    touching_.emplace_back(std::min(a, b), std::max(a, b));
+}
+
+void VisualGroup::note_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out) {
+  out.times.push_back(passed);
+  out.states[k].resize(units_.size());
+  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], out.states[k][i]);
+  out.live[k].assign(tracker_.live().begin(), tracker_.live().end());
+  out.live[k].insert(out.live[k].end(), resting_contacts_.begin(), resting_contacts_.end());
+}
+
+// Straight ways lead from where the bodies are to where they will be.
+void VisualGroup::note_ways(VisualStep& out) {
+  const double length_s = sync::to_seconds(out.task.length);
+  const std::size_t n = out.bodies.size(), steps = n > 0 ? places_.size() / n : 0;
+  straight_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t body = index(out.bodies[i]);
+    const Eigen::Vector3d from = out.begin[body].centre_m, by = motions_[body].centre_m - from;
+    double stray = 0;
+    for (std::size_t k = 0; k + 1 < steps; ++k) {
+      const double share = sync::to_seconds(out.times[k + 1]) / length_s;
+      stray = std::max(stray, (places_[k * n + i] - from - share * by).norm());
+    }
+    straight_.push_back({from, by / length_s, radii_m_[body], stray + kTouching_m});
+  }
+  std::sort(touching_.begin(), touching_.end());
+  touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
+  out.ways.set(motions_.size(), out.bodies, straight_, touching_, length_s);
+}
+
+void VisualGroup::run(const VisualTask& task, VisualStep& out) {
+  StateArchive before;
+  archive(before);
+  out.before = before.bytes();
+  out.task = task;
+  out.events.clear();
+  out.times.clear();
+  touching_.clear();
+  places_.clear();
+  supported_.assign(motions_.size(), 0);
+  let_go(task);
+  take_over(task, out);
+  activate();
+  out.begins = now_;
+  out.units = units_;
+  out.bodies.clear();
+  for (const int unit : units_) world_->unit_bodies(unit, out.bodies);
+  std::sort(out.bodies.begin(), out.bodies.end());
+  out.begin = motions_;
+  out.states.resize(index(settings_.visual_substeps) + 1);
+  out.live.resize(index(settings_.visual_substeps) + 1);
+  sub_steps(tracker_, now_, task.length, out, true);
+  for (const LiveContact& c : resting_contacts_) note_touching(c.manifold.body_a, c.manifold.body_b);
+  now_ += task.length;
+  note_sub_step(index(settings_.visual_substeps), task.length, out);
+  note_ways(out);
+  settle(task.length);
+  out.end = motions_;
+  out.contacts.clear();
+  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.contacts.emplace_back());
+  for (const LiveContact& c : resting_contacts_) tracker_.describe(c, motions_, out.contacts.emplace_back());
+  out.asleep = static_cast<std::int64_t>(resting_.count());
+}
+
+}  // namespace tactus::sim

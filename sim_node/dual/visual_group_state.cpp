@@ -1,0 +1,32 @@
+// The state of the visual group as bytes.
+#include "sim_node/dual/visual_group.h"
+#include "sim_node/state/archive_motion.h"
+
+namespace tactus::sim {
+namespace {
+constexpr std::size_t kMostContacts = 1 << 16;  // as of a tracker
+}  // namespace
+
+void VisualGroup::archive(StateArchive& a) {
+  world_->archive(a);
+  ids_.archive(a);
+  tracker_.archive(a, motions_.size());
+  a.list(resting_contacts_, kMostContacts, [&](LiveContact& c) { tracker_.archive(a, c, motions_.size()); });
+  resting_.archive(a);
+  a(now_);
+  a.list(units_, static_cast<std::size_t>(world_->units()), [&](int& unit) {
+    a.index(unit, static_cast<std::size_t>(world_->units()));
+    a.require(unit >= 0, "the state names a body that is not there");
+  });
+  a.require(std::is_sorted(units_.begin(), units_.end()), "the state holds a list in disorder");
+  a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
+  if (a.reads()) activate();
+}
+
+void VisualGroup::rename(std::int64_t incarnation) {
+  ids_.rename(incarnation);
+  tracker_.rename();
+  for (LiveContact& c : resting_contacts_) c.id = ids_.renamed(c.id);
+}
+
+}  // namespace tactus::sim

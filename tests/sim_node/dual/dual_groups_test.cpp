@@ -1,0 +1,186 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "sim_node/dual/dual_groups.h"
+#include "sim_node/dual/group_bodies.h"
+#include "tests/sim_node/small_worlds.h"
+
+using namespace tactus;
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+using Eigen::Vector3d;
+
+namespace {
+
+Settings dual_settings() {
+  Settings s;
+  s.groups = "dual";
+  s.visual_thread = "none";
+  return s;
+}
+
+// Both groups, one tick at a time, with one tool.
+struct Dual {
+  Ids ids{7, 0, 2};
+  DualGroups groups;
+  std::vector<GroupTool> tools;
+  std::vector<contact_event_t> events;
+  std::int64_t ticks = 0;
+
+  explicit Dual(const WorldDef& world, const Settings& settings = dual_settings(),
+                const Vector3d& tool = {0, 0, 50})
+      : groups(world, settings, ids, Ids(7, 1, 2)), tools{{tool, Vector3d::Zero(), 0.01}} {
+    groups.start(tools);
+  }
+  sync::SimTime now() const { return sync::sim_time(ticks * 1'000'000); }
+  void tick() {
+    groups.tick(now(), tools, events);
+    ++ticks;
+  }
+  void run(int n) {
+    while (n-- > 0) tick();
+  }
+  const BodyMotion& body(int i) { return groups.motions()[static_cast<std::size_t>(i)]; }
+  int count(std::int8_t kind) const {
+    int n = 0;
+    for (const contact_event_t& e : events) n += e.kind == kind;
+    return n;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("What no tool can reach falls in visual steps, on the parabola") {
+  WorldDef w = empty_world();
+  const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
+  Dual d(w);
+  for (int i = 0; i < 200; ++i) {
+    d.tick();
+    CHECK_FALSE(d.groups.is_haptic(ball));
+    const VisualStep& step = *d.groups.step();
+    const double t = sync::to_seconds(d.groups.step_ends().time_since_epoch());
+    CHECK(step.end[static_cast<std::size_t>(ball)].centre_m.z() == Approx(10 - kG / 2 * t * t).margin(1e-9));
+    const auto ticks = step.task.length / sync::Nanoseconds(1'000'000);
+    CHECK((ticks == 16 || ticks == 17));
+  }
+}
+
+TEST_CASE("A ball that falls past the tool goes to the haptic group and back, and stays on its parabola") {
+  WorldDef w = empty_world();
+  const int ball = add_ball(w, 1, 0.05, {0, 0, 2});
+  // Beside the way of the ball, so near that it might be touched.
+  Dual d(w, dual_settings(), {0.063, 0, 1.0});
+  bool was = false, is = false;
+  for (int i = 0; i < 620; ++i) {
+    d.tick();
+    is = d.groups.is_haptic(ball);
+    was = was || is;
+    if (is) {
+      const double t = 0.001 * static_cast<double>(d.ticks);
+      CHECK(d.body(ball).centre_m.z() == Approx(2 - kG / 2 * t * t).margin(1e-9));
+    }
+  }
+  CHECK(was);
+  CHECK_FALSE(is);
+  const double t = sync::to_seconds(d.groups.step_ends().time_since_epoch());
+  CHECK(d.groups.step()->end[static_cast<std::size_t>(ball)].centre_m.z() ==
+        Approx(2 - kG / 2 * t * t).margin(1e-9));
+}
+
+TEST_CASE("A bounce within one visual step begins, hits and ends, at its instants") {
+  WorldDef w = empty_world();
+  add_floor(w, 0.5, 1);
+  add_ball(w, 1, 0.05, {0, 0, 0.55}, 0.5, 1);
+  Dual d(w);
+  d.run(500);
+  REQUIRE(d.count(contact_event_t::BEGIN) == 1);
+  CHECK(d.count(contact_event_t::HIT) == 1);
+  CHECK(d.count(contact_event_t::END) == 1);
+  const double fall = std::sqrt(2 * 0.5 / kG);
+  for (const contact_event_t& e : d.events)
+    CHECK(1e-9 * static_cast<double>(e.time_ns) == Approx(fall).margin(2e-4));
+  CHECK(d.events[1].approach_speed_m_s == Approx(kG * fall).epsilon(0.005));
+}
+
+TEST_CASE("Groups of bodies at rest change hands without a begin or an end") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  const int box = add_box(w, 0.5, {0.1, 0.1, 0.1}, at(0, 0, 0.05));
+  const int upper = add_box(w, 0.5, {0.1, 0.1, 0.1}, at(0, 0, 0.15));
+  Dual d(w);
+  d.run(300);
+  const std::size_t before = d.events.size();
+  for (int round = 0; round < 5; ++round) {
+    // The tool comes near the lower box only; what stands on it comes along.
+    d.tools[0].centre_m = {0.062, 0, 0.03};
+    d.run(40);
+    CHECK(d.groups.is_haptic(box));
+    CHECK(d.groups.is_haptic(upper));
+    d.tools[0].centre_m = {0, 0, 50};
+    d.run(120);
+    CHECK_FALSE(d.groups.is_haptic(box));
+    CHECK_FALSE(d.groups.is_haptic(upper));
+  }
+  for (std::size_t i = before; i < d.events.size(); ++i)
+    UNSCOPED_INFO("kind " << int(d.events[i].kind) << " at " << d.events[i].time_ns);
+  CHECK(d.events.size() == before);
+  CHECK(d.body(upper).centre_m.z() == Approx(0.15).margin(0.001));
+}
+
+TEST_CASE("Whatever the tool does, the same ticks give the same world to the bit") {
+  const auto run = [] {
+    WorldDef w = empty_world();
+    add_floor(w, 0.5, 0.3);
+    for (int i = 0; i < 20; ++i)
+      add_ball(w, 0.2, 0.03, {0.08 * (i % 5), 0.08 * (i / 5), 0.1 + 0.03 * i}, 0.4, 0.5);
+    Dual d(w);
+    double sum = 0;
+    for (int i = 0; i < 800; ++i) {
+      const double t = 0.001 * i;
+      d.tools[0].centre_m = {0.15 + 0.2 * std::sin(5 * t), 0.1 + 0.2 * std::cos(7 * t),
+                             0.05 + 0.05 * std::sin(11 * t)};
+      d.tools[0].velocity_m_s = {std::cos(5 * t), -1.4 * std::sin(7 * t), 0.55 * std::cos(11 * t)};
+      d.tick();
+      for (const BodyMotion& m : d.groups.motions()) sum += m.centre_m.sum() * (1 + 0.001 * i);
+    }
+    return std::pair(sum, d.events.size());
+  };
+  CHECK(run() == run());
+}
+
+TEST_CASE("A state that is put back goes on to the bit, whatever has happened since") {
+  WorldDef w = empty_world();
+  add_floor(w, 0.5, 0.3);
+  for (int i = 0; i < 12; ++i) add_ball(w, 0.2, 0.03, {0.08 * (i % 4), 0.08 * (i / 4), 0.1 + 0.03 * i}, 0.4, 0.5);
+  Dual d(w);
+  const auto move = [&](int i) {
+    const double t = 0.001 * i;
+    d.tools[0].centre_m = {0.15 + 0.2 * std::sin(5 * t), 0.1 + 0.2 * std::cos(7 * t),
+                           0.05 + 0.05 * std::sin(11 * t)};
+    d.tools[0].velocity_m_s = {std::cos(5 * t), -1.4 * std::sin(7 * t), 0.55 * std::cos(11 * t)};
+  };
+  for (int i = 0; i < 333; ++i) move(i), d.tick();
+  StateArchive saved, ids;
+  d.groups.archive(saved);
+  d.ids.archive(ids);
+  const auto go_on = [&] {
+    d.events.clear();
+    double sum = 0;
+    for (int i = 333; i < 700; ++i) {
+      move(i);
+      d.tick();
+      for (const BodyMotion& m : d.groups.motions()) sum += m.centre_m.sum() * (1 + 0.001 * i);
+    }
+    std::int64_t numbers = 0;
+    for (const contact_event_t& e : d.events) numbers += e.event_id ^ e.time_ns;
+    return std::tuple(sum, d.events.size(), numbers);
+  };
+  const auto first = go_on();
+  StateArchive back{std::span<const std::uint8_t>(saved.bytes())},
+      back_ids{std::span<const std::uint8_t>(ids.bytes())};
+  d.ids.archive(back_ids);
+  d.groups.archive(back);
+  CHECK(back.at_end());
+  d.ticks = 333;
+  CHECK(go_on() == first);
+}
