@@ -107,4 +107,38 @@ inline int missing(const MeshContactResult& x, const MeshContactResult& y, const
   return count;
 }
 
+// The contact of a and b is the same seen from the other side, from elsewhere, and for any winding and order of
+// a's triangles. Gives the number of its pairs.
+inline int check_invariant(const Soup& a, const Soup& b, const Eigen::Isometry3d& pose_b, const Reach& reach,
+                           Random& random) {
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity(), move = random_pose(random, 3);
+  const auto mesh = [](const Soup& s) { return ContactMesh(s.vertices, s.indices); };
+  const ContactMesh ma = mesh(a), mb = mesh(b);
+  MeshContact contact;
+  MeshContactResult found, other;
+  contact.query(ma, here, mb, pose_b, reach, found);
+  const auto same = [&](const Eigen::Isometry3d& back, bool swapped) {
+    CHECK(missing(found, other, back, swapped) == 0);
+    CHECK(other.pairs.size() == found.pairs.size());
+    CHECK(other.pierced == found.pierced);
+  };
+  contact.query(mb, pose_b, ma, here, reach, other);
+  same(here, true);
+  contact.query(ma, move, mb, move * pose_b, reach, other);
+  same(move.inverse(), false);
+  Soup turned = a;
+  for (std::size_t t = 0; t + 2 < turned.indices.size(); t += 3)
+    std::swap(turned.indices[t], turned.indices[t + 2]);
+  contact.query(mesh(turned), here, mb, pose_b, reach, other);
+  same(here, false);
+  Soup shuffled;
+  std::vector<int> order(static_cast<std::size_t>(a.triangles()));
+  for (std::size_t t = 0; t < order.size(); ++t) order[t] = static_cast<int>(t);
+  for (std::size_t t = order.size(); t > 1; --t) std::swap(order[t - 1], order[random() % t]);
+  for (const int t : order) shuffled.add(a.corner(t, 1), a.corner(t, 2), a.corner(t, 0));
+  contact.query(mesh(shuffled), here, mb, pose_b, reach, other);
+  same(here, false);
+  return static_cast<int>(found.pairs.size());
+}
+
 }  // namespace tactus::sim::test

@@ -23,20 +23,25 @@ Soup model(const std::filesystem::path& file) {
   return {m.vertices, m.indices};
 }
 
+const std::filesystem::path kModels = "/usr/share/assimp/models";
+constexpr const char* kNames[] = {"OBJ/spider.obj",   "OFF/Wuson.off", "PLY/Wuson.ply",
+                                  "Collada/duck.dae", "OBJ/box.obj",   "3DS/fels.3ds"};
+
+bool models_are_there() {
+  if (std::filesystem::exists(kModels)) return true;
+  WARN("the package assimp-testmodels is not installed: its models are not tested; scripts/setup installs it");
+  return false;
+}
+
 }  // namespace
 
 TEST_CASE(
     "On the models of assimp's tests every pair of triangles within the tolerance is covered, and no false one "
     "given") {
-  const std::filesystem::path folder = "/usr/share/assimp/models";
-  if (!std::filesystem::exists(folder)) {
-    WARN("the package assimp-testmodels is not installed: its models are not tested; scripts/setup installs it");
-    return;
-  }
+  if (!models_are_there()) return;
   const auto other = lumpy_sphere(2, kRadius_m, 3);
-  for (const char* name :
-       {"OBJ/spider.obj", "OFF/Wuson.off", "PLY/Wuson.ply", "Collada/duck.dae", "OBJ/box.obj", "3DS/fels.3ds"}) {
-    const Soup soup = model(folder / name);
+  for (const char* name : kNames) {
+    const Soup soup = model(kModels / name);
     const ContactMesh a(soup.vertices, soup.indices);
     Random random(4);
     int near = 0;
@@ -60,33 +65,72 @@ TEST_CASE(
   }
 }
 
-#ifdef TACTUS_WITH_FCL
-TEST_CASE("The least distance of two meshes is the one that FCL finds") {
-  const std::vector<std::pair<Soup, Soup>> pairs{
-      {lumpy_sphere(4, kRadius_m, 1), lumpy_sphere(4, kRadius_m, 2)},
-      {comb(5, kRadius_m), lumpy_sphere(3, kRadius_m, 3)},
-      {comb(5, kRadius_m), comb(4, kRadius_m)},
-      {t_junctions(kRadius_m), doubled_and_reversed(comb(3, kRadius_m))}};
-  Random random(12);
-  for (const auto& [sa, sb] : pairs) {
-    const ContactMesh a(sa.vertices, sa.indices), b(sb.vertices, sb.indices);
-    WorldDef world;
-    world.meshes = {{sa.vertices, {}, sa.indices}, {sb.vertices, {}, sb.indices}};
-    auto fcl = make_fcl_detector();
-    ShapeDef shape;
-    shape.kind = ShapeKind::kMesh;
-    for (shape.mesh = 0; shape.mesh < 2; ++shape.mesh) fcl->add(shape, world);
-    MeshContact contact;
-    for (int i = 0; i < 30; ++i) {
-      Isometry3d pose = random_pose(random, 1);
-      pose.translation() = uniform(random, 0.5, 2.5) * kRadius_m * direction(random);
-      std::vector<PointPair> found;
-      fcl->query(0, Isometry3d::Identity(), 1, pose, 1, found);
-      const double ours = contact.distance_m(a, Isometry3d::Identity(), b, pose, 1);
-      const double theirs = found.empty() ? 0 : std::max(0.0, found[0].gap_m);
-      INFO("pose " << i << ", ours " << ours << ", FCL's " << theirs);
-      CHECK(std::abs(ours - theirs) < 1e-9);
+TEST_CASE(
+    "The contact of models is the same seen from the other side, from elsewhere, and for any winding and order") {
+  if (!models_are_there()) return;
+  const auto other = lumpy_sphere(2, kRadius_m, 3);
+  for (const char* name : kNames) {
+    const Soup soup = model(kModels / name);
+    const ContactMesh a(soup.vertices, soup.indices), b(other.vertices, other.indices);
+    Random random(6);
+    int compared = 0;
+    for (int i = 0; i < 3; ++i) {
+      INFO(name << ", pose " << i);
+      const Isometry3d pose = brought_near(a, b, random, 3 * kRadius_m, 5e-4);
+      compared += check_invariant(soup, other, pose, {1e-3, 5e-4}, random);
     }
+    INFO(name << ": " << compared << " pairs");
+    CHECK(compared > 0);
+  }
+}
+
+#ifdef TACTUS_WITH_FCL
+namespace {
+
+// So many poses from nearly touching to far.
+void check_distances(const std::string& name, const Soup& sa, const Soup& sb, int poses, Random& random) {
+  const ContactMesh a(sa.vertices, sa.indices), b(sb.vertices, sb.indices);
+  WorldDef world;
+  world.meshes = {{sa.vertices, {}, sa.indices}, {sb.vertices, {}, sb.indices}};
+  auto fcl = make_fcl_detector();
+  ShapeDef shape;
+  shape.kind = ShapeKind::kMesh;
+  for (shape.mesh = 0; shape.mesh < 2; ++shape.mesh) fcl->add(shape, world);
+  MeshContact contact;
+  for (int i = 0; i < poses; ++i) {
+    Isometry3d pose = random_pose(random, 1);
+    pose.translation() = uniform(random, 0.5, 2.5) * kRadius_m * direction(random);
+    std::vector<PointPair> found;
+    fcl->query(0, Isometry3d::Identity(), 1, pose, 1, found);
+    const double ours = contact.distance_m(a, Isometry3d::Identity(), b, pose, 1);
+    const double theirs = found.empty() ? 0 : std::max(0.0, found[0].gap_m);
+    INFO(name << ", pose " << i << ", ours " << ours << ", FCL's " << theirs);
+    CHECK(std::abs(ours - theirs) < 1e-9);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("The least distance of two meshes is the one that FCL finds") {
+  Random random(12);
+  check_distances("lumpy spheres", lumpy_sphere(4, kRadius_m, 1), lumpy_sphere(4, kRadius_m, 2), 30, random);
+  check_distances("comb and sphere", comb(5, kRadius_m), lumpy_sphere(3, kRadius_m, 3), 30, random);
+  check_distances("combs", comb(5, kRadius_m), comb(4, kRadius_m), 30, random);
+  check_distances("plates", plate(kRadius_m, kRadius_m, 7, 5), plate(kRadius_m, 0.5 * kRadius_m, 3, 9), 30,
+                  random);
+  check_distances("slivers", slivers(80, kRadius_m, 3), slivers(80, kRadius_m, 4), 30, random);
+  check_distances("degenerate", with_degenerate(comb(3, kRadius_m)), lumpy_sphere(2, kRadius_m, 5), 30, random);
+  check_distances("T-junctions and doubled", t_junctions(kRadius_m), doubled_and_reversed(comb(3, kRadius_m)), 30,
+                  random);
+}
+
+TEST_CASE("The least distance of models is the one that FCL finds") {
+  if (!models_are_there()) return;
+  Random random(13);
+  for (const char* name : kNames) {
+    const Soup soup = model(kModels / name);
+    check_distances(name, soup, lumpy_sphere(3, kRadius_m, 3), 12, random);
+    check_distances(std::string(name) + " twice", soup, soup, 8, random);
   }
 }
 #endif
