@@ -51,7 +51,7 @@ class ImpulseSolver {
   std::span<const BodyMotion> bodies() const { return bodies_; }
   std::span<const Manifold> contacts() const { return contacts_; }
   std::span<const Manifold> solved() const { return solved_; }
-  const impulse::Advance::Report& report() const { return report_; }
+  const impulse::StepReport& report() const { return report_; }
   // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) {
     return world_->mobility(body, point_m, n);
@@ -84,7 +84,7 @@ class ImpulseSolver {
   std::unique_ptr<impulse::World> world_;
   SceneContacts source_;
   impulse::Advance advance_;
-  impulse::Advance::Report report_;
+  impulse::StepReport report_;
   double step_s_;
   std::vector<bool> falls_;
   std::vector<int> body_of_;  // per shape
