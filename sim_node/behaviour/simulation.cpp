@@ -15,13 +15,12 @@ constexpr std::size_t kMostBooks = 8;  // of a touch_model_t
 constexpr double kBeyond_m = 0.02;
 
 // Radius about its centre of mass of the sphere that holds each body.
-std::vector<double> reaches(const WorldDef& world) {
+std::vector<double> reaches(const WorldDef& world, MeshTrees& trees) {
   std::vector<double> out(world.bodies.size(), kBeyond_m);
   for (const ShapeDef& s : world.shapes) {
     const auto body = static_cast<std::size_t>(s.body);
     if (world.bodies[body].is_static) continue;
-    const TriangleMesh* mesh = s.kind == ShapeKind::kMesh ? &world.meshes[static_cast<std::size_t>(s.mesh)] : nullptr;
-    const ClosestSurface surface(s, mesh);
+    const ClosestSurface surface(s, s.kind == ShapeKind::kMesh ? trees.triangles(s, world) : nullptr);
     const double from_centre = (s.pose * surface.centre() - world.bodies[body].centre_of_mass_m).norm();
     // A plane that moves is a plate of its size.
     const double bound = s.kind == ShapeKind::kPlane ? 0.5 * s.size_m.norm() : surface.bound_m();
@@ -41,10 +40,11 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
       game_(world.holes),
       fingerprint_(fingerprint(world, settings)) {
   tools_.reserve(world.tools.size());
-  const std::vector<double> reach_m = reaches(world);
+  MeshTrees trees;
+  const std::vector<double> reach_m = reaches(world, trees);
   for (std::size_t i = 0; i < world.tools.size(); ++i) {
     const int body = world.tools[i].body;
-    tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_), ToolPush(settings, ids_, reach_m), {},
+    tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_, trees), ToolPush(settings, ids_, reach_m), {},
                       Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(body)].pose.linear()).normalized()});
   }
   for (Tool& tool : tools_)

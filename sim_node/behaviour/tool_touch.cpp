@@ -6,7 +6,6 @@
 #include "lcmtypes/bump.h"
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/triangles.h"
 
 namespace tactus::sim {
 
@@ -24,14 +23,12 @@ constexpr sync::Nanoseconds kLatestNews{20'000'000};
 constexpr double kFelt_N = 1e-4;  // below, a force is rounding
 // Of places in the world, m.
 constexpr double kRounding_m = 1e-9;
-// Samples of a heightfield along one side that a tool feels; finer ones are thinned.
-constexpr int kMostSamples = 1025;
 
 sync::Nanoseconds ns(double s) { return sync::from_seconds(s); }
 
 }  // namespace
 
-ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids)
+ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids, MeshTrees& trees)
     : tool_(tool), settings_(settings), ids_(ids) {
   const tool_def_t& def = world.tools[static_cast<std::size_t>(tool)];
   tool_body_ = def.body;
@@ -49,14 +46,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
-    TriangleMesh ground;
-    const TriangleMesh* mesh = nullptr;
-    if (s.kind == ShapeKind::kMesh) mesh = &world.meshes[static_cast<std::size_t>(s.mesh)];
-    if (s.kind == ShapeKind::kHeightfield) {
-      ground = triangulate(world.heightfields[static_cast<std::size_t>(s.mesh)], kMostSamples);
-      mesh = &ground;
-    }
-    ClosestSurface surface(s, mesh, settings.touch_merge_angle_rad);
+    const bool meshed = s.kind == ShapeKind::kMesh || s.kind == ShapeKind::kHeightfield;
+    ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,

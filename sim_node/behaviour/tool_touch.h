@@ -14,6 +14,7 @@
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/collision/sphere_tree.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/state/state_archive.h"
@@ -27,7 +28,8 @@ class ToolTouch {
   // Speed that a unit impulse along n at the point of a body gives to that point, 1/kg.
   using Mobility = std::function<double(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n)>;
 
-  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids);
+  // trees: of this world, where others use them too.
+  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids, MeshTrees& trees);
 
   // One step, at `now`. news: messages of this tool since the last step, in order. Appends events.
   void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
