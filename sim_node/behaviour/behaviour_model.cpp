@@ -79,6 +79,9 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
 
 std::string refusal(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
+  if (settings.groups == "dual" && model.name != "impulse")
+    return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
+           std::string(model.name) + "\"; choose solver = impulse, or groups = single";
   if (model.needs_gaps) {
     const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;

@@ -24,8 +24,8 @@ std::vector<impulse::Extent> extents_of(const WorldDef& world);
 // Contacts of the shapes of a scene, for bodies as an impulse world moves them.
 class SceneContacts : public impulse::ContactSource {
  public:
-  SceneContacts(const WorldDef& world, const Settings& settings)
-      : frames_(world), bodies_(frames_.at_start(world)), finder_(world, settings) {}
+  SceneContacts(const WorldDef& world, const Settings& settings, const std::shared_ptr<MeshTrees>& trees = nullptr)
+      : frames_(world), bodies_(frames_.at_start(world)), finder_(world, settings, trees) {}
   void find(std::span<const BodyMotion> motions, std::span<const int> active_bodies, double h_s,
             std::vector<Manifold>& out) override;
   const impulse::BodyFrames& frames() const { return frames_; }
@@ -52,7 +52,7 @@ class ImpulseSolver {
   std::span<const BodyMotion> bodies() const { return bodies_; }
   std::span<const Manifold> contacts() const { return contacts_; }
   std::span<const Manifold> solved() const { return solved_; }
-  const impulse::Advance::Report& report() const { return report_; }
+  const impulse::StepReport& report() const { return report_; }
   // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) {
     return world_->mobility(body, point_m, n);
@@ -72,7 +72,7 @@ class ImpulseSolver {
   std::unique_ptr<impulse::World> world_;
   SceneContacts source_;
   impulse::Advance advance_;
-  impulse::Advance::Report report_;
+  impulse::StepReport report_;
   double step_s_;
   impulse::SceneSettings scene_;
   std::size_t shapes_;

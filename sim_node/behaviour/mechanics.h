@@ -43,6 +43,9 @@ class Mechanics {
   virtual std::span<BodyMotion> motions() = 0;
   // Bodies that move and that a tool may touch, ascending; none: any may be.
   virtual std::optional<std::span<const int>> near_tools() const { return std::nullopt; }
+  // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
+  // solve.
+  virtual double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) = 0;
   // Contacts between bodies that are told of at the present instant; clears the list.
   virtual void contacts(std::vector<contact_t>& out) = 0;
   // Of the bodies that are computed ahead; null: none ever are.

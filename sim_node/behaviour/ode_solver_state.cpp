@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
 #include "sim_node/state/archive_motion.h"
 

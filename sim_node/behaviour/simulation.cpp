@@ -37,6 +37,10 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
     tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_, *trees_), ToolPush(settings, ids_, reach_m), {},
                       Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(body)].pose.linear()).normalized()});
   }
+  for (Tool& tool : tools_)
+    tool.touch.set_mobility([this](int body, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
+      return mechanics_->mobility(body, point, n);
+    });
   models_.resize(tools_.size());
 }
 

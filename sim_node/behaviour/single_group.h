@@ -20,6 +20,9 @@ class SingleGroup : public Mechanics {
   void add_torque(int body, const Eigen::Vector3d& torque_N_m) override { solver_.add_torque(body, torque_N_m); }
   void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   std::span<BodyMotion> motions() override { return motions_; }
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) override {
+    return solver_.mobility(body, point_m, n);
+  }
   void contacts(std::vector<contact_t>& out) override;
 
   bool apply(const impulse::SceneChange& change) override { return solver_.apply(change); }

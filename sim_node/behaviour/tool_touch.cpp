@@ -126,8 +126,14 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
   std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.seen > kForget; });
 }
 
+double ToolTouch::mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const {
+  const BodyMotion& body = body_of(n, bodies);
+  if (!body.moves() || !mobility_) return mobility(body, n.plane.point, n.plane.normal);
+  return mobility_(surfaces_[n.surface].traits.body, n.plane.point, n.plane.normal);
+}
+
 double ToolTouch::mass_kg(const Near& n, std::span<const BodyMotion> bodies) const {
-  return 1 / (1 / tool_mass_kg_ + mobility(body_of(n, bodies), n.plane.point, n.plane.normal));
+  return 1 / (1 / tool_mass_kg_ + mobility_1_kg(n, bodies));
 }
 
 void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<const BodyMotion> bodies,
@@ -247,8 +253,8 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.normal_body = to_vec3f(normal_body);
     p.velocity_m_s = to_vec3f(body.velocity_at(n.plane.point));
     p.angular_velocity_rad_s = to_vec3f(body.spin_rad_s);
-    const double mobility_1_kg = mobility(body, n.plane.point, n.plane.normal);
-    p.effective_mass_kg = static_cast<float>(mobility_1_kg > 0 ? std::min(1e9, 1 / mobility_1_kg) : 1e9);
+    const double moved_1_kg = mobility_1_kg(n, bodies);
+    p.effective_mass_kg = static_cast<float>(moved_1_kg > 0 ? std::min(1e9, 1 / moved_1_kg) : 1e9);
     p.stiffness_N_m = static_cast<float>(settings_.touch_stiffness_N_m);
     p.damping_N_s_m = static_cast<float>(settings_.touch_damping_Ns_m);
     p.friction_static = static_cast<float>(s.friction_static);

@@ -21,18 +21,19 @@ GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
 
 }  // namespace
 
-DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids)
+DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
+                       const std::shared_ptr<MeshTrees>& trees)
     : settings_(settings),
       world_(impulse::build_world(def, for_haptic_group(settings))),
-      source_(def, settings),
+      source_(def, settings, trees),
       advance_(extents_of(def)),
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings), settings, ids),
       catching_up_(surface_traits(def, settings), settings, ids),
-      grouping_(group_bodies(def, *world_), limits_of(def, settings),
+      grouping_(group_bodies(def, *world_, *trees), limits_of(def, settings),
                 settings.grouping == "kim2005" ? GroupingRule::kKim2005 : GroupingRule::kSound),
-      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def), Ids(ids.incarnation(), 1, 2))),
+      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def, *trees), Ids(ids.incarnation(), 1, 2), trees)),
       rate_(settings.visual_rate_Hz, sync::from_seconds(settings.step_s)),
       motions_(source_.frames().at_start(def)),
       mask_(def.bodies.size()) {

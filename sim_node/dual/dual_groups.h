@@ -23,7 +23,8 @@ class DualGroups : public Mechanics {
  public:
   // ids: how the contacts of the haptic group are named, every other number of which is the visual group's. Throws
   // std::runtime_error with one sentence when the world cannot be simulated.
-  DualGroups(const WorldDef& world, const Settings& settings, Ids& ids);
+  DualGroups(const WorldDef& world, const Settings& settings, Ids& ids,
+             const std::shared_ptr<MeshTrees>& trees = std::make_shared<MeshTrees>());
 
   void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   // Bodies that are acted on are in the haptic group from then on.
@@ -35,6 +36,9 @@ class DualGroups : public Mechanics {
   // Of the haptic group as it is, of the visual group as it was when its step began.
   std::span<BodyMotion> motions() override { return motions_; }
   std::optional<std::span<const int>> near_tools() const override { return grouping_.haptic(); }
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) override {
+    return world_->mobility(body, point_m, n);
+  }
   void contacts(std::vector<contact_t>& out) override;
   const Ahead* ahead() override;
 

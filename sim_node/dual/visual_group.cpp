@@ -23,12 +23,13 @@ std::vector<char> may_rest(const WorldDef& def) {
 
 }  // namespace
 
-VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vector<double> radii_m, Ids ids)
+VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vector<double> radii_m, Ids ids,
+                         const std::shared_ptr<MeshTrees>& trees)
     : settings_(for_visual_group(settings)),
       radii_m_(std::move(radii_m)),
       frames_(def),
       world_(impulse::build_world(def, settings_)),
-      finder_(def, settings_),
+      finder_(def, settings_, trees),
       source_(*this),
       advance_(extents_of(def)),
       scene_(def, *world_),

@@ -17,7 +17,8 @@ class VisualGroup {
   // radii_m: of a sphere about the centre of mass that holds each body. ids: how its contacts and events are
   // named. Throws std::runtime_error with one sentence when the world cannot be simulated. All units are its own
   // at first.
-  VisualGroup(const WorldDef& world, const Settings& settings, std::vector<double> radii_m, Ids ids);
+  VisualGroup(const WorldDef& world, const Settings& settings, std::vector<double> radii_m, Ids ids,
+              const std::shared_ptr<MeshTrees>& trees);
 
   // Takes over who enters, lets go who leaves, and computes the step. Deterministic: the same tasks give the same
   // steps to the bit. Realtime-safe once the lists have grown.
