@@ -29,6 +29,7 @@ class SceneContacts : public impulse::ContactSource {
   void find(std::span<const BodyMotion> motions, std::span<const int> active_bodies, double h_s,
             std::vector<Manifold>& out) override;
   const impulse::BodyFrames& frames() const { return frames_; }
+  std::size_t shapes() const { return finder_.shapes(); }
   // Of every body, as it was when contacts were last sought.
   std::span<const BodyMotion> bodies() const { return bodies_; }
 

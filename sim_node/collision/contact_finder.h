@@ -33,6 +33,8 @@ class ContactFinder {
   // threads at once, but two finders may be used by two threads.
   void find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,
             std::vector<Manifold>& out);
+  // How many shapes the world has.
+  std::size_t shapes() const { return body_of_.size(); }
 
  private:
   void look(const NearPair& pair, std::vector<Manifold>& out);

@@ -33,7 +33,8 @@ DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
       catching_up_(surface_traits(def, settings), settings, ids),
       grouping_(group_bodies(def, *world_, *trees), limits_of(def, settings),
                 settings.grouping == "kim2005" ? GroupingRule::kKim2005 : GroupingRule::kSound),
-      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def, *trees), Ids(ids.incarnation(), 1, 2), trees)),
+      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def, *trees), Ids(ids.incarnation(), 1, 2),
+                                            trees)),
       rate_(settings.visual_rate_Hz, sync::from_seconds(settings.step_s)),
       motions_(source_.frames().at_start(def)),
       mask_(def.bodies.size()) {
@@ -42,7 +43,7 @@ DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
 
 void DualGroups::start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
   // Nothing is late at the first instant.
-  visual_.halt().restart(ids_.incarnation());
+  visual_.group().restart(ids_.incarnation());
   task_ = {};
   task_.length = rate_.next();
   visual_.ask(task_);
@@ -220,8 +221,9 @@ const Ahead* DualGroups::ahead() {
     ahead_now_.contacts = [this](std::vector<contact_t>& out) {
       out.clear();
       const auto gone = [this](int body) { return motions_[index(body)].moves() && is_haptic(body); };
-      for (const contact_t& c : step_->contacts)
-        if (!gone(c.body_a) && !gone(c.body_b)) out.push_back(c);
+      for (const LiveContact& c : step_->live.back())
+        if (!gone(c.manifold.body_a) && !gone(c.manifold.body_b))
+          tracker_.describe(c, step_->end, out.emplace_back());
     };
   }
   return &ahead_now_;

@@ -111,7 +111,6 @@ class DualGroups : public Mechanics {
   Handover late_;              // who left when the step began
   std::size_t told_ = 0;       // of the step's events
   std::int64_t number_ = 0, late_steps_ = 0, held_ticks_ = 0;
-  std::optional<std::int64_t> rename_to_;
   bool began_ = false, holds_ = false, stale_ = true;
 
   std::vector<BodyMotion> motions_;

@@ -8,51 +8,19 @@
 namespace tactus::sim {
 namespace {
 
+constexpr std::size_t kMostContacts = 1 << 16;  // as of a tracker
 constexpr std::size_t kMostLoads = 1 << 12, kMostChanges = 1 << 12;
-constexpr std::size_t kMostBytes = 1 << 30;
-
-void archive(StateArchive& a, sync::Nanoseconds& t) {
-  std::int64_t ns = t.count();
-  a(ns);
-  a.require(ns >= 0 && ns <= 1'000'000'000, "the state holds a time out of range");
-  t = sync::Nanoseconds(ns);
-}
-
-void archive_task(StateArchive& a, VisualTask& task, int units, std::size_t bodies, ContactTracker& tracker) {
-  a(task.number);
-  archive(a, task.length), archive(a, task.missed);
-  a.require(task.length > sync::Nanoseconds(0), "the state holds a time out of range");
-  task.enters.archive(a, units, bodies, tracker);
-  a.list(task.leaves, static_cast<std::size_t>(units), [&](int& unit) {
-    a.index(unit, static_cast<std::size_t>(units));
-    a.require(unit >= 0, "the state names a body that is not there");
-  });
-  a.list(task.changes, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
-}
 
 }  // namespace
 
 void DualGroups::archive(StateArchive& a) {
   const int units = world_->units();
   const std::size_t bodies = motions_.size();
-  VisualTask going_on = step_->task;
-  std::string before(step_->before.begin(), step_->before.end());
-  a(before);
-  a.require(before.size() <= kMostBytes, "the state is longer than it should be");
-  archive_task(a, going_on, units, bodies, tracker_);
-  if (a.reads()) {
-    VisualGroup& group = visual_.halt();
-    const std::vector<std::uint8_t> bytes(before.begin(), before.end());
-    StateArchive of_group{std::span<const std::uint8_t>(bytes)};
-    group.archive(of_group);
-    a.require(of_group.at_end(), "the state is longer than it should be");
-    if (rename_to_) {
-      group.rename(*rename_to_);
-      for (LiveContact& c : going_on.enters.contacts) c.id = ids_.renamed(c.id);
-    }
-    group.run(going_on, *step_);
-  }
-  archive_task(a, task_, units, bodies, tracker_);
+  step_->archive(a, units, bodies, tracker_);
+  // The next step has been asked for: it is finished first.
+  VisualStep& next = visual_.finish();
+  visual_.group().archive(a);
+  next.archive(a, units, bodies, tracker_);
   world_->archive(a);
   tracker_.archive(a, bodies);
   grouping_.archive(a);
@@ -78,27 +46,22 @@ void DualGroups::archive(StateArchive& a) {
               "the state holds a number out of range");
   });
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
+  a.list(contacts_, kMostContacts, [&](Manifold& m) { sim::archive(a, m, bodies, source_.shapes()); });
+  bool stale = stale_;
+  a(stale);
   if (!a.reads()) return;
-  if (rename_to_) {
-    tracker_.rename();
-    for (Handover* who : {&late_, &task_.enters})
-      for (LiveContact& c : who->contacts) c.id = ids_.renamed(c.id);
-  }
   promoted_.clear();
   released_.clear();
   activate();
-  find_contacts(settings_.step_s);
-  visual_.ask(task_);
+  stale_ = stale;
 }
 
-// What has been computed ahead is computed again under the new names.
 void DualGroups::rename(std::int64_t incarnation) {
-  StateArchive written;
-  archive(written);
-  rename_to_ = incarnation;
-  StateArchive read{std::span<const std::uint8_t>(written.bytes())};
-  archive(read);
-  rename_to_.reset();
+  visual_.finish().rename(ids_);
+  visual_.group().rename(incarnation);
+  step_->rename(ids_);
+  tracker_.rename();
+  for (LiveContact& c : late_.contacts) c.id = ids_.renamed(c.id);
 }
 
 }  // namespace tactus::sim

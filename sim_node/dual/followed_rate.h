@@ -16,7 +16,8 @@ class FollowedRate {
   // process: its name; empty: nobody is followed.
   explicit FollowedRate(std::string process) : process_(std::move(process)) {}
 
-  // The rate from now on, Hz, when this message changes it. One that has not begun, or shows nothing, changes nothing.
+  // The rate from now on, Hz, when this message changes it. One that has not begun, or shows nothing, changes
+  // nothing.
   std::optional<double> hear(const node_health_t& m) {
     if (process_.empty() || m.node != process_ || m.state != node_health_t::RUNNING || !(m.rate_Hz > 0)) return {};
     if (std::abs(m.rate_Hz - rate_Hz_) <= kSame * rate_Hz_) return {};

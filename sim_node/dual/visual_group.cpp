@@ -47,12 +47,14 @@ VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vec
 
 // What rests is of the group, but not computed.
 void VisualGroup::activate() {
+  const auto active = world_->active_units();
   awake_.clear();
   for (const int unit : units_) {
     list_.clear();
     world_->unit_bodies(unit, list_);
     if (!resting_.rests(list_.front())) awake_.push_back(unit);
   }
+  if (!std::equal(awake_.begin(), awake_.end(), active.begin(), active.end())) found_ = false;
   world_->set_active(awake_);
 }
 
@@ -177,12 +179,15 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h), contacts_);
   };
   double h = sync::to_seconds(at(1));
-  find(h);
+  // Those that the step before ended with will do, when nobody has come or gone and steps are as long.
+  if (!noted || !found_ || h > found_for_s_) find(h);
   for (int k = 0; k < settings_.visual_substeps; ++k) {
     h = sync::to_seconds(at(k + 1) - at(k));
     while (noted && wake_struck(h)) find(h);
     if (noted) note_sub_step(index(k), at(k), out);
     advance_.step(*world_, source_, h, contacts_, solved_);
+    found_ = noted;
+    found_for_s_ = h;
     read_motions();
     const std::size_t first = out.events.size();
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
@@ -229,9 +234,6 @@ void VisualGroup::note_ways(VisualStep& out) {
 }
 
 void VisualGroup::run(const VisualTask& task, VisualStep& out) {
-  StateArchive before;
-  archive(before);
-  out.before = before.bytes();
   out.task = task;
   out.events.clear();
   out.times.clear();
@@ -240,6 +242,7 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   supported_.assign(motions_.size(), 0);
   let_go(task);
   for (const impulse::SceneChange& change : task.changes) scene_.apply(*world_, change);
+  if (!task.changes.empty()) found_ = false;
   if (!task.changes.empty()) wake(resting_.wake_all());
   take_over(task, out);
   activate();
@@ -258,9 +261,6 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   note_ways(out);
   settle(task.length);
   out.end = motions_;
-  out.contacts.clear();
-  for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.contacts.emplace_back());
-  for (const LiveContact& c : resting_contacts_) tracker_.describe(c, motions_, out.contacts.emplace_back());
   out.asleep = static_cast<std::int64_t>(resting_.count());
 }
 

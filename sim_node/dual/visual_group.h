@@ -73,6 +73,8 @@ class VisualGroup {
   std::vector<LiveContact> resting_contacts_;  // of those that rest
   Resting resting_;
   sync::SimTime now_{};
+  bool found_ = false;  // contacts_ are those of the present poses, sought for steps of found_for_s_
+  double found_for_s_ = 0;
   std::vector<int> units_, awake_;            // ascending
   std::vector<char> mask_, supported_;        // of each body
   std::vector<BodyMotion> motions_, sought_;  // as they are, and as contacts were last sought for

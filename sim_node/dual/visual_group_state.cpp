@@ -20,9 +20,13 @@ void VisualGroup::archive(StateArchive& a) {
   });
   a.require(std::is_sorted(units_.begin(), units_.end()), "the state holds a list in disorder");
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
+  a.list(contacts_, kMostContacts, [&](Manifold& m) { sim::archive(a, m, motions_.size(), finder_.shapes()); });
+  bool found = found_;
+  a(found), a(found_for_s_);
   if (!a.reads()) return;
   sought_ = motions_;
   activate();
+  found_ = found;
 }
 
 void VisualGroup::rename(std::int64_t incarnation) {

@@ -2,17 +2,35 @@
 
 #include <algorithm>
 
+#include "sim_node/state/archive_motion.h"
+
 namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMostContacts = 1 << 16;  // as of a tracker
-constexpr std::size_t kMostCoordinates = 1 << 16;
+constexpr std::size_t kMostCoordinates = 1 << 16, kMostSubSteps = 64, kMostChanges = 1 << 12;
 
-void archive(StateArchive& a, impulse::UnitState& s) {
+void archive_unit(StateArchive& a, impulse::UnitState& s) {
   a(s.body.centre_m), a(s.body.orientation), a(s.body.velocity_m_s), a(s.body.spin_rad_s);
   a.list(s.joints.positions, kMostCoordinates, [&](double& x) { a(x); });
   a.list(s.joints.rates, kMostCoordinates, [&](double& x) { a(x); });
   a(s.joints.reach_s);
+}
+
+void archive_time(StateArchive& a, sync::Nanoseconds& t) {
+  std::int64_t ns = t.count();
+  a(ns);
+  a.require(ns >= 0 && ns <= 1'000'000'000, "the state holds a time out of range");
+  t = sync::Nanoseconds(ns);
+}
+
+// Numbers of units or bodies, ascending.
+void archive_numbers(StateArchive& a, std::vector<int>& numbers, std::size_t count) {
+  a.list(numbers, count, [&](int& n) {
+    a.index(n, count);
+    a.require(n >= 0, "the state names a body that is not there");
+  });
+  a.require(std::is_sorted(numbers.begin(), numbers.end()), "the state holds a list in disorder");
 }
 
 }  // namespace
@@ -33,9 +51,49 @@ void Handover::archive(StateArchive& a, int most, std::size_t bodies, ContactTra
     a.require(unit >= 0, "the state names a body that is not there");
   });
   a.require(std::is_sorted(units.begin(), units.end()), "the state holds a list in disorder");
-  a.list(states, count, [&](impulse::UnitState& s) { sim::archive(a, s); });
+  a.list(states, count, [&](impulse::UnitState& s) { archive_unit(a, s); });
   a.require(states.size() == units.size(), "the state holds a list that is too long");
   a.list(contacts, kMostContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
+}
+
+void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker) {
+  a(number);
+  archive_time(a, length), archive_time(a, missed);
+  enters.archive(a, units, bodies, tracker);
+  archive_numbers(a, leaves, static_cast<std::size_t>(units));
+  a.list(changes, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+}
+
+void VisualStep::archive(StateArchive& a, int most, std::size_t count, ContactTracker& tracker) {
+  task.archive(a, most, count, tracker);
+  a(begins);
+  archive_numbers(a, units, static_cast<std::size_t>(most)), archive_numbers(a, bodies, count);
+  a.list(times, kMostSubSteps, [&](sync::Nanoseconds& t) { archive_time(a, t); });
+  a.list(states, kMostSubSteps, [&](auto& list) {
+    a.list(list, static_cast<std::size_t>(most), [&](impulse::UnitState& s) { archive_unit(a, s); });
+    a.require(list.size() == units.size(), "the state holds a list that is too long");
+  });
+  a.list(live, kMostSubSteps,
+         [&](auto& list) { a.list(list, kMostContacts, [&](LiveContact& c) { tracker.archive(a, c, count); }); });
+  a.require(!times.empty() && states.size() == times.size() && live.size() == times.size(),
+            "the state holds a list that is too long");
+  for (auto* list : {&begin, &end}) {
+    a.list(*list, count, [&](BodyMotion& m) { sim::archive(a, m); });
+    a.require(list->size() == count, "the state is one of another scene");
+  }
+  ways.archive(a, count);
+  a.list(events, kMostContacts, [&](contact_event_t& e) { a.message(e); });
+  a(asleep);
+}
+
+void VisualStep::rename(const Ids& ids) {
+  for (auto& list : live)
+    for (LiveContact& c : list) c.id = ids.renamed(c.id);
+  for (LiveContact& c : task.enters.contacts) c.id = ids.renamed(c.id);
+  for (contact_event_t& e : events) {
+    e.event_id = ids.renamed(e.event_id);
+    e.contact_id = ids.renamed(e.contact_id);
+  }
 }
 
 std::size_t VisualStep::time_before(sync::Nanoseconds passed) const {

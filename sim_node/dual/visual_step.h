@@ -40,6 +40,8 @@ struct VisualTask {
   Handover enters;             // as they were then
   std::vector<int> leaves;     // units that are in the haptic group by now
   std::vector<impulse::SceneChange> changes;  // that hold from its beginning on
+
+  void archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker);
 };
 
 // One visual step, from `begins` on the clock of the visual group.
@@ -54,12 +56,14 @@ struct VisualStep {
   std::vector<BodyMotion> begin, end;   // of every body of the world; of those not in the group nothing is known
   Ways ways;                            // from the beginning on
   std::vector<contact_event_t> events;  // on that clock; those of who entered are from the step before
-  std::vector<contact_t> contacts;      // at the end
-  std::vector<std::uint8_t> before;     // the state of the visual group before the task
   std::int64_t asleep = 0;              // bodies that rested and were not computed
 
   // The newest of times that is not after `passed`.
   std::size_t time_before(sync::Nanoseconds passed) const;
+  // units, bodies: of the world. tracker: of the world whose contacts these are.
+  void archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker);
+  // The names of contacts and events are of another incarnation.
+  void rename(const Ids& ids);
 };
 
 }  // namespace tactus::sim

@@ -71,11 +71,9 @@ bool VisualThread::take(std::unique_ptr<VisualStep>& step) {
   return true;
 }
 
-VisualGroup& VisualThread::halt() {
+VisualStep& VisualThread::finish() {
   while (thread_.joinable() && state_.load(std::memory_order_acquire) == kAsked) state_.wait(kAsked);
-  asked_ = false;
-  state_.store(kIdle, std::memory_order_release);
-  return *group_;
+  return *step_;
 }
 
 }  // namespace tactus::sim

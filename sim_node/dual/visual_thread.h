@@ -29,9 +29,10 @@ class VisualThread {
   bool take(std::unique_ptr<VisualStep>& step);
   bool asked() const { return asked_; }
 
-  // The group, for what happens while the world stands still: waits for the step that is being computed, and
-  // forgets it.
-  VisualGroup& halt();
+  // For what happens while the world stands still: waits for the step that was asked for; it stays to be taken.
+  VisualStep& finish();
+  // Not while a step is being computed.
+  VisualGroup& group() { return *group_; }
 
  private:
   enum State { kIdle, kAsked, kDone, kEnd };

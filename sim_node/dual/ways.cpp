@@ -1,6 +1,11 @@
 #include "sim_node/dual/ways.h"
 
+#include <algorithm>
+
 namespace tactus::sim {
+namespace {
+constexpr std::size_t kMostPairs = 1 << 18;
+}  // namespace
 
 void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
                std::span<const std::pair<int, int>> touching, double horizon_s) {
@@ -14,6 +19,7 @@ void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const
     boxes_.push_back(bounds_of(ways_[k], horizon_s));
   }
   grid_.build(boxes_);
+  horizon_s_ = horizon_s;
   first_.assign(bodies + 1, 0);
   for (const auto& [a, b] : touching) ++first_[index(a) + 1], ++first_[index(b) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -23,6 +29,26 @@ void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const
     beside_[index(next_[index(a)]++)] = b;
     beside_[index(next_[index(b)]++)] = a;
   }
+}
+
+void Ways::archive(StateArchive& a, std::size_t bodies) {
+  std::vector<int> members = members_;
+  std::vector<SweptSphere> ways = ways_;
+  std::vector<std::pair<int, int>> touching;
+  for (int body = 0; index(body) + 1 < first_.size(); ++body)
+    for (const int other : beside(body))
+      if (body < other) touching.emplace_back(body, other);
+  const auto body = [&](int& i) {
+    a.index(i, bodies);
+    a.require(i >= 0, "the state names a body that is not there");
+  };
+  a.list(members, bodies, body);
+  a.require(std::is_sorted(members.begin(), members.end()), "the state holds a list in disorder");
+  a.list(ways, bodies, [&](SweptSphere& s) { a(s.centre_m), a(s.velocity_m_s), a(s.radius_m), a(s.pad_m); });
+  a.require(ways.size() == members.size(), "the state holds a list that is too long");
+  a.list(touching, kMostPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
+  a(horizon_s_);
+  if (a.reads()) set(bodies, members, ways, touching, horizon_s_);
 }
 
 void Ways::find(const Bounds& query, std::vector<int>& found) const {

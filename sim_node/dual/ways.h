@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/dual/bounds_grid.h"
+#include "sim_node/state/state_archive.h"
 
 namespace tactus::sim {
 
@@ -22,6 +23,8 @@ class Ways {
   const SweptSphere& of(int body) const { return ways_[index(at_[index(body)])]; }
   // Members whose ways may meet these bounds, into `found`, appended in ascending order.
   void find(const Bounds& query, std::vector<int>& found) const;
+  // bodies: how many the world has.
+  void archive(StateArchive& a, std::size_t bodies);
   // What a body touches in the step.
   std::span<const int> beside(int body) const;
 
@@ -32,6 +35,7 @@ class Ways {
   std::vector<Bounds> boxes_;
   BoundsGrid grid_;
   std::vector<int> first_, beside_, next_;
+  double horizon_s_ = 0;
 };
 
 }  // namespace tactus::sim

@@ -43,8 +43,9 @@ class StateArchive {
   void operator()(std::uint64_t& x) {
     static_assert(std::endian::native == std::endian::little);
     if (!reads_) {
-      const auto* from = reinterpret_cast<const std::uint8_t*>(&x);
-      bytes_.insert(bytes_.end(), from, from + sizeof x);
+      const std::size_t at = bytes_.size();
+      bytes_.resize(at + sizeof x);
+      std::memcpy(bytes_.data() + at, &x, sizeof x);
       return;
     }
     require(left_.size() >= sizeof x, "the state ends too early");

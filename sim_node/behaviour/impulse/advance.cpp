@@ -221,7 +221,9 @@ const StepReport& Advance::step(World& world, ContactSource& source, double h, s
     dt = dt > left * 0.999 ? left : std::min(dt, left);
     world.keep(kept_);
     ++report_.pieces;
-    assumed_.assign(world.motions().begin(), world.motions().end());
+    assumed_.resize(world.motions().size());
+    for (const int body : world.active_bodies())
+      assumed_[static_cast<std::size_t>(body)] = world.motions()[static_cast<std::size_t>(body)];
     while (!attempt(world, source, dt, finest, h, contacts)) {
     }
     const double next = horizon_s(world, h);
