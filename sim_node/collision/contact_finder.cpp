@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim_node/collision/gaps/choose.h"
 #include "sim_node/collision/layer_options.h"
 
 namespace tactus::sim {
@@ -31,8 +32,7 @@ ManifoldPoint point_of(const PointPair& p) {
 ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees)
     : near_(world, settings.contact_tolerance_m, *(trees = trees ? trees : std::make_shared<MeshTrees>())),
       number_(world.shapes.size(), -1),
-      chosen_number_(world.shapes.size(), -1),
-      same_place_m_(settings.contact_tolerance_m) {
+      chosen_number_(world.shapes.size(), -1) {
   const MeshContactOptions options = layer_options(settings);
   gaps_ = make_detector("gaps", options, trees);
   auto chosen = make_detector(settings.detector, options, trees);
@@ -70,17 +70,11 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
   if (!found) ask(*gaps_, number_);
   if (pairs_.empty()) return;
   points_.clear();
-  if (meshed && pairs_.size() > 1) {
-    patches_.make(pairs_, same_place_m_, patch_list_);
-    for (const ContactPatch& patch : patch_list_)
-      for (int i = 0; i < patch.count; ++i) points_.push_back(point_of(patch.points[index(i)]));
-  } else {
-    for (const PointPair& p : pairs_) points_.push_back(point_of(p));
-  }
+  for (const PointPair& p : pairs_) points_.push_back(point_of(p));
   Manifold& m = out.emplace_back();
   m.shape_a = pair.shape_a, m.shape_b = pair.shape_b;
   m.body_a = body_of_[a], m.body_b = body_of_[b];
-  reduce_points(points_, m);
+  gaps::choose_points(points_, m);
 }
 
 void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,

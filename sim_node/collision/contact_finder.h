@@ -9,7 +9,6 @@
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/collision/detector.h"
-#include "sim_node/collision/layers/patches.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/collision/near_pairs.h"
 #include "sim_node/settings.gen.h"
@@ -46,10 +45,7 @@ class ContactFinder {
   std::vector<int> number_, chosen_number_;  // per shape; -1: none
   std::vector<bool> chosen_takes_;           // by both kinds
   bool only_triangles_ = false;              // the chosen one is asked about meshes only
-  double same_place_m_;
-  Patches patches_;
   std::vector<PointPair> pairs_;
-  std::vector<ContactPatch> patch_list_;
   std::vector<ManifoldPoint> points_;
 };
 

@@ -16,8 +16,10 @@ using Eigen::Isometry3d;
 
 // As of the detector "layers".
 constexpr double kMargin = 0.2;
-// A pair that leads straight out of a triangle's face is a contact whatever lies beside: cosine.
+// A pair that leads straight out of a triangle's face is one of something over it: cosine.
 constexpr double kStraight = 1 - 1e-9;
+// Of the distance: something tilted by 26 degrees over a face, as far as a step may turn it; design.
+constexpr double kMuchNearer = 0.9;
 
 bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
 
@@ -78,11 +80,7 @@ class GapsDetector : public Detector {
     else
       ordered(sa, pose_a, sb, pose_b, reach_m, out);
     if (!swapped) return;
-    for (PointPair& p : out) {
-      std::swap(p.on_a_m, p.on_b_m);
-      std::swap(p.triangle_a, p.triangle_b);
-      p.normal = -p.normal;
-    }
+    for (PointPair& p : out) swap_sides(p);
   }
 
  protected:
@@ -100,26 +98,45 @@ class GapsDetector : public Detector {
 
   void ordered(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
                std::vector<PointPair>& out) {
-    if (a.kind == ShapeKind::kSphere) return ball(a, pose_a, b, pose_b, reach_m, out);
+    if (a.kind == ShapeKind::kSphere) return ball(a.convex.round_m, pose_a.translation(), b, pose_b, reach_m, out);
     if (a.half_space && b.half_space) return;
     if (has_triangles(b.kind)) {
       if (a.half_space) return gaps::plane_mesh(pose_a, *b.tree, pose_b, reach_m, out);
       if (a.layers) return triangles(a, pose_a, b, pose_b, reach_m, out);
-      return gaps::convex_mesh(a.convex, pose_a, *b.tree, pose_b, reach_m, out);
+      gaps::convex_mesh(a.convex, pose_a, *b.tree, pose_b, reach_m, out);
+      return ends(a, pose_a, b, pose_b, reach_m, out);
     }
     if (a.half_space) return gaps::plane_pair(pose_a, b.convex, pose_b * b.offset, reach_m, out);
     gaps::convex_pair(a.convex, pose_a * a.offset, b.convex, pose_b * b.offset, reach_m, out);
+    if (out.empty()) return;
+    ends(a, pose_a, b, pose_b, reach_m, out);
+    const std::size_t first = out.size();
+    ends(b, pose_b, a, pose_a, reach_m, out);
+    for (std::size_t i = first; i < out.size(); ++i) swap_sides(out[i]);
   }
 
-  void ball(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
+  // Of a capsule that is askew to what it touches the other end may land within the step too.
+  void ends(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
             std::vector<PointPair>& out) {
-    const double r = a.convex.round_m;
+    if (a.kind != ShapeKind::kCapsule) return;
+    for (const double side : {-1.0, 1.0})
+      ball(a.convex.round_m, pose_a * (side * a.convex.half_m), b, pose_b, reach_m, out);
+  }
+
+  static void swap_sides(PointPair& p) {
+    std::swap(p.on_a_m, p.on_b_m);
+    std::swap(p.triangle_a, p.triangle_b);
+    p.normal = -p.normal;
+  }
+
+  void ball(double r, const Eigen::Vector3d& middle, const Shape& b, const Isometry3d& pose_b, double reach_m,
+            std::vector<PointPair>& out) {
     const Isometry3d pose = b.half_space || has_triangles(b.kind) ? pose_b : pose_b * b.offset;
-    b.surface.query(pose.inverse(Eigen::Isometry) * pose_a.translation(), reach_m + r, planes_);
+    b.surface.query(pose.inverse(Eigen::Isometry) * middle, reach_m + r, planes_);
     for (const SurfacePlane& s : planes_) {
       PointPair p;
       p.normal = pose.linear() * -s.normal;
-      p.on_a_m = pose_a.translation() + r * p.normal;
+      p.on_a_m = middle + r * p.normal;
       p.on_b_m = pose * s.point;
       p.gap_m = s.distance_m - r;
       p.triangle_b = s.triangle;
@@ -138,19 +155,26 @@ class GapsDetector : public Detector {
                      &of_b = b.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_b)];
       if (p.pierced)
         gaps::part(moved(of_a, at), moved(of_b, pose_b), p);
-      else if (!around(a, at, of_a, p.on_b_m, p.on_a_m, p.normal) ||
-               !around(b, pose_b, of_b, p.on_a_m, p.on_b_m, p.normal))
+      else if (!is_contact(a, at, of_a, b, pose_b, of_b, p))
         continue;
       if (box) p.triangle_a = -1;
       out.push_back(p);
     }
   }
 
-  static bool around(const Shape& s, const Isometry3d& pose, const Triangle& own, const Eigen::Vector3d& from,
-                     const Eigen::Vector3d& on, const Eigen::Vector3d& normal) {
-    if (std::abs((pose.linear() * own.normal).dot(normal)) > kStraight) return true;
-    const Isometry3d back = pose.inverse(Eigen::Isometry);
-    return gaps::nearest_around(*s.tree, back * from, back * on);
+  // What lies over a face is one, unless it leads away from what is much nearer; what lies between edges, when
+  // nothing around is nearer at all.
+  static bool is_contact(const Shape& a, const Isometry3d& pose_a, const Triangle& of_a, const Shape& b,
+                         const Isometry3d& pose_b, const Triangle& of_b, const PointPair& p) {
+    const bool over_a = std::abs((pose_a.linear() * of_a.normal).dot(p.normal)) > kStraight,
+               over_b = std::abs((pose_b.linear() * of_b.normal).dot(p.normal)) > kStraight;
+    const double share = over_a || over_b ? kMuchNearer : 1;
+    const auto around = [share](const Shape& s, const Isometry3d& pose, const Eigen::Vector3d& from,
+                                const Eigen::Vector3d& on) {
+      const Isometry3d back = pose.inverse(Eigen::Isometry);
+      return gaps::nearest_around(*s.tree, back * from, back * on, share);
+    };
+    return (over_a || around(a, pose_a, p.on_b_m, p.on_a_m)) && (over_b || around(b, pose_b, p.on_a_m, p.on_b_m));
   }
 
   static Triangle moved(const Triangle& t, const Isometry3d& pose) {

@@ -72,7 +72,8 @@ Scene scene_of(const std::string& name, int level, int count, bool moving) {
     surface.query(place, 0.1, planes);
     s.path.push_back(planes.empty() ? place : Vector3d(planes[0].point + kTool_m * planes[0].normal));
   }
-  s.touch = std::make_unique<ToolTouch>(s.world, 0, Settings{}, *s.ids);
+  MeshTrees trees;
+  s.touch = std::make_unique<ToolTouch>(s.world, 0, Settings{}, *s.ids, trees);
   return s;
 }
 

@@ -82,6 +82,24 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
   append(found, n, pose_a, a.round_m, b.round_m, out);
 }
 
+void over_face(const Convex& a, const Isometry3d& pose_a, const Convex& triangle, const Isometry3d& pose_b,
+               double reach_m, std::vector<PointPair>& out) {
+  const Isometry3d a_from_b = pose_a.inverse(Eigen::Isometry) * pose_b;
+  const auto& t = triangle.corners_m;
+  const Vector3d across = (t[1] - t[0]).cross(t[2] - t[0]);
+  if (across.isZero()) return;
+  Vector3d n = a_from_b.linear() * across.normalized();
+  if (n.dot(a_from_b * t[0]) < 0) n = -n;
+  FacingList found;
+  facing(feature_along(a, Isometry3d::Identity(), n), feature_along(triangle, a_from_b, -n), n,
+         reach_m + a.round_m, found);
+  // What passes beside the triangle may be below its plane there; that is no overlap.
+  FacingList above;
+  for (int i = 0; i < found.count; ++i)
+    if (found.at[static_cast<std::size_t>(i)].gap_m >= 0) above.add(found.at[static_cast<std::size_t>(i)]);
+  append(above, n, pose_a, a.round_m, 0, out);
+}
+
 void plane_pair(const Isometry3d& plane_pose, const Convex& b, const Isometry3d& pose_b, double reach_m,
                 std::vector<PointPair>& out) {
   const Vector3d n = plane_pose.linear().col(2).normalized();

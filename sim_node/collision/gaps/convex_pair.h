@@ -15,6 +15,11 @@ namespace tactus::sim::gaps {
 void convex_pair(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& b,
                  const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
 
+// The corners of a that lie over the face of a triangle or under it, whatever is nearest: of what is tilted, the
+// other end.
+void over_face(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& triangle,
+               const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
+
 // b over the half space that plane_pose's z leads out of.
 void plane_pair(const Eigen::Isometry3d& plane_pose, const Convex& b, const Eigen::Isometry3d& pose_b,
                 double reach_m, std::vector<PointPair>& out);

@@ -28,8 +28,8 @@ AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
 
 }  // namespace
 
-bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh) {
-  const double distance = (from - on_mesh).norm(), least = distance - std::max(kOn_m, 1e-6 * distance);
+bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh, double share) {
+  const double distance = (from - on_mesh).norm(), least = share * distance - std::max(kOn_m, 1e-6 * distance);
   const Vector3d on(kOn_m, kOn_m, kOn_m);
   bool nearest = true;
   mesh.each_within({on_mesh - on, on_mesh + on},
@@ -58,7 +58,7 @@ void convex_mesh(const Convex& convex, const Isometry3d& pose, const TriangleTre
                      if (nearest->gap_m + convex.round_m > kOn_m &&
                          !nearest_around(mesh, mesh_from_world * from, mesh_from_world * nearest->on_b_m)) {
                        out.resize(first);
-                       return;
+                       over_face(convex, pose, triangle, mesh_pose, reach_m, out);
                      }
                      for (std::size_t i = first; i < out.size(); ++i) out[i].triangle_b = number;
                    });

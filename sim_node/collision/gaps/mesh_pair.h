@@ -17,10 +17,11 @@ void convex_mesh(const Convex& convex, const Eigen::Isometry3d& pose, const Tria
 void plane_mesh(const Eigen::Isometry3d& plane_pose, const TriangleTree& mesh, const Eigen::Isometry3d& mesh_pose,
                 double reach_m, std::vector<PointPair>& out);
 
-// Whether no place of the mesh around `on_mesh`, which lies on it, is nearer to `from`; both in its frame. A pair
-// for which one is, is none of a contact: it leads from a surface to the next triangle of a plain that it already
-// stands on, and would hold back whatever slides over that.
-bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& on_mesh);
+// Whether no place of the mesh around `on_mesh`, which lies on it, is nearer to `from` than that share of its
+// distance; both in its frame. A pair for which one is, is none of a contact: it leads from a surface to the next
+// triangle of a plain that it already stands on, and would hold back whatever slides over that.
+bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& on_mesh,
+                    double share = 1);
 
 // Gives a pair of triangles that go through each other, in the world, the shorter of the two ways out over their
 // faces.

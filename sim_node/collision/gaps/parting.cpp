@@ -15,6 +15,9 @@ namespace {
 // equally good, as of cubes on each other, it is always the same.
 constexpr double kBetter_m = 1e-9;
 
+// Into a triangle, m; design: a hundred times the overlap that a solver may leave.
+constexpr double kShallow_m = 1e-3;
+
 struct Search {
   const Convex& a;
   const Convex& b;
@@ -108,9 +111,12 @@ Parting over_faces(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_
 
 Parting out_of_overlap(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   Search s{a, b, a_from_b, {}};
-  // A triangle is part of a surface: the way out is over its face, or it would lead into the next triangle.
-  if (b.core == Core::kTriangle) each_face(b, [&](const Vector3d& n) { s.offer_both(a_from_b.linear() * n); });
-  if (!s.best.along.isZero()) return s.best;
+  // A triangle is part of a surface: the way out of a shallow overlap is over its face, or it would lead into the
+  // next triangle.
+  if (b.core == Core::kTriangle) {
+    each_face(b, [&](const Vector3d& n) { s.offer_both(a_from_b.linear() * n); });
+    if (s.best.gap_m > -kShallow_m) return s.best;
+  }
   search_faces(s);
   each_edge(a, [&](const Vector3d& e) {
     each_edge(b, [&](const Vector3d& f) {

@@ -189,3 +189,38 @@ TEST_CASE("Meshes that go through each other are told a way out") {
   }
   FAIL("they never met");
 }
+
+TEST_CASE("Of what lies askew over a plain of triangles the other end is there too") {
+  const Soup plain = plate(1, 1, 40, 40);
+  WorldDef world;
+  world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
+  auto gaps = make_detector("gaps");
+  const int floor = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world);
+  const double tilt = 0.05, yaw = 0.3, height = 1e-3;
+  const auto kind = GENERATE(ShapeKind::kBox, ShapeKind::kMesh, ShapeKind::kCapsule);
+  const bool capsule = kind == ShapeKind::kCapsule;
+  const int body = gaps->add(shape(kind, capsule ? Vector3d(0.02, 0, 0.1) : Vector3d(0.1, 0.1, 0.1), 1), world);
+  Isometry3d pose = Isometry3d::Identity();
+  pose.rotate(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
+  pose.rotate(Eigen::AngleAxisd(capsule ? M_PI / 2 - tilt : tilt, Vector3d::UnitY()));
+  if (!capsule) pose.rotate(Eigen::AngleAxisd(tilt / 2, Vector3d::UnitX()));
+  // Its lowest points, by their heights over its middle.
+  std::vector<double> low;
+  if (capsule) {
+    low = {-0.05 * std::sin(tilt) - 0.02, 0.05 * std::sin(tilt) - 0.02};
+  } else {
+    for (int i = 0; i < 8; ++i)
+      low.push_back((pose * Vector3d(i & 1 ? 0.05 : -0.05, i & 2 ? 0.05 : -0.05, i & 4 ? 0.05 : -0.05)).z());
+    std::sort(low.begin(), low.end());
+    low.resize(4);
+  }
+  pose.pretranslate(Vector3d(0.013, 0.007, height - low[0]));
+  std::vector<PointPair> found;
+  gaps->query(floor, Isometry3d::Identity(), body, pose, 0.02, found);
+  for (const double z : low) {
+    INFO("kind " << static_cast<int>(kind) << " point " << z - low[0] + height);
+    CHECK(std::any_of(found.begin(), found.end(), [&](const PointPair& p) {
+      return p.normal.z() > 1 - 1e-9 && std::abs(p.gap_m - (z - low[0] + height)) < 1e-9;
+    }));
+  }
+}
