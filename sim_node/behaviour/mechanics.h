@@ -13,6 +13,7 @@
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/behaviour/group_tool.h"
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/collision/ids.h"
 #include "sim_node/publish/ahead.h"
 #include "sim_node/scene/world_def.h"
@@ -46,17 +47,15 @@ class Mechanics {
   // Of the bodies that are computed ahead; null: none ever are.
   virtual const Ahead* ahead() { return nullptr; }
 
+  // Steps of what is computed ahead, a second; nothing where nothing is.
+  virtual void set_visual_rate(double) {}
+
   // What may be set while the world runs; each holds from the next tick on. Values are not checked here. False: it
   // has none, as a body that does not move has no velocity, and one on a joint no pose and no mass.
-  virtual void set_gravity(const Eigen::Vector3d& gravity_m_s2) = 0;
-  virtual bool set_mass(int body, double mass_kg) = 0;
+  virtual bool apply(const impulse::SceneChange& change) = 0;
   virtual bool set_pose(int body, const Eigen::Isometry3d& pose) = 0;
   virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
   virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
-  virtual void set_friction(int body, double friction) = 0;
-  virtual void set_restitution(int body, double restitution) = 0;
-  virtual bool set_motor(const std::string& joint, int axis, double effort, double velocity) = 0;
-  virtual bool set_joint_friction(const std::string& joint, int axis, double friction) = 0;
 
   // All that the next ticks depend on. Throws BadState when what is read does not fit; this is then half changed.
   virtual void archive(StateArchive& a) = 0;

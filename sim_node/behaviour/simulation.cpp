@@ -114,7 +114,7 @@ bool Simulation::push(const Wrench& wrench) {
 }
 
 void Simulation::set_friction(int body, double friction) {
-  mechanics_->set_friction(body, friction);
+  mechanics_->apply({.kind = impulse::SceneChange::kFriction, .body = body, .values = {friction, 0, 0}});
   for (Tool& tool : tools_) tool.touch.set_friction(body, friction);
 }
 

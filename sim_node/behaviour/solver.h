@@ -33,6 +33,7 @@ class Solver {
 
   // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
   // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
+  bool apply(const impulse::SceneChange& change);  // any of them but pose, velocity and spin
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
   bool set_mass(int body, double mass_kg);  // the inertia in proportion
   bool set_pose(int body, const Eigen::Isometry3d& pose);
