@@ -134,6 +134,12 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
 
 using Series = std::map<std::pair<int, int>, std::vector<double>>;  // of a pair of bodies: force of each step
 
+// Fills a force up to step n, for at most `held` steps with what it was last, the rest with nothing.
+void hold(std::vector<double>& force, std::size_t n, std::size_t held) {
+  if (force.empty() || force.size() >= n || n - force.size() > held) return;
+  force.resize(n, force.back());
+}
+
 // The closed forms of offline/bounce_and_rest.sdf.
 constexpr double kG = 9.81, kFall_m = 0.3, kBounce = 0.8, kSlide_m_s = 2.5, kFriction = 0.4,
                  kLeastBounce_m_s = 0.3;
@@ -211,6 +217,9 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
   OfflineWorld run(world, settings, true, std::make_unique<sync::MemorySink>(bytes));
   const double h = settings.step_s;
   const int steps = static_cast<int>(seconds / h);
+  // Two groups tell of contacts with each visual step; in between their forces hold.
+  const auto held =
+      static_cast<std::size_t>(settings.groups == "dual" ? std::ceil(1 / (settings.visual_rate_Hz * h)) : 0);
   Series series;
   std::vector<std::vector<double>> hands(run.hand_forces_N().size());
   std::vector<contact_t> list;
@@ -219,12 +228,16 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
     run.simulation().body_contacts(list);
     for (const contact_t& c : list) {
       auto& s = series[{c.body_a, c.body_b}];
+      hold(s, static_cast<std::size_t>(i), held);
       s.resize(static_cast<std::size_t>(i) + 1, 0.0);
       s.back() += static_cast<double>(c.normal_force_N);
     }
     for (std::size_t k = 0; k < hands.size(); ++k) hands[k].push_back(run.hand_forces_N()[k].norm());
   }
-  for (auto& [pair, s] : series) s.resize(static_cast<std::size_t>(steps), 0.0);
+  for (auto& [pair, s] : series) {
+    hold(s, static_cast<std::size_t>(steps), held);
+    s.resize(static_cast<std::size_t>(steps), 0.0);
+  }
   run.finish();
   if (!file.empty()) sync::FileSink(file).append(bytes->bytes);
   const Rendered rendered = render_log(run.scene(), bytes->bytes);
