@@ -54,13 +54,14 @@ void OfflineWorld::collect(const char* channel, sync::Queue<Message>& queue, Del
 }
 
 void OfflineWorld::publish() {
-  publisher_.publish({.time = simulation_.now(),
-                      .touch_models = &simulation_.touch_models(),
-                      .events = &simulation_.events(),
-                      .tool_contacts = &simulation_.tool_contacts(),
-                      .state = {simulation_.bodies(), [&](auto& out) { simulation_.body_contacts(out); }},
-                      .game = &simulation_.game()},
-                     world_map());
+  publisher_.publish(
+      {.time = simulation_.now(),
+       .touch_models = &simulation_.touch_models(),
+       .events = &simulation_.events(),
+       .tool_contacts = &simulation_.tool_contacts(),
+       .state = {simulation_.bodies(), [&](auto& out) { simulation_.body_contacts(out); }, simulation_.ahead()},
+       .game = &simulation_.game()},
+      world_map());
   const sync::HostTime now = world_map().to_host(simulation_.now());
   bus_.drain(now);
   const auto to_hands = [&](const auto& m) {
