@@ -18,6 +18,7 @@
 
 #include "sim_node/behaviour/simulation.h"
 #include "sim_node/command/commander.h"
+#include "sim_node/dual/followed_rate.h"
 #include "sim_node/publish/publisher.h"
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
@@ -82,6 +83,7 @@ int main(int argc, char** argv) try {
   bool anew = false;  // the world was reset or put back: it lives again from then on
   sync::HostTime life_begins{};
   std::set<std::int64_t> known;
+  sim::FollowedRate followed(settings.visual_follows);
   std::vector<tool_state_t> news;
   const std::vector<contact_event_t> no_events;
 
@@ -97,8 +99,13 @@ int main(int argc, char** argv) try {
     news.clear();
     while (auto m = tool_states.pop())
       if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
-    while (const auto m = healths.pop())
+    while (const auto m = healths.pop()) {
+      if (const auto rate_Hz = followed.hear(m->message)) {
+        simulation.mechanics().set_visual_rate(*rate_Hz);
+        std::cerr << "sim_node: visual steps follow " << m->message.node << " at " << *rate_Hz << " Hz" << std::endl;
+      }
       if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.welcome();
+    }
     for (int left = kCommandsPerTick; left > 0; --left)
       if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.take(m->message);
     for (sim_reply_t& answer : commander.answers()) {

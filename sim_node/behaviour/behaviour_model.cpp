@@ -32,8 +32,8 @@ constexpr std::array<BehaviourModel, 5> kModels{{
      .finite_forces = true},
 }};
 
-// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is allowed,
-// 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
+// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is
+// allowed, 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
 constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 // Points that may press on a body in one direction: a ball has one, a face four.
@@ -79,6 +79,9 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
 
 std::string refusal(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
+  if (settings.groups == "dual" && model.name != "impulse")
+    return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
+           std::string(model.name) + "\"; choose solver = impulse, or groups = single";
   if (model.needs_gaps) {
     const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;
@@ -97,8 +100,9 @@ impulse::Law law_of(const Settings& s) {
     law.shell_m = kShell_m;
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
                    .damping_N_s_m = s.penalty_damping_Ns_m,
-                   .thickness_m = s.contact_tolerance_m - kShell_m,
-                   .is_explicit = s.solver == "penalty_explicit"};
+                   .thickness_m = s.contact_tolerance_m - kShell_m,  // ends where surfaces meet
+                   .is_explicit = s.solver == "penalty_explicit",
+                   .rise_m_s = s.correcting_speed_m_s};
   }
   return law;
 }

@@ -23,7 +23,7 @@ struct BehaviourModel {
   bool needs_trees = false;
   // Only so stiff as step and mass allow.
   bool has_stability_limit = false;
-  bool bounces = true;         // restitution of materials counts; else what rebounds is the spring's
+  bool bounces = true;  // by restitution; else only what is too fast for the spring, which throws back the rest
   bool finite_forces = false;  // which also are continuous; else a blow is over in one step
 };
 

@@ -53,18 +53,9 @@ ImpulseSolver::ImpulseSolver(const WorldDef& world, const Settings& settings)
     : world_(impulse::build_world(world, settings)),
       source_(world, settings),
       advance_(extents_of(world)),
-      step_s_(settings.step_s) {
-  for (const BodyDef& b : world.bodies) {
-    falls_.push_back(b.gravity);
-    centre_in_body_m_.push_back(b.centre_of_mass_m);
-  }
-  for (const ShapeDef& s : world.shapes) body_of_.push_back(s.body);
-  const auto moves = [&](int body) { return body >= 0 && world_->moves(body); };
-  for (const JointDef& j : world.joints) {
-    if (!moves(j.parent) && !moves(j.child)) continue;
-    const bool reversed = !moves(j.child) || (moves(j.parent) && world_->parent_of(j.child) != j.parent);
-    joints_.push_back({j.name, reversed ? j.parent : j.child, reversed && j.kind == JointKind::kUniversal});
-  }
+      step_s_(settings.step_s),
+      scene_(world, *world_),
+      shapes_(world.shapes.size()) {
   bodies_ = source_.frames().at_start(world);
   std::vector<int> units(index(world_->units()));
   for (std::size_t i = 0; i < units.size(); ++i) units[i] = static_cast<int>(i);
@@ -88,20 +79,14 @@ void ImpulseSolver::step(double h) {
   read();
 }
 
-void ImpulseSolver::set_gravity(const Eigen::Vector3d& g) {
-  for (const int body : world_->active_bodies())
-    if (falls_[index(body)]) world_->set_gravity(body, g);
-}
-
-bool ImpulseSolver::set_mass(int body, double mass_kg) {
-  if (!world_->set_mass(body, mass_kg)) return false;
+bool ImpulseSolver::apply(const impulse::SceneChange& change) {
+  if (!scene_.apply(*world_, change)) return false;
   read();
   return true;
 }
 
 bool ImpulseSolver::set_pose(int body, const Eigen::Isometry3d& pose) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond(pose.linear()).normalized();
-  if (!world_->set_pose(body, pose * centre_in_body_m_[index(body)], turn)) return false;
+  if (!scene_.set_pose(*world_, body, pose)) return false;
   look();
   return true;
 }
@@ -120,39 +105,11 @@ bool ImpulseSolver::set_spin(int body, const Eigen::Vector3d& w) {
   return true;
 }
 
-void ImpulseSolver::set_friction(int body, double friction) {
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body)
-      world_->set_surface(static_cast<int>(s), {friction, world_->surface(static_cast<int>(s)).restitution});
-}
-
-void ImpulseSolver::set_restitution(int body, double restitution) {
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body)
-      world_->set_surface(static_cast<int>(s), {world_->surface(static_cast<int>(s)).friction, restitution});
-}
-
-const ImpulseSolver::Joint* ImpulseSolver::joint(const std::string& name) const {
-  for (const Joint& j : joints_)
-    if (j.name == name) return &j;
-  return nullptr;
-}
-
-bool ImpulseSolver::set_motor(const std::string& name, int axis, double effort, double velocity) {
-  const Joint* j = joint(name);
-  return j && world_->set_motor(j->body, axis_of(*j, axis), effort, velocity);
-}
-
-bool ImpulseSolver::set_joint_friction(const std::string& name, int axis, double friction) {
-  const Joint* j = joint(name);
-  return j && world_->set_joint_friction(j->body, axis_of(*j, axis), friction);
-}
-
 void ImpulseSolver::archive(StateArchive& a) {
   world_->archive(a);
   if (a.reads()) read();
   for (auto* list : {&contacts_, &solved_})
-    a.list(*list, kMostContacts, [&](Manifold& m) { sim::archive(a, m, bodies_.size(), body_of_.size()); });
+    a.list(*list, kMostContacts, [&](Manifold& m) { sim::archive(a, m, bodies_.size(), shapes_); });
 }
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
-// The bodies and joints of a scene, moved by impulses in one world, with contacts that see gaps: nothing of ODE. What
-// Solver does when the setting `solver` is impulse.
+// The bodies and joints of a scene, moved by impulses in one world, with contacts that see gaps: nothing of ODE.
+// What Solver does when the setting `solver` is impulse.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 
 #include "sim_node/behaviour/impulse/advance.h"
 #include "sim_node/behaviour/impulse/body_frames.h"
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/collision/contact_finder.h"
 #include "sim_node/scene/world_def.h"
@@ -23,8 +24,8 @@ std::vector<impulse::Extent> extents_of(const WorldDef& world);
 // Contacts of the shapes of a scene, for bodies as an impulse world moves them.
 class SceneContacts : public impulse::ContactSource {
  public:
-  SceneContacts(const WorldDef& world, const Settings& settings)
-      : frames_(world), bodies_(frames_.at_start(world)), finder_(world, settings) {}
+  SceneContacts(const WorldDef& world, const Settings& settings, const std::shared_ptr<MeshTrees>& trees = nullptr)
+      : frames_(world), bodies_(frames_.at_start(world)), finder_(world, settings, trees) {}
   void find(std::span<const BodyMotion> motions, std::span<const int> active_bodies, double h_s,
             std::vector<Manifold>& out) override;
   const impulse::BodyFrames& frames() const { return frames_; }
@@ -51,45 +52,30 @@ class ImpulseSolver {
   std::span<const BodyMotion> bodies() const { return bodies_; }
   std::span<const Manifold> contacts() const { return contacts_; }
   std::span<const Manifold> solved() const { return solved_; }
-  const impulse::Advance::Report& report() const { return report_; }
+  const impulse::StepReport& report() const { return report_; }
   // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) {
     return world_->mobility(body, point_m, n);
   }
 
-  void set_gravity(const Eigen::Vector3d& gravity_m_s2);
-  bool set_mass(int body, double mass_kg);
+  bool apply(const impulse::SceneChange& change);
   bool set_pose(int body, const Eigen::Isometry3d& pose);
   bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s);
   bool set_spin(int body, const Eigen::Vector3d& spin_rad_s);
-  void set_friction(int body, double friction);
-  void set_restitution(int body, double restitution);
-  bool set_motor(const std::string& joint, int axis, double effort, double velocity);
-  bool set_joint_friction(const std::string& joint, int axis, double friction);
 
   void archive(StateArchive& a);
 
  private:
-  // The link that a joint carries; from the other side its axes are numbered the other way round.
-  struct Joint {
-    std::string name;
-    int body;
-    bool swapped;
-  };
-  const Joint* joint(const std::string& name) const;
-  int axis_of(const Joint& j, int axis) const { return j.swapped ? 1 - axis : axis; }
   void read();
   void look();
 
   std::unique_ptr<impulse::World> world_;
   SceneContacts source_;
   impulse::Advance advance_;
-  impulse::Advance::Report report_;
+  impulse::StepReport report_;
   double step_s_;
-  std::vector<bool> falls_;
-  std::vector<int> body_of_;  // per shape
-  std::vector<Eigen::Vector3d> centre_in_body_m_;
-  std::vector<Joint> joints_;
+  impulse::SceneSettings scene_;
+  std::size_t shapes_;
   std::vector<BodyMotion> bodies_;
   std::vector<Manifold> contacts_, solved_;
 };

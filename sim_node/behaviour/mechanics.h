@@ -13,7 +13,9 @@
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/behaviour/group_tool.h"
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/publish/ahead.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
@@ -41,22 +43,23 @@ class Mechanics {
   virtual std::span<BodyMotion> motions() = 0;
   // Bodies that move and that a tool may touch, ascending; none: any may be.
   virtual std::optional<std::span<const int>> near_tools() const { return std::nullopt; }
+  // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
+  // solve.
+  virtual double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) = 0;
   // Contacts between bodies that are told of at the present instant; clears the list.
   virtual void contacts(std::vector<contact_t>& out) = 0;
   // Of the bodies that are computed ahead; null: none ever are.
   virtual const Ahead* ahead() { return nullptr; }
 
+  // Steps of what is computed ahead, a second; nothing where nothing is.
+  virtual void set_visual_rate(double) {}
+
   // What may be set while the world runs; each holds from the next tick on. Values are not checked here. False: it
   // has none, as a body that does not move has no velocity, and one on a joint no pose and no mass.
-  virtual void set_gravity(const Eigen::Vector3d& gravity_m_s2) = 0;
-  virtual bool set_mass(int body, double mass_kg) = 0;
+  virtual bool apply(const impulse::SceneChange& change) = 0;
   virtual bool set_pose(int body, const Eigen::Isometry3d& pose) = 0;
   virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
   virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
-  virtual void set_friction(int body, double friction) = 0;
-  virtual void set_restitution(int body, double restitution) = 0;
-  virtual bool set_motor(const std::string& joint, int axis, double effort, double velocity) = 0;
-  virtual bool set_joint_friction(const std::string& joint, int axis, double friction) = 0;
 
   // All that the next ticks depend on. Throws BadState when what is read does not fit; this is then half changed.
   virtual void archive(StateArchive& a) = 0;
@@ -64,7 +67,8 @@ class Mechanics {
   virtual void rename(std::int64_t incarnation) = 0;
 };
 
-// As the settings say. Throws std::runtime_error with one sentence when the world cannot be simulated.
-std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids);
+// As the settings say. trees: of this world. Throws std::runtime_error with one sentence when the world cannot be simulated.
+std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids,
+                                          const std::shared_ptr<MeshTrees>& trees);
 
 }  // namespace tactus::sim

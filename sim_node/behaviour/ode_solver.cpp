@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
 
 namespace tactus::sim {
@@ -227,6 +228,10 @@ void Solver::step() {
   engine_->shapes->collide(contacts_);
 }
 
+std::span<const BodyMotion> Solver::bodies() const { return impulse_ ? impulse_->bodies() : motions_; }
+std::span<const Manifold> Solver::contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
+std::span<const Manifold> Solver::solved() const { return impulse_ ? impulse_->solved() : solved_; }
+const impulse::StepReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
 std::int64_t Solver::complaints() const { return engine_ ? ode::message_count() - engine_->said_before : 0; }
 double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
 

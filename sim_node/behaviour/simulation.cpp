@@ -14,8 +14,8 @@ constexpr std::size_t kMostBooks = 8;  // of a touch_model_t
 // A force may act so far outside the sphere around a body, m: the rounding of the wire and a step's motion.
 constexpr double kBeyond_m = 0.02;
 
-std::vector<double> reaches(const WorldDef& world) {
-  std::vector<double> out = body_radii(world);
+std::vector<double> reaches(const WorldDef& world, MeshTrees& trees) {
+  std::vector<double> out = body_radii(world, trees);
   for (double& reach : out) reach += kBeyond_m;
   return out;
 }
@@ -26,16 +26,21 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
     : settings_(settings),
       step_(sync::from_seconds(settings.step_s)),
       ids_(0, 0, settings.groups == "dual" ? 2 : 1),  // the other lane names what is computed ahead
-      mechanics_(make_mechanics(world, settings, ids_)),
+      trees_(std::make_shared<MeshTrees>()),
+      mechanics_(make_mechanics(world, settings, ids_, trees_)),
       game_(world.holes),
       fingerprint_(fingerprint(world, settings)) {
   tools_.reserve(world.tools.size());
-  const std::vector<double> reach_m = reaches(world);
+  const std::vector<double> reach_m = reaches(world, *trees_);
   for (std::size_t i = 0; i < world.tools.size(); ++i) {
     const int body = world.tools[i].body;
-    tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_), ToolPush(settings, ids_, reach_m), {},
+    tools_.push_back({body, ToolTouch(world, static_cast<int>(i), settings, ids_, *trees_), ToolPush(settings, ids_, reach_m), {},
                       Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(body)].pose.linear()).normalized()});
   }
+  for (Tool& tool : tools_)
+    tool.touch.set_mobility([this](int body, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
+      return mechanics_->mobility(body, point, n);
+    });
   models_.resize(tools_.size());
 }
 
@@ -114,7 +119,7 @@ bool Simulation::push(const Wrench& wrench) {
 }
 
 void Simulation::set_friction(int body, double friction) {
-  mechanics_->set_friction(body, friction);
+  mechanics_->apply({.kind = impulse::SceneChange::kFriction, .body = body, .values = {friction, 0, 0}});
   for (Tool& tool : tools_) tool.touch.set_friction(body, friction);
 }
 

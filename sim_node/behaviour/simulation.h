@@ -11,8 +11,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
-#include "sim_node/behaviour/mechanics.h"
-#include "sim_node/behaviour/solver.h"
+#include "sim_node/behaviour/single_group.h"
 #include "sim_node/behaviour/tool_push.h"
 #include "sim_node/behaviour/tool_touch.h"
 #include "sim_node/collision/ids.h"
@@ -76,6 +75,8 @@ class Simulation {
   // To set what may be set while the world runs. Of friction the tools are told here.
   Mechanics& mechanics() { return *mechanics_; }
   const Mechanics& mechanics() const { return *mechanics_; }
+  // Of a world in one group; throws std::bad_cast when it is in two.
+  const Solver& solver() const { return dynamic_cast<const SingleGroup&>(*mechanics_).solver(); }
   void set_friction(int body, double friction);
   // A force and a torque, world frame, on a body at its centre of mass, for so long from the next step on. False: as many
   // act already as there may be.
@@ -101,6 +102,7 @@ class Simulation {
   sync::Nanoseconds step_;
   std::int64_t steps_ = 0;
   Ids ids_;
+  std::shared_ptr<MeshTrees> trees_;
   std::unique_ptr<Mechanics> mechanics_;
   std::vector<Tool> tools_;
   std::vector<GroupTool> group_tools_;

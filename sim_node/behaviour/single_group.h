@@ -20,21 +20,15 @@ class SingleGroup : public Mechanics {
   void add_torque(int body, const Eigen::Vector3d& torque_N_m) override { solver_.add_torque(body, torque_N_m); }
   void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   std::span<BodyMotion> motions() override { return motions_; }
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) override {
+    return solver_.mobility(body, point_m, n);
+  }
   void contacts(std::vector<contact_t>& out) override;
 
-  void set_gravity(const Eigen::Vector3d& gravity_m_s2) override { solver_.set_gravity(gravity_m_s2); }
-  bool set_mass(int body, double mass_kg) override { return solver_.set_mass(body, mass_kg); }
+  bool apply(const impulse::SceneChange& change) override { return solver_.apply(change); }
   bool set_pose(int body, const Eigen::Isometry3d& pose) override { return solver_.set_pose(body, pose); }
   bool set_velocity(int body, const Eigen::Vector3d& v) override { return solver_.set_velocity(body, v); }
   bool set_spin(int body, const Eigen::Vector3d& spin) override { return solver_.set_spin(body, spin); }
-  void set_friction(int body, double friction) override { solver_.set_friction(body, friction); }
-  void set_restitution(int body, double restitution) override { solver_.set_restitution(body, restitution); }
-  bool set_motor(const std::string& joint, int axis, double effort, double velocity) override {
-    return solver_.set_motor(joint, axis, effort, velocity);
-  }
-  bool set_joint_friction(const std::string& joint, int axis, double friction) override {
-    return solver_.set_joint_friction(joint, axis, friction);
-  }
 
   void archive(StateArchive& a) override;
   void rename(std::int64_t) override { tracker_.rename(); }

@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
-#include "sim_node/behaviour/impulse_solver.h"
+#include "sim_node/behaviour/impulse/step_report.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/state/state_archive.h"
 
 namespace tactus::sim {
+
+class ImpulseSolver;
 
 class Solver {
  public:
@@ -33,6 +35,7 @@ class Solver {
 
   // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
   // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
+  bool apply(const impulse::SceneChange& change);  // any of them but pose, velocity and spin
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
   bool set_mass(int body, double mass_kg);  // the inertia in proportion
   bool set_pose(int body, const Eigen::Isometry3d& pose);
@@ -52,15 +55,15 @@ class Solver {
   void step();
 
   // Of every body of the world, tools and fixed bodies included (they stand still).
-  std::span<const BodyMotion> bodies() const { return impulse_ ? impulse_->bodies() : motions_; }
+  std::span<const BodyMotion> bodies() const;
   // Contacts of the present poses, and those of the step before with the force that each point carried; both ordered.
-  std::span<const Manifold> contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
-  std::span<const Manifold> solved() const { return impulse_ ? impulse_->solved() : solved_; }
+  std::span<const Manifold> contacts() const;
+  std::span<const Manifold> solved() const;
   // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
   // solve.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
   // What it took that nothing overlaps; of ODE none.
-  const impulse::Advance::Report* report() const { return impulse_ ? &impulse_->report() : nullptr; }
+  const impulse::StepReport* report() const;
   // How often the engine said that it could not solve something, since the start.
   std::int64_t complaints() const;
   // How far apart the joints have come at most, m.

@@ -6,7 +6,6 @@
 #include "lcmtypes/bump.h"
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/triangles.h"
 
 namespace tactus::sim {
 
@@ -24,14 +23,12 @@ constexpr sync::Nanoseconds kLatestNews{20'000'000};
 constexpr double kFelt_N = 1e-4;  // below, a force is rounding
 // Of places in the world, m.
 constexpr double kRounding_m = 1e-9;
-// Samples of a heightfield along one side that a tool feels; finer ones are thinned.
-constexpr int kMostSamples = 1025;
 
 sync::Nanoseconds ns(double s) { return sync::from_seconds(s); }
 
 }  // namespace
 
-ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids)
+ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids, MeshTrees& trees)
     : tool_(tool), settings_(settings), ids_(ids) {
   const tool_def_t& def = world.tools[static_cast<std::size_t>(tool)];
   tool_body_ = def.body;
@@ -49,14 +46,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
-    TriangleMesh ground;
-    const TriangleMesh* mesh = nullptr;
-    if (s.kind == ShapeKind::kMesh) mesh = &world.meshes[static_cast<std::size_t>(s.mesh)];
-    if (s.kind == ShapeKind::kHeightfield) {
-      ground = triangulate(world.heightfields[static_cast<std::size_t>(s.mesh)], kMostSamples);
-      mesh = &ground;
-    }
-    ClosestSurface surface(s, mesh, settings.touch_merge_angle_rad);
+    const bool meshed = s.kind == ShapeKind::kMesh || s.kind == ShapeKind::kHeightfield;
+    ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
@@ -135,8 +126,14 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
   std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.seen > kForget; });
 }
 
+double ToolTouch::mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const {
+  const BodyMotion& body = body_of(n, bodies);
+  if (!body.moves() || !mobility_) return mobility(body, n.plane.point, n.plane.normal);
+  return mobility_(surfaces_[n.surface].traits.body, n.plane.point, n.plane.normal);
+}
+
 double ToolTouch::mass_kg(const Near& n, std::span<const BodyMotion> bodies) const {
-  return 1 / (1 / tool_mass_kg_ + mobility(body_of(n, bodies), n.plane.point, n.plane.normal));
+  return 1 / (1 / tool_mass_kg_ + mobility_1_kg(n, bodies));
 }
 
 void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<const BodyMotion> bodies,
@@ -256,8 +253,8 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.normal_body = to_vec3f(normal_body);
     p.velocity_m_s = to_vec3f(body.velocity_at(n.plane.point));
     p.angular_velocity_rad_s = to_vec3f(body.spin_rad_s);
-    const double mobility_1_kg = mobility(body, n.plane.point, n.plane.normal);
-    p.effective_mass_kg = static_cast<float>(mobility_1_kg > 0 ? std::min(1e9, 1 / mobility_1_kg) : 1e9);
+    const double moved_1_kg = mobility_1_kg(n, bodies);
+    p.effective_mass_kg = static_cast<float>(moved_1_kg > 0 ? std::min(1e9, 1 / moved_1_kg) : 1e9);
     p.stiffness_N_m = static_cast<float>(settings_.touch_stiffness_N_m);
     p.damping_N_s_m = static_cast<float>(settings_.touch_damping_Ns_m);
     p.friction_static = static_cast<float>(s.friction_static);

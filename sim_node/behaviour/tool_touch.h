@@ -2,6 +2,7 @@
 // tool is a ghost at its proxy's pose; the force is the haptic node's. Pure.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <tactus/contact_event_t.hpp>
@@ -15,6 +16,7 @@
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/collision/sphere_tree.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/state/state_archive.h"
@@ -25,8 +27,11 @@ namespace tactus::sim {
 class ToolTouch {
  public:
   static constexpr std::size_t kMostPlanes = 8;  // of a touch_model_t
+  // Speed that a unit impulse along n at the point of a body gives to that point, 1/kg.
+  using Mobility = std::function<double(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n)>;
 
-  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids);
+  // trees: of this world, where others use them too.
+  ToolTouch(const WorldDef& world, int tool, const Settings& settings, Ids& ids, MeshTrees& trees);
 
   // One step, at `now`. news: messages of this tool since the last step, in order. Appends events.
   void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
@@ -50,6 +55,8 @@ class ToolTouch {
   bool touches() const { return model_.tool >= 0; }
   // As grouping sees it: with the margin within which surfaces are in its model.
   GroupTool for_groups() const { return {proxy_, proxy_velocity_, reach_m()}; }
+  // Who knows how easily a body is moved: a link moves with what it is joined to. Else all are taken as free.
+  void set_mobility(Mobility mobility) { mobility_ = std::move(mobility); }
 
   // The friction of a body's shapes against other bodies has been set: that of the tool against them follows.
   void set_friction(int body, double friction);
@@ -96,6 +103,7 @@ class ToolTouch {
   void emit(const Near& n, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
             std::vector<contact_event_t>& events) const;
   void write_model(sync::SimTime now, std::span<const BodyMotion> bodies);
+  double mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const;
   double mass_kg(const Near& n, std::span<const BodyMotion> bodies) const;
   const BodyMotion& body_of(const Near& n, std::span<const BodyMotion> bodies) const {
     return bodies[static_cast<std::size_t>(surfaces_[n.surface].traits.body)];
@@ -106,6 +114,7 @@ class ToolTouch {
   double own_static_ = 1, own_dynamic_ = 1;  // friction of the tool's material
   Settings settings_;
   Ids& ids_;
+  Mobility mobility_;
   std::vector<Surface> surfaces_;
   // Where to look: the surfaces of bodies that never move, and those of all others.
   SphereTree fixed_;

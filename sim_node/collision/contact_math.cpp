@@ -84,6 +84,7 @@ std::vector<double> triangle_curvatures(const TriangleMesh& mesh) {
 
 std::vector<SurfaceTraits> surface_traits(const WorldDef& world, const Settings& settings) {
   std::vector<SurfaceTraits> out;
+  std::vector<std::shared_ptr<const std::vector<double>>> curvatures(world.meshes.size());
   for (const ShapeDef& shape : world.shapes) {
     SurfaceTraits& s = out.emplace_back();
     s.body = shape.body;
@@ -101,9 +102,12 @@ std::vector<SurfaceTraits> surface_traits(const WorldDef& world, const Settings&
       if (m.friction_static > 0) s.friction_dynamic = shape.friction * std::min(1.0, m.friction_dynamic / m.friction_static);
     }
     if (shape.kind != ShapeKind::kMesh || shape.mesh < 0) continue;
-    s.triangle_curvature_1_m = triangle_curvatures(world.meshes[static_cast<std::size_t>(shape.mesh)]);
-    for (const double c : s.triangle_curvature_1_m)
-      s.mean_curvature_1_m += c / static_cast<double>(s.triangle_curvature_1_m.size());
+    auto& of_mesh = curvatures[static_cast<std::size_t>(shape.mesh)];
+    if (!of_mesh)
+      of_mesh = std::make_shared<const std::vector<double>>(
+          triangle_curvatures(world.meshes[static_cast<std::size_t>(shape.mesh)]));
+    s.triangle_curvature_1_m = of_mesh;
+    for (const double c : *of_mesh) s.mean_curvature_1_m += c / static_cast<double>(of_mesh->size());
   }
   return out;
 }
@@ -121,8 +125,9 @@ double curvature(const SurfaceTraits& s, ContactKind kind, const Vector3d& in_bo
       return kind == ContactKind::kEdge ? 0.5 / s.size_m.x() : cylinder_curvature(s, p);
     case ShapeKind::kMesh:
       if (kind == ContactKind::kSurface) return 0;
-      return triangle >= 0 && static_cast<std::size_t>(triangle) < s.triangle_curvature_1_m.size()
-                 ? s.triangle_curvature_1_m[static_cast<std::size_t>(triangle)]
+      return s.triangle_curvature_1_m && triangle >= 0 &&
+                     static_cast<std::size_t>(triangle) < s.triangle_curvature_1_m->size()
+                 ? (*s.triangle_curvature_1_m)[static_cast<std::size_t>(triangle)]
                  : s.mean_curvature_1_m;
   }
   return 0;

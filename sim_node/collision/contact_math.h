@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
@@ -25,7 +26,7 @@ struct SurfaceTraits {
   Eigen::Vector3d size_m{1, 1, 1};
   Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
   double edge_radius_m = 0.0005;
-  std::vector<double> triangle_curvature_1_m;  // of a mesh
+  std::shared_ptr<const std::vector<double>> triangle_curvature_1_m;  // of a mesh, one for all its shapes
   double mean_curvature_1_m = 0;               // of a mesh, over its triangles
 };
 

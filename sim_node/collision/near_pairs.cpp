@@ -14,6 +14,10 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+// A blow is followed through so many bodies, each hit by the one before: design: beyond that each has lost most of
+// it.
+constexpr int kMostBlows = 8;
+
 }  // namespace
 
 NearPairs::Extent NearPairs::extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees) {
@@ -33,13 +37,17 @@ NearPairs::Extent NearPairs::extent_of(const ShapeDef& shape, const WorldDef& wo
 }
 
 NearPairs::NearPairs(const WorldDef& world, double tolerance_m, MeshTrees& trees)
-    : tolerance_m_(tolerance_m), gravity_m_s2_(world.gravity_m_s2.norm()), shapes_of_(world.bodies.size()) {
+    : tolerance_m_(tolerance_m),
+      gravity_m_s2_(world.gravity_m_s2.norm()),
+      blow_m_s_(world.bodies.size(), 0.0),
+      shapes_of_(world.bodies.size()) {
   std::vector<Bounds> fixed;
   for (std::size_t i = 0; i < world.shapes.size(); ++i) {
     const ShapeDef& shape = world.shapes[i];
     const BodyDef& body = world.bodies[index(shape.body)];
     const int number = static_cast<int>(i);
     body_of_.push_back(shape.body);
+    restitution_.push_back(shape.restitution);
     in_body_.push_back(Eigen::Translation3d(-body.centre_of_mass_m) * shape.pose);
     poses_.push_back(body.pose * shape.pose);
     const bool ghost = body.tool >= 0;
@@ -100,7 +108,8 @@ void NearPairs::place(const BodyMotion& m, int body, double h) {
 void NearPairs::with_fixed(std::size_t i, std::span<const BodyMotion> bodies, double h) {
   const Swept& s = swept_[i];
   const BodyMotion& m = bodies[index(s.body)];
-  const double reach = m.velocity_m_s.norm() * h + turning_m(m, s.shape, h) + gravity_m_s2_ * h * h + tolerance_m_;
+  const double reach = (m.velocity_m_s.norm() + blow_m_s_[index(s.body)]) * h + turning_m(m, s.shape, h) +
+                       gravity_m_s2_ * h * h + tolerance_m_;
   const Vector3d middle = (s.bounds.least_m + s.bounds.most_m) / 2,
                  half = (s.bounds.most_m - s.bounds.least_m) / 2;
   for (const HalfSpace& p : half_spaces_)
@@ -134,19 +143,61 @@ void NearPairs::among_moving(std::span<const BodyMotion> bodies, double h) {
       if (!s.bounds.meets(t.bounds) || !may_touch(s.body, t.body)) continue;
       const BodyMotion &m = bodies[index(s.body)], &n = bodies[index(t.body)];
       add(s.shape, t.shape,
-          (m.velocity_m_s - n.velocity_m_s).norm() * h + turning_m(m, s.shape, h) + turning_m(n, t.shape, h) +
-              gravity_m_s2_ * h * h + tolerance_m_);
+          ((m.velocity_m_s - n.velocity_m_s).norm() + blow_m_s_[index(s.body)] + blow_m_s_[index(t.body)]) * h +
+              turning_m(m, s.shape, h) + turning_m(n, t.shape, h) + gravity_m_s2_ * h * h + tolerance_m_);
     }
   }
 }
 
+// What the pairs that were found may do to each other's speeds; true when something may get so much further that
+// others come within reach. A blow between two middles, by Newton's law; from what never moves, a bounce.
+bool NearPairs::strike(std::span<const BodyMotion> bodies, std::span<const int> active, double h) {
+  double fastest = 0;
+  for (const int body : active) fastest = std::max(fastest, bodies[index(body)].velocity_m_s.norm());
+  bool more = false;
+  const auto hit = [&](int body, const BodyMotion& of, const BodyMotion& by, double add_m_s, double e) {
+    const double masses = of.inverse_mass_1_kg + by.inverse_mass_1_kg;
+    const double share = masses > 0 ? of.inverse_mass_1_kg / masses : 1;
+    const double speed = (of.velocity_m_s - by.velocity_m_s).norm() + add_m_s;
+    const double blow = std::min((1 + e) * share * speed, 2 * fastest);
+    double& known = blow_m_s_[index(body)];
+    if ((blow - known) * h <= tolerance_m_ / 4) return;
+    known = blow;
+    more = true;
+  };
+  static const BodyMotion kFixed;
+  for (const NearPair& p : pairs_) {
+    const int a = body_of_[index(p.shape_a)], b = body_of_[index(p.shape_b)];
+    const double e = std::min(restitution_[index(p.shape_a)], restitution_[index(p.shape_b)]);
+    const bool moves_a = !shapes_of_[index(a)].empty(), moves_b = !shapes_of_[index(b)].empty();
+    const BodyMotion &m = moves_a ? bodies[index(a)] : kFixed, &n = moves_b ? bodies[index(b)] : kFixed;
+    const double before_a = blow_m_s_[index(a)], before_b = blow_m_s_[index(b)];
+    if (moves_a) hit(a, m, n, before_b, e);
+    if (moves_b) hit(b, n, m, before_a, e);
+  }
+  if (!more) return false;
+  for (Swept& s : swept_) {
+    const double grow = blow_m_s_[index(s.body)] * h - s.grown_m;
+    s.bounds.least_m.array() -= grow;
+    s.bounds.most_m.array() += grow;
+    s.grown_m += grow;
+  }
+  return true;
+}
+
 std::span<const NearPair> NearPairs::find(std::span<const BodyMotion> bodies, std::span<const int> active,
                                           double h) {
-  pairs_.clear();
   swept_.clear();
-  for (const int body : active) place(bodies[index(body)], body, h);
-  for (std::size_t i = 0; i < swept_.size(); ++i) with_fixed(i, bodies, h);
-  among_moving(bodies, h);
+  for (const int body : active) {
+    blow_m_s_[index(body)] = 0;
+    place(bodies[index(body)], body, h);
+  }
+  for (int round = 0;; ++round) {
+    pairs_.clear();
+    for (std::size_t i = 0; i < swept_.size(); ++i) with_fixed(i, bodies, h);
+    among_moving(bodies, h);
+    if (round == kMostBlows || !strike(bodies, active, h)) break;
+  }
   std::sort(pairs_.begin(), pairs_.end(), [](const NearPair& x, const NearPair& y) {
     return x.shape_a != y.shape_a ? x.shape_a < y.shape_a : x.shape_b < y.shape_b;
   });

@@ -16,7 +16,7 @@ namespace tactus::sim {
 
 struct NearPair {
   int shape_a, shape_b;  // body_a < body_b
-  double reach_m;        // by which their gap may close within the step, and the tolerance
+  double reach_m;        // by which their gap may close within the step, blows included, and the tolerance
 };
 
 class NearPairs {
@@ -41,7 +41,8 @@ class NearPairs {
   };
   struct Swept {
     int shape, body;
-    Bounds bounds;  // during the step, and half the tolerance
+    Bounds bounds;       // during the step, and half the tolerance
+    double grown_m = 0;  // for blows; within the bounds
   };
   static Extent extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees);
   Bounds bounds_of_shape(int shape) const;
@@ -51,11 +52,14 @@ class NearPairs {
   void add(int shape_a, int shape_b, double reach_m);
   bool may_touch(int body_a, int body_b) const;
   double turning_m(const BodyMotion& m, int shape, double h_s) const;
+  bool strike(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s);
 
   double tolerance_m_, gravity_m_s2_;
   std::vector<Extent> extents_;
   std::vector<Eigen::Isometry3d> in_body_, poses_;  // about the centre of mass of the body; in the world
   std::vector<int> body_of_;
+  std::vector<double> restitution_;          // per shape
+  std::vector<double> blow_m_s_;             // per body: what blows within the step may add to its speed
   std::vector<std::vector<int>> shapes_of_;  // per body that moves
   std::vector<int> fixed_;                   // shapes in the grid, by their number there
   BoundsGrid grid_;

@@ -19,7 +19,7 @@ dGeomID Geoms::make(const WorldDef& world, const ShapeDef& shape, bool is_static
     case ShapeKind::kSphere: return dCreateSphere(nullptr, s.x());
     case ShapeKind::kCylinder: return dCreateCylinder(nullptr, s.x(), s.z());
     case ShapeKind::kCapsule: return dCreateCapsule(nullptr, s.x(), s.z());
-    case ShapeKind::kMesh: return make_mesh(world.meshes.at(static_cast<std::size_t>(shape.mesh)));
+    case ShapeKind::kMesh: return make_mesh(world, shape.mesh);
     case ShapeKind::kHeightfield:
       return make_heightfield(world.heightfields.at(static_cast<std::size_t>(shape.mesh)));
     case ShapeKind::kPlane: break;
@@ -39,8 +39,11 @@ Eigen::Isometry3d Geoms::placed(const WorldDef& world, const ShapeDef& shape, co
   return out;
 }
 
-dGeomID Geoms::make_mesh(const TriangleMesh& mesh) {
-  Triangles& t = triangles_.emplace_back();
+dGeomID Geoms::make_mesh(const WorldDef& world, int number) {
+  const auto [at, is_new] = triangles_.try_emplace(number);
+  Triangles& t = at->second;
+  if (!is_new) return dCreateTriMesh(nullptr, t.data.get(), nullptr, nullptr, nullptr);
+  const TriangleMesh& mesh = world.meshes.at(static_cast<std::size_t>(number));
   for (const Eigen::Vector3d& v : mesh.vertices) t.vertices.insert(t.vertices.end(), {v.x(), v.y(), v.z()});
   for (const int i : mesh.indices) t.indices.push_back(static_cast<dTriIndex>(i));
   t.data.reset(dGeomTriMeshDataCreate());

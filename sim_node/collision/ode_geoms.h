@@ -1,7 +1,7 @@
 // A shape as ODE's geometry. Only files named ode_*.cpp include this.
 #pragma once
 
-#include <deque>
+#include <map>
 #include <vector>
 
 #include "sim_node/behaviour/ode_handles.h"
@@ -9,7 +9,8 @@
 
 namespace tactus::sim::ode {
 
-// Makes geometries and keeps what they point to: it must outlive them.
+// Makes geometries, all of one world, and keeps what they point to: it must outlive them. Shapes of one mesh share its
+// tree.
 class Geoms {
  public:
   // is_static: a plane is infinite then, at `pose` in the world; else it is a plate.
@@ -24,10 +25,10 @@ class Geoms {
     std::vector<dTriIndex> indices;
     Owned<dTriMeshDataID> data;
   };
-  dGeomID make_mesh(const TriangleMesh& mesh);
+  dGeomID make_mesh(const WorldDef& world, int mesh);
   dGeomID make_heightfield(const Heightfield& field);
 
-  std::deque<Triangles> triangles_;
+  std::map<int, Triangles> triangles_;  // by the number of the mesh
   std::vector<Owned<dHeightfieldDataID>> heightfields_;
 };
 

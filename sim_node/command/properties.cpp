@@ -8,6 +8,7 @@ namespace tactus::sim {
 namespace {
 
 using Eigen::Vector3d;
+using impulse::SceneChange;
 
 // Ranges by design: what a person may meet in a room. 20 m/s is the speed up to which bodies are proven not to
 // pass through each other; twice a turn of 16 Hz is a fan's.
@@ -78,11 +79,12 @@ std::string set_of_body(Simulation& s, const WorldDef& world, int body, const st
     return "";
   }
   if (property == "restitution") {
-    s.mechanics().set_restitution(body, v[0]);
+    s.mechanics().apply({.kind = SceneChange::kRestitution, .body = body, .values = {v[0], 0, 0}});
     return "";
   }
   if (const std::string why = may_move(world, body); !why.empty()) return why;
-  if (property == "mass") return s.mechanics().set_mass(body, v[0]) ? "" : on_joint;
+  if (property == "mass") 
+    return s.mechanics().apply({.kind = SceneChange::kMass, .body = body, .values = {v[0], 0, 0}}) ? "" : on_joint;
   if (property == "pose") return s.mechanics().set_pose(body, pose_of(v)) ? "" : on_joint;
   if (property == "velocity") s.mechanics().set_velocity(body, Vector3d(v.data()));
   if (property == "spin") s.mechanics().set_spin(body, Vector3d(v.data()));
@@ -92,10 +94,14 @@ std::string set_of_body(Simulation& s, const WorldDef& world, int body, const st
 std::string set_of_joint(Simulation& s, const std::string& joint, const std::string& property,
                          std::span<const double> v) {
   const std::string no_axis = quoted(joint) + " has no axis to drive or to brake";
-  if (property == "friction") return s.mechanics().set_joint_friction(joint, 0, v[0]) ? "" : no_axis;
+  if (property == "friction")
+    return s.mechanics().apply({.kind = SceneChange::kJointFriction, .joint = joint, .values = {v[0], 0, 0}}) ? ""
+                                                                                                              : no_axis;
   // As a scene says it: a torque against the axis is one that wants the other direction.
   const double speed = v[0] < 0 ? -std::abs(v[1]) : std::abs(v[1]);
-  return s.mechanics().set_motor(joint, 0, std::abs(v[0]), speed) ? "" : no_axis;
+  const bool set =
+      s.mechanics().apply({.kind = SceneChange::kMotor, .joint = joint, .values = {std::abs(v[0]), speed, 0}});
+  return set ? "" : no_axis;
 }
 
 }  // namespace
@@ -126,7 +132,7 @@ std::string set_property(Simulation& simulation, const WorldDef& world, const st
   if (const std::string why = fits(*row, values); !why.empty()) return why;
   if (owner == Owner::kBody) return set_of_body(simulation, world, body, property, values);
   if (owner == Owner::kJoint) return set_of_joint(simulation, of, property, values);
-  simulation.mechanics().set_gravity(Vector3d(values.data()));
+  simulation.mechanics().apply({.kind = SceneChange::kGravity, .values = Vector3d(values.data())});
   return "";
 }
 

@@ -21,19 +21,21 @@ GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
 
 }  // namespace
 
-DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids)
+DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
+                       const std::shared_ptr<MeshTrees>& trees)
     : settings_(settings),
-      frames_(def),
       world_(impulse::build_world(def, for_haptic_group(settings))),
-      finder_(def, settings),
+      source_(def, settings, trees),
+      advance_(extents_of(def)),
+      scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings), settings, ids),
       catching_up_(surface_traits(def, settings), settings, ids),
-      grouping_(group_bodies(def, *world_), limits_of(def, settings),
+      grouping_(group_bodies(def, *world_, *trees), limits_of(def, settings),
                 settings.grouping == "kim2005" ? GroupingRule::kKim2005 : GroupingRule::kSound),
-      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def), Ids(ids.incarnation(), 1, 2))),
+      visual_(std::make_unique<VisualGroup>(def, settings, body_radii(def, *trees), Ids(ids.incarnation(), 1, 2), trees)),
       rate_(settings.visual_rate_Hz, sync::from_seconds(settings.step_s)),
-      motions_(frames_.at_start(def)),
+      motions_(source_.frames().at_start(def)),
       mask_(def.bodies.size()) {
   activate();
 }
@@ -78,7 +80,12 @@ void DualGroups::activate() {
 }
 
 void DualGroups::read_motions(std::span<const int> bodies) {
-  for (const int body : bodies) motions_[index(body)] = frames_.motion(body, world_->motions()[index(body)]);
+  for (const int body : bodies)
+    motions_[index(body)] = source_.frames().motion(body, world_->motions()[index(body)]);
+}
+
+void DualGroups::find_contacts(double h_s) {
+  source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h_s), contacts_);
 }
 
 // Of the haptic group.
@@ -115,18 +122,17 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     grouping_.watch(now, motions_, tools);
     promote(now, events);
   }
+  grant_wishes();
   const auto active = world_->active_bodies();
-  if (stale_) finder_.find(motions_, active, settings_.step_s, contacts_);
+  if (stale_) find_contacts(settings_.step_s);
   stale_ = false;
   for (const Load& load : loads_) {
     world_->add_force(load.body, load.force_N, load.point_m);
     world_->add_torque(load.body, load.torque_N_m);
   }
   loads_.clear();
-  world_->step(contacts_, settings_.step_s);
-  std::swap(contacts_, solved_);
+  advance_.step(*world_, source_, settings_.step_s, contacts_, solved_);
   read_motions(active);
-  finder_.find(motions_, active, settings_.step_s, contacts_);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);
   tell_due(now + h, events);
 }
@@ -164,6 +170,8 @@ void DualGroups::ask_for_next() {
   for (const int unit : step_->units)
     if (std::binary_search(haptic.begin(), haptic.end(), unit) || late_.find(unit) >= 0)
       task_.leaves.push_back(unit);
+  task_.changes = changes_;
+  changes_.clear();
   visual_.ask(task_);
 }
 

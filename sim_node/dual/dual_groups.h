@@ -23,7 +23,8 @@ class DualGroups : public Mechanics {
  public:
   // ids: how the contacts of the haptic group are named, every other number of which is the visual group's. Throws
   // std::runtime_error with one sentence when the world cannot be simulated.
-  DualGroups(const WorldDef& world, const Settings& settings, Ids& ids);
+  DualGroups(const WorldDef& world, const Settings& settings, Ids& ids,
+             const std::shared_ptr<MeshTrees>& trees = std::make_shared<MeshTrees>());
 
   void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   // Bodies that are acted on are in the haptic group from then on.
@@ -35,18 +36,17 @@ class DualGroups : public Mechanics {
   // Of the haptic group as it is, of the visual group as it was when its step began.
   std::span<BodyMotion> motions() override { return motions_; }
   std::optional<std::span<const int>> near_tools() const override { return grouping_.haptic(); }
+  double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) override {
+    return world_->mobility(body, point_m, n);
+  }
   void contacts(std::vector<contact_t>& out) override;
   const Ahead* ahead() override;
 
-  void set_gravity(const Eigen::Vector3d& gravity_m_s2) override;
-  bool set_mass(int body, double mass_kg) override;
+  bool apply(const impulse::SceneChange& change) override;
+  // Who is put somewhere, or thrown, comes into the haptic group first.
   bool set_pose(int body, const Eigen::Isometry3d& pose) override;
   bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) override;
   bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) override;
-  void set_friction(int body, double friction) override;
-  void set_restitution(int body, double restitution) override;
-  bool set_motor(const std::string& joint, int axis, double effort, double velocity) override;
-  bool set_joint_friction(const std::string& joint, int axis, double friction) override;
 
   void archive(StateArchive& a) override;
   void rename(std::int64_t incarnation) override;
@@ -60,7 +60,7 @@ class DualGroups : public Mechanics {
   // Steps that were not there in time; sum of the ticks for which bodies stood still.
   std::int64_t late_steps() const { return late_steps_; }
   std::int64_t held_ticks() const { return held_ticks_; }
-  VisualRate& rate() { return rate_; }
+  void set_visual_rate(double rate_Hz) override { rate_.set(rate_Hz); }
 
  private:
   struct Load {
@@ -68,6 +68,15 @@ class DualGroups : public Mechanics {
     Eigen::Vector3d force_N, point_m, torque_N_m;
   };
   void act(const Load& load);
+  // To be set when the body is in the haptic group.
+  struct Wish {
+    enum Kind { kPose, kVelocity, kSpin };
+    int kind, body;
+    Eigen::Vector3d vector;
+    Eigen::Quaterniond turn;
+  };
+  bool wish(const Wish& w);
+  void grant_wishes();
   void begin_step(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events);
   void ask_for_next();
   void hold(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events);
@@ -75,6 +84,7 @@ class DualGroups : public Mechanics {
   void release();
   void activate();
   void read_motions(std::span<const int> bodies);
+  void find_contacts(double h_s);
   void note_touching();
   void gather_units(std::span<const int> bodies);
   void catch_up(std::span<const int> units, sync::SimTime from, sync::SimTime to,
@@ -84,9 +94,10 @@ class DualGroups : public Mechanics {
   void tell_due(sync::SimTime until, std::vector<contact_event_t>& events);
 
   Settings settings_;
-  impulse::BodyFrames frames_;
   std::unique_ptr<impulse::World> world_;  // of the haptic group
-  ContactFinder finder_;
+  SceneContacts source_;
+  impulse::Advance advance_;
+  impulse::SceneSettings scene_;
   Ids& ids_;
   ContactTracker tracker_, catching_up_;
   Grouping grouping_;
@@ -110,6 +121,8 @@ class DualGroups : public Mechanics {
   std::vector<char> mask_;
   std::vector<LiveContact> moved_;
   std::vector<Load> loads_;
+  std::vector<Wish> wishes_;
+  std::vector<impulse::SceneChange> changes_;  // not asked for yet
   struct Told {
     std::int64_t contact;
     int body_a, body_b;

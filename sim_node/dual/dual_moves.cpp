@@ -41,11 +41,9 @@ void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::
   unheard_.clear();
   for (std::int64_t k = 0; k < steps; ++k) {
     const sync::Nanoseconds h = (to - from) * (k + 1) / steps - (to - from) * k / steps;
-    finder_.find(motions_, world_->active_bodies(), sync::to_seconds(h), contacts_);
-    world_->step(contacts_, sync::to_seconds(h));
-    std::swap(contacts_, solved_);
+    find_contacts(sync::to_seconds(h));
+    advance_.step(*world_, source_, sync::to_seconds(h), contacts_, solved_);
     read_motions(world_->active_bodies());
-    finder_.find(motions_, world_->active_bodies(), sync::to_seconds(h), contacts_);
     catching_up_.update(from + (to - from) * (k + 1) / steps, h, motions_, contacts_, solved_, unheard_);
   }
   mark(units, 1);

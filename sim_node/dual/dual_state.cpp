@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostLoads = 1 << 12;
+constexpr std::size_t kMostLoads = 1 << 12, kMostChanges = 1 << 12;
 constexpr std::size_t kMostBytes = 1 << 30;
 
 void archive(StateArchive& a, sync::Nanoseconds& t) {
@@ -27,6 +27,7 @@ void archive_task(StateArchive& a, VisualTask& task, int units, std::size_t bodi
     a.index(unit, static_cast<std::size_t>(units));
     a.require(unit >= 0, "the state names a body that is not there");
   });
+  a.list(task.changes, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
 }
 
 }  // namespace
@@ -70,6 +71,12 @@ void DualGroups::archive(StateArchive& a) {
     a.require(load.body >= 0, "the state holds a push of nothing");
     a(load.force_N), a(load.point_m), a(load.torque_N_m);
   });
+  a.list(changes_, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+  a.list(wishes_, kMostLoads, [&](Wish& w) {
+    a(w.kind), a.index(w.body, bodies), a(w.vector), a(w.turn);
+    a.require(w.body >= 0 && w.kind >= Wish::kPose && w.kind <= Wish::kSpin,
+              "the state holds a number out of range");
+  });
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
   if (!a.reads()) return;
   if (rename_to_) {
@@ -80,7 +87,7 @@ void DualGroups::archive(StateArchive& a) {
   promoted_.clear();
   released_.clear();
   activate();
-  finder_.find(motions_, world_->active_bodies(), settings_.step_s, contacts_);
+  find_contacts(settings_.step_s);
   visual_.ask(task_);
 }
 

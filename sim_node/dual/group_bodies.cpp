@@ -6,14 +6,12 @@
 
 namespace tactus::sim {
 
-std::vector<double> body_radii(const WorldDef& world) {
+std::vector<double> body_radii(const WorldDef& world, MeshTrees& trees) {
   std::vector<double> out(world.bodies.size(), 0);
   for (const ShapeDef& s : world.shapes) {
     const auto body = static_cast<std::size_t>(s.body);
     if (world.bodies[body].is_static) continue;
-    const TriangleMesh* mesh =
-        s.kind == ShapeKind::kMesh ? &world.meshes[static_cast<std::size_t>(s.mesh)] : nullptr;
-    const ClosestSurface surface(s, mesh);
+    const ClosestSurface surface(s, s.kind == ShapeKind::kMesh ? trees.triangles(s, world) : nullptr);
     const double from_centre = (s.pose * surface.centre() - world.bodies[body].centre_of_mass_m).norm();
     // A plane that moves is a plate of its size.
     const double bound = s.kind == ShapeKind::kPlane ? 0.5 * s.size_m.norm() : surface.bound_m();
@@ -22,8 +20,8 @@ std::vector<double> body_radii(const WorldDef& world) {
   return out;
 }
 
-std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world) {
-  const std::vector<double> radii = body_radii(def);
+std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world, MeshTrees& trees) {
+  const std::vector<double> radii = body_radii(def, trees);
   std::vector<GroupBody> out;
   std::vector<int> links(static_cast<std::size_t>(world.units()), 0), system(links.size(), -1);
   for (int body = 0; body < static_cast<int>(def.bodies.size()); ++body)

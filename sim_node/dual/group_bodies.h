@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/impulse/world.h"
+#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/dual/grouping.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
@@ -11,10 +12,10 @@
 namespace tactus::sim {
 
 // Radius about its centre of mass of the sphere that holds each body, m; 0: it never moves, or has no shape.
-std::vector<double> body_radii(const WorldDef& world);
+std::vector<double> body_radii(const WorldDef& world, MeshTrees& trees);
 
 // world: of impulses, for its systems of joints.
-std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world);
+std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world, MeshTrees& trees);
 
 // Settings with the behaviour models that the groups have: penalty contact where a hand may be, impulses
 // elsewhere.

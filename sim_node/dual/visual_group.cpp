@@ -23,18 +23,23 @@ std::vector<char> may_rest(const WorldDef& def) {
 
 }  // namespace
 
-VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vector<double> radii_m, Ids ids)
+VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vector<double> radii_m, Ids ids,
+                         const std::shared_ptr<MeshTrees>& trees)
     : settings_(for_visual_group(settings)),
       radii_m_(std::move(radii_m)),
       frames_(def),
       world_(impulse::build_world(def, settings_)),
-      finder_(def, settings_),
+      finder_(def, settings_, trees),
+      source_(*this),
+      advance_(extents_of(def)),
+      scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings_), settings_, ids_),
       newcomers_(surface_traits(def, settings_), settings_, ids_),
       resting_(may_rest(def)),
       mask_(def.bodies.size()),
-      motions_(frames_.at_start(def)) {
+      motions_(frames_.at_start(def)),
+      sought_(motions_) {
   for (int i = 0; i < world_->units(); ++i) units_.push_back(i);
   activate();
   read_motions();
@@ -130,55 +135,57 @@ bool VisualGroup::meets(const Manifold& m, int awake, double h) const {
          });
 }
 
-// The contacts of a sub-step. What rests is there where something awake is near: it stands as if fixed, and wakes
-// when it is about to be struck.
-void VisualGroup::find(double h) {
-  while (true) {
-    const auto awake = world_->active_bodies();
-    straight_.clear();
-    if (resting_.count() > 0)
-      for (const int body : awake) {
-        const BodyMotion& m = motions_[index(body)];
-        straight_.push_back({m.centre_m, m.velocity_m_s, radii_m_[index(body)], kTouching_m});
-      }
-    const auto near = resting_.near(straight_, motions_, radii_m_, h);
-    if (near.empty()) return finder_.find(motions_, awake, h, contacts_);
-    looked_after_.assign(awake.begin(), awake.end());
-    looked_after_.insert(looked_after_.end(), near.begin(), near.end());
-    std::sort(looked_after_.begin(), looked_after_.end());
-    finder_.find(motions_, looked_after_, h, contacts_);
-    const auto asleep = [&](int body) { return resting_.rests(body) || !motions_[index(body)].moves(); };
-    std::erase_if(contacts_, [&](const Manifold& m) { return asleep(m.body_a) && asleep(m.body_b); });
-    list_.clear();
-    for (const Manifold& m : contacts_) {
-      if (resting_.rests(m.body_a) && meets(m, m.body_b, h)) list_.push_back(m.body_a);
-      if (resting_.rests(m.body_b) && meets(m, m.body_a, h)) list_.push_back(m.body_b);
+void VisualGroup::Contacts::find(std::span<const BodyMotion> motions, std::span<const int> active, double h,
+                                 std::vector<Manifold>& out) {
+  VisualGroup& g = group_;
+  for (const int body : active) g.sought_[index(body)] = g.frames_.motion(body, motions[index(body)]);
+  straight_.clear();
+  if (g.resting_.count() > 0)
+    for (const int body : active) {
+      const BodyMotion& m = g.sought_[index(body)];
+      straight_.push_back({m.centre_m, m.velocity_m_s, g.radii_m_[index(body)], kTouching_m});
     }
-    if (list_.empty()) return;
-    wake(resting_.wake_with(list_));
-    activate();
-  }
+  const auto near = g.resting_.near(straight_, g.sought_, g.radii_m_, h);
+  if (near.empty()) return g.finder_.find(g.sought_, active, h, out);
+  looked_after_.assign(active.begin(), active.end());
+  looked_after_.insert(looked_after_.end(), near.begin(), near.end());
+  std::sort(looked_after_.begin(), looked_after_.end());
+  g.finder_.find(g.sought_, looked_after_, h, out);
+  const auto still = [&](int body) { return g.resting_.rests(body) || !g.sought_[index(body)].moves(); };
+  std::erase_if(out, [&](const Manifold& m) { return still(m.body_a) && still(m.body_b); });
 }
 
+// Who rests and is about to be struck wakes, with its island.
+bool VisualGroup::wake_struck(double h) {
+  if (resting_.count() == 0) return false;
+  list_.clear();
+  for (const Manifold& m : contacts_) {
+    if (resting_.rests(m.body_a) && meets(m, m.body_b, h)) list_.push_back(m.body_a);
+    if (resting_.rests(m.body_b) && meets(m, m.body_a, h)) list_.push_back(m.body_b);
+  }
+  if (list_.empty()) return false;
+  wake(resting_.wake_with(list_));
+  activate();
+  return true;
+}
+
+// noted: of the group; else of those that catch up by themselves.
 void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::Nanoseconds length,
                             VisualStep& out, bool noted) {
   const auto at = [&](int k) { return sync::Nanoseconds(length.count() * k / settings_.visual_substeps); };
-  const auto find_for = [&](sync::Nanoseconds h) {
-    if (noted)
-      find(sync::to_seconds(h));
-    else
-      finder_.find(motions_, world_->active_bodies(), sync::to_seconds(h), contacts_);
+  const auto find = [&](double h) {
+    source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h), contacts_);
   };
-  find_for(at(1));
+  double h = sync::to_seconds(at(1));
+  find(h);
   for (int k = 0; k < settings_.visual_substeps; ++k) {
-    const sync::Nanoseconds h = at(k + 1) - at(k);
+    h = sync::to_seconds(at(k + 1) - at(k));
+    while (noted && wake_struck(h)) find(h);
     if (noted) note_sub_step(index(k), at(k), out);
-    world_->step(contacts_, sync::to_seconds(h));
-    std::swap(contacts_, solved_);
+    advance_.step(*world_, source_, h, contacts_, solved_);
     read_motions();
-    find_for(h);
     const std::size_t first = out.events.size();
-    tracker.update(begin + at(k + 1), h, motions_, contacts_, solved_, out.events);
+    tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
     for (const LiveContact& c : tracker.live()) note_touching(c.manifold.body_a, c.manifold.body_b);
     for (std::size_t i = first; i < out.events.size(); ++i)
       note_touching(out.events[i].body_a, out.events[i].body_b);
@@ -232,6 +239,8 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   places_.clear();
   supported_.assign(motions_.size(), 0);
   let_go(task);
+  for (const impulse::SceneChange& change : task.changes) scene_.apply(*world_, change);
+  if (!task.changes.empty()) wake(resting_.wake_all());
   take_over(task, out);
   activate();
   out.begins = now_;

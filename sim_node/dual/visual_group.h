@@ -5,9 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/behaviour/impulse/body_frames.h"
 #include "sim_node/behaviour/impulse/build_world.h"
-#include "sim_node/collision/contact_finder.h"
+#include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/dual/resting.h"
 #include "sim_node/dual/visual_step.h"
 
@@ -18,7 +17,8 @@ class VisualGroup {
   // radii_m: of a sphere about the centre of mass that holds each body. ids: how its contacts and events are
   // named. Throws std::runtime_error with one sentence when the world cannot be simulated. All units are its own
   // at first.
-  VisualGroup(const WorldDef& world, const Settings& settings, std::vector<double> radii_m, Ids ids);
+  VisualGroup(const WorldDef& world, const Settings& settings, std::vector<double> radii_m, Ids ids,
+              const std::shared_ptr<MeshTrees>& trees);
 
   // Takes over who enters, lets go who leaves, and computes the step. Deterministic: the same tasks give the same
   // steps to the bit. Realtime-safe once the lists have grown.
@@ -39,9 +39,21 @@ class VisualGroup {
   void take_over(const VisualTask& task, VisualStep& out);
   void wake(std::span<const int> woken);
   void settle(sync::Nanoseconds length);
+  // Contacts of what is awake. What rests is there where something awake is near: it stands as if fixed.
+  class Contacts : public impulse::ContactSource {
+   public:
+    explicit Contacts(VisualGroup& group) : group_(group) {}
+    void find(std::span<const BodyMotion> motions, std::span<const int> active_bodies, double h_s,
+              std::vector<Manifold>& out) override;
+
+   private:
+    VisualGroup& group_;
+    std::vector<int> looked_after_;
+    std::vector<SweptSphere> straight_;
+  };
+  bool wake_struck(double h_s);
   void sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::Nanoseconds length, VisualStep& out,
                  bool noted);
-  void find(double h_s);
   bool meets(const Manifold& m, int awake, double h_s) const;
   void read_motions();
   void note_touching(int a, int b);
@@ -53,17 +65,20 @@ class VisualGroup {
   impulse::BodyFrames frames_;
   std::unique_ptr<impulse::World> world_;
   ContactFinder finder_;
+  Contacts source_;
+  impulse::Advance advance_;
+  impulse::SceneSettings scene_;
   Ids ids_;
   ContactTracker tracker_, newcomers_;         // of those that are awake, and of those that catch up
   std::vector<LiveContact> resting_contacts_;  // of those that rest
   Resting resting_;
   sync::SimTime now_{};
-  std::vector<int> units_, awake_;      // ascending
-  std::vector<char> mask_, supported_;  // of each body
-  std::vector<BodyMotion> motions_;
+  std::vector<int> units_, awake_;            // ascending
+  std::vector<char> mask_, supported_;        // of each body
+  std::vector<BodyMotion> motions_, sought_;  // as they are, and as contacts were last sought for
   std::vector<Manifold> contacts_, solved_;
   std::vector<LiveContact> moved_;
-  std::vector<int> list_, looked_after_;
+  std::vector<int> list_;
   std::vector<SweptSphere> straight_;
   std::vector<std::pair<int, int>> touching_;
   std::vector<Eigen::Vector3d> places_;  // centres of the group's bodies at the end of each sub-step

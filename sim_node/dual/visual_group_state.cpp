@@ -20,7 +20,9 @@ void VisualGroup::archive(StateArchive& a) {
   });
   a.require(std::is_sorted(units_.begin(), units_.end()), "the state holds a list in disorder");
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
-  if (a.reads()) activate();
+  if (!a.reads()) return;
+  sought_ = motions_;
+  activate();
 }
 
 void VisualGroup::rename(std::int64_t incarnation) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/collision/contact_tracker.h"
 #include "sim_node/dual/ways.h"
@@ -38,6 +39,7 @@ struct VisualTask {
   sync::Nanoseconds missed{};  // of the step before, at whose beginning those that enter left the haptic group
   Handover enters;             // as they were then
   std::vector<int> leaves;     // units that are in the haptic group by now
+  std::vector<impulse::SceneChange> changes;  // that hold from its beginning on
 };
 
 // One visual step, from `begins` on the clock of the visual group.

@@ -1,6 +1,7 @@
 // How deep shapes are in each other, by another way than the detectors that see gaps: ODE's closed forms for what is
-// round, flat or a box (its portal refinement for cylinders, which is never too small), and for meshes all triangles of
-// one against all of the other: how far the deepest place of one surface that lies inside the other is from the other's.
+// round, flat or a box; for cylinders, which ODE measures along the wrong way, a search over all directions for the
+// one along which the shapes overlap least; for meshes all triangles of one against places all over the other: how far
+// the deepest of those that lie inside is from the surface.
 #pragma once
 
 #include <memory>
@@ -75,10 +76,59 @@ class PenetrationOracle {
     if (!shapes_[i].mesh && !shapes_[j].mesh) {
       ode_->query(shapes_[i].ode, poses_[i], shapes_[j].ode, poses_[j], 0, pairs_);
       double depth = 0;
-      for (const PointPair& p : pairs_) depth = std::max(depth, -p.gap_m);
-      return depth;
+      Vector3d way = Vector3d::UnitZ();
+      for (const PointPair& p : pairs_)
+        if (-p.gap_m > depth) depth = -p.gap_m, way = p.normal;
+      const auto is_cylinder = [&](std::size_t k) { return world_.shapes[k].kind == ShapeKind::kCylinder; };
+      const bool plane = world_.shapes[i].kind == ShapeKind::kPlane || world_.shapes[j].kind == ShapeKind::kPlane;
+      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? least_overlap(i, j, way) : depth;
     }
     return shapes_[i].mesh ? of_mesh(i, j) : of_mesh(j, i);
+  }
+
+  // How far a convex shape reaches along a direction of the world.
+  double reach(std::size_t i, const Vector3d& along) const {
+    const ShapeDef& s = world_.shapes[i];
+    const Vector3d d = poses_[i].linear().transpose() * along;
+    const double at = poses_[i].translation().dot(along), across = std::hypot(d.x(), d.y());
+    switch (s.kind) {
+      case ShapeKind::kSphere: return at + s.size_m.x();
+      case ShapeKind::kCapsule: return at + s.size_m.x() + s.size_m.z() / 2 * std::abs(d.z());
+      case ShapeKind::kCylinder: return at + s.size_m.x() * across + s.size_m.z() / 2 * std::abs(d.z());
+      default: return at + s.size_m.cwiseProduct(d.cwiseAbs()).sum() / 2;
+    }
+  }
+  // The least overlap over all directions, from i to j; 0: one separates the two, which proves that they do not overlap.
+  double least_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
+    const auto overlap = [&](const Vector3d& n) { return reach(i, n) + reach(j, -n); };
+    std::vector<Vector3d> starts{guess, poses_[i].linear().col(2), poses_[j].linear().col(2),
+                                 poses_[i].linear().col(2).cross(poses_[j].linear().col(2))};
+    for (int k = 0; k < 200; ++k) {  // a spiral over the sphere
+      const double z = 1 - (2 * k + 1) / 200.0, r = std::sqrt(1 - z * z), turn = 2.399963 * k;
+      starts.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+    double least = 1e9;
+    for (const Vector3d& start : starts)
+      for (const double sign : {1.0, -1.0}) {
+        if (!(start.norm() > 1e-9)) continue;
+        Vector3d n = sign * start.normalized();
+        double best = overlap(n);
+        if (best > least + 0.05) continue;
+        for (double step = 0.2; step > 1e-7; step /= 2)
+          for (bool better = true; better;) {
+            better = false;
+            const Vector3d u = n.unitOrthogonal(), v = n.cross(u);
+            for (const Vector3d& by : {u, Vector3d(-u), v, Vector3d(-v)}) {
+              const Vector3d m = (n + step * by).normalized();
+              if (overlap(m) >= best) continue;
+              best = overlap(m), n = m, better = true;
+              break;
+            }
+          }
+        least = std::min(least, best);
+        if (least <= 0) return 0;
+      }
+    return least;
   }
 
   static Corners corners(const TriangleMesh& m, std::size_t t) {

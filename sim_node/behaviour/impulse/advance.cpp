@@ -209,7 +209,7 @@ double Advance::horizon_s(const World& world, double h) const {
   return fastest * h > kFarthest_m ? std::max(h / kMostPieces, kFarthest_m / fastest) : h;
 }
 
-const Advance::Report& Advance::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
+const StepReport& Advance::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
                                      std::vector<Manifold>& solved) {
   report_ = {};
   solved.clear();

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "sim_node/behaviour/impulse/step_report.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/collision/manifold.h"
 
@@ -30,14 +31,6 @@ struct Extent {
 
 class Advance {
  public:
-  struct Report {
-    int pieces = 0;        // in which the step was done; 1: the usual case
-    int found_again = 0;   // times that bodies came further than their contacts had been sought
-    int separated = 0;     // rounds in which overlaps were put apart
-    int held = 0;          // units that stayed where they were, as nothing else kept them apart
-    double deepest_m = 0;  // overlap that is left; negative: gap
-  };
-
   // extents: of every body of the world.
   explicit Advance(std::vector<Extent> extents) : extents_(std::move(extents)) {}
 
@@ -47,7 +40,7 @@ class Advance {
   // contacts: of the present poses, found for a step of horizon_s(); those of the new poses afterwards, for another such
   // step.
   // solved: what the step did to them. Realtime-safe once its lists have grown.
-  const Report& step(World& world, ContactSource& source, double h_s, std::vector<Manifold>& contacts,
+  const StepReport& step(World& world, ContactSource& source, double h_s, std::vector<Manifold>& contacts,
                      std::vector<Manifold>& solved);
 
  private:
@@ -67,7 +60,7 @@ class Advance {
   std::vector<BodyMotion> assumed_;  // motions at the start of a piece, with the speeds that contacts were sought for
   std::vector<Manifold> after_, ahead_, merged_;
   std::vector<int> held_;
-  Report report_;
+  StepReport report_;
 };
 
 }  // namespace tactus::sim::impulse

@@ -64,6 +64,7 @@ bool Collisions::collides(const ContactPoint& p, Meeting& out) const {
 }
 
 double Collisions::approach(const ContactGroup& g) const {
+  if (g.shielded) return 0;
   double fastest = 0;
   bool overlaps = false;
   for (int i = g.first; i < g.first + g.count; ++i) {
@@ -181,7 +182,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
         approach_[i] = approach(rows.groups[i]);
   }
   for (ContactGroup& g : rows.groups)
-    if (g.blows == 0) foresee(g);
+    if (g.blows == 0 && !g.stopped) foresee(g);
 }
 
 }  // namespace tactus::sim::impulse

@@ -50,6 +50,7 @@ struct ContactPoint {
   Press press = Press::kNone;
   double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
   double pressed_N_s = 0;                        // kGiven
+  double shell_m = -1;                           // from which gap on it presses; negative: not known yet
 };
 
 // The points of one manifold.
@@ -61,6 +62,8 @@ struct ContactGroup {
   // and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
   int blows = 0, met = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
+  bool shielded = false;  // takes no blow: springs press
+  bool stopped = false;   // by these, before the surfaces meet
 };
 
 class ContactRows {

@@ -5,9 +5,30 @@
 
 namespace tactus::sim::impulse {
 
+void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
+  for (ContactGroup& g : rows.groups) {
+    g.stopped = true;
+    for (int i = g.first; i < g.first + g.count; ++i) {
+      ContactPoint& p = rows.points[static_cast<std::size_t>(i)];
+      const double closing = -rows.velocity(p, velocity).x();
+      if (penalty.rise_m_s <= 0)
+        p.shell_m = penalty.thickness_m;
+      else if (p.shell_m < 0)
+        p.shell_m = std::clamp(p.gap_m + h * std::max(0.0, closing), 0.0, penalty.thickness_m);
+      else
+        p.shell_m = std::min(penalty.thickness_m, p.shell_m + h * penalty.rise_m_s);
+      // Kinetic energy against what the spring still can take: v^2 / 2 M against k (shell^2 - inside^2) / 2.
+      const double inside = std::clamp(p.shell_m - p.gap_m, 0.0, p.shell_m);
+      const double bears = penalty.stiffness_N_m * p.mobility(0, 0) * (p.shell_m * p.shell_m - inside * inside);
+      if (closing > 0 && closing * closing > bears) g.stopped = false;
+    }
+    g.shielded = g.stopped || g.restitution == 0;
+  }
+}
+
 void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
   for (ContactPoint& p : rows.points) {
-    const double inside = penalty.thickness_m - p.gap_m;
+    const double inside = p.shell_m - p.gap_m;
     const double damping =
         penalty.damping_N_s_m * std::clamp(inside / (kDamperSetsIn * penalty.thickness_m), 0.0, 1.0);
     if (penalty.is_explicit) {

@@ -16,6 +16,9 @@ struct Penalty {
   // The force is that of the start of a step: simple, and stable only while the step is short enough. Else it is
   // that of the end of the step (backward Euler), which is stable at any step.
   bool is_explicit = false;
+  // What is found inside of the shell without having come in, as where a scene begins, is lifted out so fast: the
+  // shell grows there from the gap that it has. 0: at once, as the spring throws it.
+  double rise_m_s = 0;
 };
 
 // Share of the shell over which the damper sets in: a damper that began at once would strike what arrives
@@ -40,6 +43,11 @@ inline SoftRow soft_row(double stiffness_N_m, double damping_N_s_m, double h_s) 
 inline double stiffest_explicit(double mobility_1_kg, double damping_N_s_m, double h_s) {
   return (4 / mobility_1_kg - 2 * h_s * damping_N_s_m) / (h_s * h_s);
 }
+
+// Says of each point from which gap on it presses, and of each contact whether its springs will stop it: those
+// that are run through collide instead, with the restitution of their materials. velocity: at the start of the
+// step. After what was remembered of the step before has been recalled, before collisions.
+void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
 
 // Sets what penalty asks of each point of the rows. velocity: mean over the step before contact. After
 // least_speed_m_s.

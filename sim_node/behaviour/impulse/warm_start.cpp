@@ -35,6 +35,7 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
         nearest = apart;
         p.impulse = h * (p.axes * k->force_N);
         p.impulse.x() = std::max(0.0, p.impulse.x());
+        p.shell_m = k->shell_m;
       }
     }
   }
@@ -47,9 +48,9 @@ void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMot
     const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
     for (int i = 0; i < g.count; ++i) {
       const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
-      if (p.impulse.x() <= 0) continue;
+      if (p.impulse.x() <= 0 && p.press == Press::kNone) continue;
       kept_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
-                       p.axes.transpose() * p.impulse / h});
+                       p.axes.transpose() * p.impulse / h, p.shell_m});
     }
   }
 }

@@ -29,6 +29,7 @@ class WarmStart {
     int shape_a = -1, shape_b = -1;
     Eigen::Vector3d place_m;  // in the frame of the body that moves
     Eigen::Vector3d force_N;  // world, on b
+    double shell_m = -1;      // as of its point
   };
   std::vector<Kept> kept_;
 };

@@ -317,7 +317,11 @@ void World::tell(std::span<Manifold> contacts, double h) const {
     m.impact.last_s = std::min(g.last_s, h);
     m.impact.speed_m_s = g.speed_m_s;
     m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.met)].mobility(0, 0);
-    m.impact.place_m = (on_a + g.first_s * a.velocity_at(on_a) + on_b + g.first_s * b.velocity_at(on_b)) / 2;
+    const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a), met_b = on_b + g.first_s * b.velocity_at(on_b);
+    m.impact.place_m = (met_a + met_b) / 2;
+    // Along the normal, what stands still knows better.
+    if (!a.moves() || !b.moves())
+      m.impact.place_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.place_m) * at.normal;
     m.impact.normal = at.normal;
     m.impact.a_body_m = a.to_body(on_a), m.impact.b_body_m = b.to_body(on_b);
     m.impact.triangle_a = at.triangle_a, m.impact.triangle_b = at.triangle_b;
@@ -328,12 +332,13 @@ void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
   build_rows(contacts);
   build_joints(h);
+  warm_.recall(contacts, motions_, h, rows_);
   const bool presses = law_.penalty.stiffness_N_m > 0;
-  if (!presses) collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  if (presses) shield(rows_, law_.penalty, velocity_, h);
+  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
   ask(h);
   if (presses) press(rows_, law_.penalty, velocity_, h);
-  warm_.recall(contacts, motions_, h, rows_);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep();
   if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);

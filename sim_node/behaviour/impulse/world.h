@@ -27,7 +27,7 @@ struct Law {
   double repair = 0.2;             // share of a deeper one that is taken back in a step
   double repair_speed_m_s = 0.02;  // and at most so fast
   double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
-  Penalty penalty = {};            // in a shell beyond that gap, instead of collisions with restitution
+  Penalty penalty = {};            // in a shell beyond that gap, instead of collisions that its springs can stop
 };
 
 struct Surface {
@@ -67,6 +67,7 @@ class World {
   int unit_of(int body) const;
   // The body that a link's joint hangs it on; -1: the world, or no link.
   int parent_of(int body) const;
+  bool is_free(int body) const { return movers_[index(body)].kind == Kind::kFree; }
   void unit_bodies(int unit, std::vector<int>& out) const;
   // Only these units, ascending, are there from now on: the others keep their state, and stand still for what
   // touches them. All of them at first. A step costs what the active ones do. Realtime-safe once its lists have

@@ -13,6 +13,7 @@ namespace {
 
 // A corner so far outside an outline is still over it, m: rounding of a metre, a thousand times.
 constexpr double kOver_m = 1e-12;
+constexpr double kOnePlace_m = 1e-9;
 // Lines that differ by less are parallel where no face makes a patch of them: sine.
 constexpr double kParallel = 0.05;
 // Such lines lie over each other where they are no further to the side, m: on round sides of 20 mm the gap is
@@ -73,10 +74,15 @@ struct Collector {
   const Seen &a, &b;
   double reach_m;
   FacingList& out;
+  std::array<Vector2d, FacingList::kMost> places;
 
   void add(const Vector2d& p) {
     const double ha = a.height_at(p), hb = b.height_at(p);
     if (hb - ha > reach_m) return;
+    // Where corners lie on edges or on corners, each is found several times.
+    for (int i = 0; i < out.count; ++i)
+      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kOnePlace_m * kOnePlace_m) return;
+    if (out.count < FacingList::kMost) places[static_cast<std::size_t>(out.count)] = p;
     const Vector3d flat = p.x() * a.u + p.y() * a.v;
     out.add({flat + ha * a.n, flat + hb * a.n, hb - ha});
   }
@@ -156,7 +162,7 @@ void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_
   out.count = 0;
   const Vector3d u = n.unitOrthogonal(), v = n.cross(u);
   const Seen sa(a, n, u, v), sb(b, n, u, v);
-  Collector c{sa, sb, reach_m, out};
+  Collector c{sa, sb, reach_m, out, {}};
   if (!sa.flat() && !sb.flat()) {
     if (a.count == 2 && b.count == 2) c.lines();
     return;

@@ -77,6 +77,21 @@ void offer_shrunk(Search& s) {
   }
 }
 
+// The same as with any cores, in a quarter of the time (Gottschalk, Lin and Manocha 1996: the first six of the
+// axes).
+Parting over_faces_of_boxes(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
+  const Eigen::Matrix3d turn = a_from_b.linear(), size = turn.cwiseAbs();
+  const Vector3d way = a_from_b.translation(), way_b = turn.transpose() * way;
+  const Vector3d of_a = way.cwiseAbs() - a.half_m - size * b.half_m,
+                 of_b = way_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
+  Parting best;
+  for (int i = 0; i < 3; ++i)
+    if (of_a[i] > best.gap_m + kBetter_m) best = {(way[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
+  for (int i = 0; i < 3; ++i)
+    if (of_b[i] > best.gap_m + kBetter_m) best = {(way_b[i] < 0 ? -1.0 : 1.0) * turn.col(i), of_b[i]};
+  return best;
+}
+
 void search_faces(Search& s) {
   each_face(s.a, [&](const Vector3d& n) { s.offer_both(n); });
   each_face(s.b, [&](const Vector3d& n) { s.offer_both(s.a_from_b.linear() * n); });
@@ -85,6 +100,7 @@ void search_faces(Search& s) {
 }  // namespace
 
 Parting over_faces(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
+  if (a.core == Core::kBox && b.core == Core::kBox) return over_faces_of_boxes(a, b, a_from_b);
   Search s{a, b, a_from_b, {}};
   search_faces(s);
   return s.best;

@@ -230,3 +230,79 @@ TEST_CASE("A link on a hinge lies on the shell with all of its weight where that
   CHECK(toys.force_N() == Approx(weight).epsilon(1e-4));
   CHECK(-toys.motion(body).centre_m.z() == Approx(weight / k).epsilon(1e-3));
 }
+
+TEST_CASE(
+    "What runs through the shell bounces with its restitution, what the spring stops comes back with its energy") {
+  const bool is_explicit = GENERATE(true, false);
+  const double k = 1e4, e = 0.6;
+  impulse::Law in_shell = law(k, 0, is_explicit);
+  in_shell.penalty.thickness_m = 0.001;
+  // Up to T sqrt(k/m) = 0.32 m/s the spring bears it.
+  const double speed = GENERATE(0.05, 0.15, 1.0, 3.0), h = 1e-4;
+  Toys toys(in_shell);
+  toys.gravity_m_s2.setZero();
+  toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
+  const int ball = toys.ball(kMass_kg, kRadius_m, {0, 0, kRadius_m + 0.01}, 0.5, e);
+  toys.world.free_body(ball).velocity_m_s = {0, 0, -speed};
+  double least = 1;
+  for (int i = 0; i < 0.03 / speed / h; ++i) {
+    toys.step(h);
+    least = std::min(least, toys.motion(ball).centre_m.z() - kRadius_m);
+  }
+  CHECK(least > -1e-6);
+  const double back = toys.motion(ball).velocity_m_s.z();
+  INFO("speed " << speed << " back " << back);
+  if (speed < 0.3) {
+    // Backward Euler loses h omega pi / 2 of the speed in half a swing: 5 %.
+    CHECK(back <= speed * (1 + 1e-3));
+    CHECK(back > speed * 0.94);
+  } else {
+    // The spring gives at most its k T^2 / 2 on the way out, but for one step of its force.
+    const double step = h * k * in_shell.penalty.thickness_m / kMass_kg;
+    CHECK(back >= e * std::sqrt(speed * speed - 0.1) - step);
+    CHECK(back <= std::sqrt(e * e * speed * speed + 0.1) + step);
+  }
+}
+
+TEST_CASE("What begins inside of the shell is lifted out gently, and rests where its weight bends the spring") {
+  const bool is_explicit = GENERATE(true, false);
+  const double rise = GENERATE(0.0, 0.02), k = 20000;
+  impulse::Law in_shell = law(k, 5, is_explicit);
+  in_shell.penalty.thickness_m = 0.0005;
+  in_shell.penalty.rise_m_s = rise;
+  Toys toys(in_shell);
+  toys.plane({0, 0, 1}, {0, 0, 0});
+  const int box = toys.box(0.4, {0.1, 0.1, 0.04}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.02)));
+  double fastest = 0;
+  for (int i = 0; i < 1500; ++i) {
+    toys.step(0.001);
+    fastest = std::max(fastest, toys.motion(box).velocity_m_s.z());
+  }
+  CHECK(toys.motion(box).centre_m.z() - 0.02 == Approx(0.0005 - 0.4 * kToyG / (4 * k)).epsilon(1e-4));
+  // Let go at once, the spring throws it with up to T sqrt(4 k / m) = 0.22 m/s.
+  if (rise > 0)
+    CHECK(fastest < 2.1 * rise);
+  else
+    CHECK(fastest > 0.08);
+}
+
+TEST_CASE("What arrives from outside meets the whole shell, whether it could begin inside of it or not") {
+  const bool is_explicit = GENERATE(true, false);
+  double force[2];
+  for (const bool gentle : {false, true}) {
+    impulse::Law in_shell = law(4000, 5, is_explicit);
+    if (gentle) in_shell.penalty.rise_m_s = 0.02;
+    Toys toys(in_shell);
+    toys.plane({0, 0, 1}, {0, 0, 0});
+    const int ball = toys.ball(kMass_kg, kRadius_m, {0, 0, kRadius_m + 0.01});
+    toys.world.free_body(ball).velocity_m_s = {0, 0, -0.3};
+    double most = 0;
+    for (int i = 0; i < 100; ++i) {
+      toys.step(0.001);
+      most = std::max(most, toys.force_N());
+    }
+    force[gentle] = most;
+  }
+  CHECK(force[0] > 5);
+  CHECK(force[1] == force[0]);
+}

@@ -129,7 +129,7 @@ TEST_CASE("A paused world is felt where the hand is, at rest, and takes no push 
   b.ask(command(sim_command_t::SET, "ball", "velocity", {0, 0, 2}));
   for (int i = 0; i < 20; ++i) b.tick();
   b.ask(command(sim_command_t::PAUSE));
-  const Vector3d place = b.simulation.solver().bodies()[1].position_m;
+  const Vector3d place = b.simulation.bodies()[1].position_m;
   Hand hand{.radius = 0.01, .last = {0.3, 0, 0.5}};
   bool floor = false, ball = false;
   const auto at_place = [&](const Vector3d& p) {

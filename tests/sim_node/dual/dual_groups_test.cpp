@@ -29,8 +29,8 @@ struct Dual {
 
   explicit Dual(const WorldDef& world, const Settings& settings = dual_settings(),
                 const Vector3d& tool = {0, 0, 50})
-      : groups(world, settings, ids, Ids(7, 1, 2)), tools{{tool, Vector3d::Zero(), 0.01}} {
-    groups.start(tools);
+      : groups(world, settings, ids), tools{{tool, Vector3d::Zero(), 0.01}} {
+    groups.start(tools, events);
   }
   sync::SimTime now() const { return sync::sim_time(ticks * 1'000'000); }
   void tick() {
