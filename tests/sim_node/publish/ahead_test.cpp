@@ -137,7 +137,7 @@ void stamp(Message& m, std::int64_t now, std::int64_t& seq) {
 TEST_CASE(
     "Pictures of bodies that are computed ahead are where the bodies are, also of those that are taken back, in "
     "any order of pages") {
-  const std::size_t bodies = GENERATE(3, 60, 400);
+  const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: of more the snapshots are fewer
   const unsigned seed = GENERATE(1, 2, 3);
   Dual world(bodies, seed);
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
@@ -189,8 +189,9 @@ TEST_CASE(
   INFO(bodies << " bodies, " << pages << " pages, jitter " << jitter_ns << " ns: " << worst_m << " m, of now "
               << worst_behind_m << " m");
   // On cubics pictures are exact up to the single precision of velocities; but who joins those ahead is told a
-  // tick after its step has begun, by its velocity: a h^2 / 2 = 87 m/s^2 * (1 ms)^2 / 2.
-  CHECK(worst_m < 4.4e-5);
+  // tick after its step has begun, with the velocity of its beginning, 1 ms * 87 m/s^2 off: that is a h^2 / 2 at
+  // the sample and 4/27 * 16 ms * a h between (the most of Hermite's tangent polynomial).
+  CHECK(worst_m < 2.5e-4);
   CHECK(promoted_late == 0);
   CHECK(promoted.empty());
   CHECK(pages < 1400 + 60);
@@ -201,8 +202,11 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
   const int body = 0;
-  Ahead ahead{
-      .bodies = {&body, 1}, .motions = foreseen, .contacts = [](auto& out) { out.clear(); }, .promoted = {}};
+  Ahead ahead{.bodies = {&body, 1},
+              .motions = foreseen,
+              .waiting = {},
+              .contacts = [](auto& out) { out.clear(); },
+              .promoted = {}};
   const StateSource source{now, [](auto& out) { out.clear(); }, &ahead};
   std::int64_t seq = 0, ms = 0;
   const auto tick = [&](double x, double v, double x_ahead) {
