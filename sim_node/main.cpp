@@ -134,7 +134,7 @@ int main(int argc, char** argv) try {
                                 .events = steps ? &simulation.events() : &no_events,
                                 .tool_contacts = &simulation.tool_contacts(),
                                 .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
-                                          steps ? simulation.ahead() : nullptr},
+                                          simulation.ahead()},
                                 .game = &simulation.game()},
                                map);
     node.set_realtime_factor(pacer.realtime_factor());

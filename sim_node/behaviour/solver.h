@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/step_report.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"

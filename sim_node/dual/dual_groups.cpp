@@ -208,7 +208,13 @@ const Ahead* DualGroups::ahead() {
   ahead_now_.held = holds_;
   ahead_now_.promoted = promoted_;
   if (began_ || !promoted_.empty()) {
+    ahead_now_.begins = begins_;
     ahead_now_.time = ends_;
+    ahead_waiting_.clear();
+    for (const int unit : late_.units) world_->unit_bodies(unit, ahead_waiting_);
+    std::erase_if(ahead_waiting_, [this](int body) { return is_haptic(body); });
+    std::sort(ahead_waiting_.begin(), ahead_waiting_.end());
+    ahead_now_.waiting = ahead_waiting_;
     ahead_bodies_.clear();
     ahead_motions_.clear();
     for (const int body : step_->bodies) {

@@ -47,6 +47,27 @@ void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& fr
 
 }  // namespace
 
+// Where a body is now. Those that are computed ahead are known as of the beginning of the step, a tick ago when it
+// has just begun: their velocity takes them there, off by g h^2 / 2 = 5 um in 1 ms.
+const BodyMotion& Snapshots::present(std::size_t body, sync::SimTime now, const StateSource& source) {
+  const BodyMotion& m = source.bodies[body];
+  const Ahead* a = source.ahead;
+  const auto in = [body](std::span<const int> list) {
+    return std::binary_search(list.begin(), list.end(), static_cast<int>(body));
+  };
+  if (!a || !(in(a->bodies) || in(a->waiting))) return m;
+  present_ = m;
+  if (a->held) {
+    present_.velocity_m_s = present_.spin_rad_s = Eigen::Vector3d::Zero();
+    return present_;
+  }
+  const double h_s = sync::to_seconds(now - a->begins), angle = m.spin_rad_s.norm() * h_s;
+  present_.position_m += h_s * m.velocity_at(m.position_m);
+  present_.centre_m += h_s * m.velocity_m_s;
+  if (angle > 0) present_.orientation = Eigen::AngleAxisd(angle, m.spin_rad_s.normalized()) * m.orientation;
+  return present_;
+}
+
 void Snapshots::tell_now(std::size_t body, const BodyMotion& m, bool always) {
   const bool moving = moves(m, told_[body]);
   // Once more when it has come to rest, so that its last pose is told, at rest.
@@ -88,10 +109,10 @@ void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSo
     const bool is_ahead = a && next < a->bodies.size() && a->bodies[next] == static_cast<int>(i);
     const BodyMotion* foreseen = is_ahead ? &a->motions[next++] : nullptr;
     if (!is_ahead || a->held) {
-      tell_now(i, source.bodies[i], full || (a && told_until_[i] > pace));
+      tell_now(i, present(i, now, source), full || (a && told_until_[i] > pace));
       if (a) ahead_[i] = 0;
     } else if (with_ahead) {
-      tell_ahead(i, *foreseen, source.bodies[i], full);
+      tell_ahead(i, *foreseen, present(i, now, source), full);
       ahead_[i] = 1;
     }
   }
@@ -145,17 +166,19 @@ void Snapshots::fill(contact_frame_t& m) {
   copy(m, &contact_frame_t::contacts, part.items, part.pages[page], [](const contact_t&) { return false; });
 }
 
-// What became of the bodies that are computed ahead.
-void Snapshots::follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace) {
+// What became of the bodies that are computed ahead. stands: the world does, and what it said of this tick it said
+// before.
+void Snapshots::follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool stands) {
   ahead_.resize(bodies, 0);
   gone_.resize(bodies, 0);
   told_until_.resize(bodies, sync::SimTime::min());
   moved_.resize(bodies, 0);
-  if (ahead.fresh || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
+  if ((ahead.fresh && !stands) || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
   held_ = ahead.held;
   // One that went back before it could be told.
   std::erase_if(promoted_,
                 [&](int body) { return std::binary_search(ahead.bodies.begin(), ahead.bodies.end(), body); });
+  if (stands) return;
   for (const int body : ahead.promoted) {
     const auto i = static_cast<std::size_t>(body);
     ahead_[i] = 0;
@@ -184,7 +207,7 @@ void Snapshots::tell_promoted(sync::SimTime now, const StateSource& source,
     m.bodies.clear();
     for (std::size_t i = page * per_page; i < std::min(told, (page + 1) * per_page); ++i) {
       const auto body = static_cast<std::size_t>(promoted_[i]);
-      const BodyMotion& motion = source.bodies[body];
+      const BodyMotion& motion = present(body, now, source);
       m.bodies.push_back(state_of(body, motion, told_.size() <= body || moves(motion, told_[body])));
     }
     m.count = static_cast<std::int32_t>(m.bodies.size());
@@ -233,7 +256,8 @@ void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& s
                      const std::function<void(world_state_t&)>& send_world) {
   scheduler_.tick(pace);
   if (source.ahead) {
-    follow(*source.ahead, source.bodies.size(), pace);
+    follow(*source.ahead, source.bodies.size(), pace, last_now_ == now);
+    last_now_ = now;
     tell_promoted(now, source, send_world);
     take_due_ahead(now, pace, source);
   } else {

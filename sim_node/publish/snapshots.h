@@ -22,8 +22,8 @@ namespace tactus::sim {
 
 // What is read when a snapshot is taken.
 struct StateSource {
-  // Of every body at the present step. Of those computed ahead this is read when a step begins, of those that come
-  // from elsewhere or rested until then, and while they are held.
+  // Of every body at the present step; of those computed ahead, and those that wait for it, at the beginning of
+  // the visual step that runs; while they are held, at the end of the last.
   std::span<const BodyMotion> bodies;
   std::function<void(std::vector<contact_t>&)> contacts;  // of the group OTHER; clears the list first
   const Ahead* ahead = nullptr;                           // null: every body is simulated with every step
@@ -61,11 +61,12 @@ class Snapshots {
 
   void take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full, bool with_ahead);
   void take_contacts(sync::SimTime now, const StateSource& source);
-  void follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace);
+  void follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool stands);
   void tell_promoted(sync::SimTime now, const StateSource& source,
                      const std::function<void(world_state_t&)>& send);
   void take_due(sync::SimTime now, sync::SimTime pace, const StateSource& source);
   void take_due_ahead(sync::SimTime now, sync::SimTime pace, const StateSource& source);
+  const BodyMotion& present(std::size_t body, sync::SimTime now, const StateSource& source);
   void tell_now(std::size_t body, const BodyMotion& m, bool always);
   void tell_ahead(std::size_t body, const BodyMotion& m, const BodyMotion& now, bool always);
   void fill(world_state_t& page);
@@ -82,6 +83,8 @@ class Snapshots {
   std::vector<BodyMotion> told_;  // of each body, as last put into a snapshot
   std::vector<char> moved_;       // of each body: it moved when it was last looked at
   // Only with bodies computed ahead.
+  std::optional<sync::SimTime> last_now_;
+  BodyMotion present_;
   bool bodies_pending_ = false, contacts_pending_ = false, held_ = false;
   sync::SimTime taken_bodies_{}, taken_contacts_{};
   std::vector<char> ahead_;                // of each body: it was told ahead last

@@ -63,7 +63,8 @@ class Dual {
   void tick() {
     ahead.promoted = {};
     promoted_.clear();
-    const bool fresh = now == step_begin(step_);
+    // As the simulation does: a step begins with a tick, and is told of at its end.
+    const bool fresh = now - 1 == step_begin(step_);
     if (fresh) ++step_;
     // Some are taken back in the middle of a step, some leave with its end.
     for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -78,11 +79,12 @@ class Dual {
     bodies_.clear();
     foreseen_.clear();
     for (std::size_t i = 0; i < courses.size(); ++i) {
-      motions[i] = courses[i].at(now);
+      motions[i] = courses[i].at(ahead_[i] ? std::max<std::int64_t>(0, step_begin(step_ - 1)) : now);
       if (!ahead_[i]) continue;
       bodies_.push_back(static_cast<int>(i));
       foreseen_.push_back(courses[i].at(step_begin(step_)));
     }
+    ahead.begins = sync::sim_time(step_begin(step_ - 1) * kMs);
     ahead.time = sync::sim_time(step_begin(step_) * kMs);
     ahead.bodies = bodies_;
     ahead.motions = foreseen_;
@@ -135,7 +137,7 @@ void stamp(Message& m, std::int64_t now, std::int64_t& seq) {
 TEST_CASE(
     "Pictures of bodies that are computed ahead are where the bodies are, also of those that are taken back, in "
     "any order of pages") {
-  const std::size_t bodies = GENERATE(3, 60, 400);
+  const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: of more the snapshots are fewer
   const unsigned seed = GENERATE(1, 2, 3);
   Dual world(bodies, seed);
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
@@ -146,24 +148,31 @@ TEST_CASE(
   const std::int64_t jitter_ns = GENERATE(0, 1, 12) * kMs;
   std::map<int, std::int64_t> promoted;
   double worst_m = 0, worst_behind_m = 0;
+  std::int64_t stood_ms = 0;  // the world stood still for so long
   for (; world.now < 600; ++world.now) {
     world.tick();
     for (const int b : world.ahead.promoted) promoted[b] = world.now;
-    snapshots.tick(
-        sync::sim_time(world.now * kMs), sync::sim_time(world.now * kMs), world.source, [](contact_frame_t&) {},
-        [&](world_state_t& m) {
-          stamp(m, world.now, seq);
-          ++pages;
-          if (m.group == world_state_t::PROMOTED)
-            for (const body_state_t& b : m.bodies) {
-              promoted_late += m.header.sim_time_ns != promoted.at(b.body) * kMs;
-              promoted.erase(b.body);
-            }
-          wire.emplace(
-              world.now * kMs + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(jitter_ns + 1)),
-              m);
-        });
-    for (; !wire.empty() && wire.begin()->first <= world.now * kMs; wire.erase(wire.begin()))
+    const auto tell = [&] {
+      const std::int64_t pace = world.now + stood_ms;
+      snapshots.tick(
+          sync::sim_time(world.now * kMs), sync::sim_time(pace * kMs), world.source, [](contact_frame_t&) {},
+          [&](world_state_t& m) {
+            stamp(m, world.now, seq);
+            m.header.publish_time_ns = (pace + 1'000) * kMs + seq;
+            m.clock.host_ns = (pace + 1'000) * kMs;
+            ++pages;
+            if (m.group == world_state_t::PROMOTED)
+              for (const body_state_t& b : m.bodies) {
+                promoted_late += !promoted.contains(b.body) || m.header.sim_time_ns != promoted.at(b.body) * kMs;
+                promoted.erase(b.body);
+              }
+            wire.emplace(
+                pace * kMs + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(jitter_ns + 1)), m);
+          });
+    };
+    tell();
+    for (; world.now == 300 && stood_ms < 100; tell()) ++stood_ms;
+    for (; !wire.empty() && wire.begin()->first <= (world.now + stood_ms) * kMs; wire.erase(wire.begin()))
       history.push(wire.begin()->second, sync::host_time(wire.begin()->first + 1'000 * kMs));
     // A picture of 40 ms ago, whose pages have all come; and one of now.
     if (world.now < 120) continue;
@@ -179,12 +188,13 @@ TEST_CASE(
   }
   INFO(bodies << " bodies, " << pages << " pages, jitter " << jitter_ns << " ns: " << worst_m << " m, of now "
               << worst_behind_m << " m");
-  // On cubics pictures are exact up to the single precision of velocities, 1e-6 m/s of 30 m/s over a step of 17
-  // ms; of 400 bodies the promoted ones of a tick go out with it, each from the instant that is told of it.
-  CHECK(worst_m < 1e-6);
+  // On cubics pictures are exact up to the single precision of velocities; but who joins those ahead is told a
+  // tick after its step has begun, with the velocity of its beginning, 1 ms * 87 m/s^2 off: that is a h^2 / 2 at
+  // the sample and 4/27 * 16 ms * a h between (the most of Hermite's tangent polynomial).
+  CHECK(worst_m < 2.5e-4);
   CHECK(promoted_late == 0);
   CHECK(promoted.empty());
-  CHECK(pages < 1200 + 60);
+  CHECK(pages < 1400 + 60);
 }
 
 TEST_CASE("A late visual step holds its bodies at rest, and they go on from there") {
@@ -192,8 +202,11 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
   const int body = 0;
-  Ahead ahead{
-      .bodies = {&body, 1}, .motions = foreseen, .contacts = [](auto& out) { out.clear(); }, .promoted = {}};
+  Ahead ahead{.bodies = {&body, 1},
+              .motions = foreseen,
+              .waiting = {},
+              .contacts = [](auto& out) { out.clear(); },
+              .promoted = {}};
   const StateSource source{now, [](auto& out) { out.clear(); }, &ahead};
   std::int64_t seq = 0, ms = 0;
   const auto tick = [&](double x, double v, double x_ahead) {
@@ -211,17 +224,18 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
   for (int i = 0; i < 17; ++i) {
     ahead.fresh = ms == 0;
     ahead.time = sync::sim_time(17 * kMs);
-    tick(1e-3 * i, 1, 0.017);
+    tick(0, 1, 0.017);
   }
   // The step that should begin at 17 ms is not ready before 30.
   ahead.fresh = false;
   ahead.held = true;
   while (ms < 30) {
-    tick(0.017, 0, 0);
+    tick(0.017, 1, 0);  // as it was when it came to stand
     CHECK(x(ms - 1) == Approx(0.017));
     CHECK(x(ms + 20) == Approx(0.017));
   }
   ahead.held = false;
+  ahead.begins = sync::sim_time(30 * kMs);
   ahead.time = sync::sim_time(47 * kMs);
   for (int i = 0; i < 17; ++i) {
     ahead.fresh = i == 0;
