@@ -96,7 +96,7 @@ impulse::Law law_of(const Settings& s) {
   if (behaviour_model(s.solver).finite_forces)
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
                    .damping_N_s_m = s.penalty_damping_Ns_m,
-                   .thickness_m = s.contact_tolerance_m,
+                   .thickness_m = s.contact_tolerance_m - law.shell_m,
                    .is_explicit = s.solver == "penalty_explicit"};
   return law;
 }

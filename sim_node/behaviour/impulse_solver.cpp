@@ -91,6 +91,7 @@ void ImpulseSolver::step(double h) {
 void ImpulseSolver::set_gravity(const Eigen::Vector3d& g) {
   for (const int body : world_->active_bodies())
     if (falls_[index(body)]) world_->set_gravity(body, g);
+  read();
 }
 
 bool ImpulseSolver::set_mass(int body, double mass_kg) {
