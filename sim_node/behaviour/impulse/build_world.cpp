@@ -73,8 +73,8 @@ class Builder {
     out.angular_damping_1_s = b.angular_damping_1_s;
     out.centre_m = b.pose * b.centre_of_mass_m;
     out.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
-    out.step_s = settings_.step_s;
-    out.velocity_m_s = b.velocity_m_s - settings_.step_s / 2 * out.gravity_m_s2;
+    out.step_s = 0;  // the velocity is of now
+    out.velocity_m_s = b.velocity_m_s;
     return out;
   }
   void begin(int body, const JointDef* joint, bool reversed) {

@@ -19,6 +19,7 @@ void World::set_gravity(int body, const Eigen::Vector3d& g) {
   b.velocity_m_s = velocity_for(b, 0);
   if (b.step_s >= 0) b.step_s = 0;
   b.gravity_m_s2 = g;
+  motions_[index(body)] = motion_of(b);
 }
 
 bool World::set_mass(int body, double mass_kg) {

@@ -28,6 +28,7 @@ int add_mesh_body(WorldDef& w, int mesh, double mass, const Eigen::Matrix3d& ine
 
 Settings with(const std::string& detector) {
   Settings s;
+  s.solver = "quick";
   s.detector = detector;
   return s;
 }
