@@ -1,5 +1,5 @@
-// The bodies and joints of a scene, moved by impulses in one world, with contacts that see gaps: nothing of ODE. What
-// Solver does when the setting `solver` is impulse.
+// The bodies and joints of a scene, moved by impulses in one world, with contacts that see gaps: nothing of ODE.
+// What Solver does when the setting `solver` is impulse.
 #pragma once
 
 #include <memory>
