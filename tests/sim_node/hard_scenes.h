@@ -14,19 +14,23 @@ struct HardScene {
   std::string name;
   WorldDef world;
   double seconds = 1;
-  // Bodies that must stay above this height, which is below every floor and wall of the scene; else they went through.
+  // Bodies that must stay above this height, which is below every floor and wall of the scene; else they went
+  // through.
   double floor_m = -0.01;
 };
 
 inline BodyDef& body_of(WorldDef& w, int i) { return w.bodies[static_cast<std::size_t>(i)]; }
 
 inline int add_mesh(WorldDef& w, const Soup& s) {
-  w.meshes.push_back({s.vertices, std::vector<Eigen::Vector3d>(s.vertices.size(), Eigen::Vector3d::UnitZ()), s.indices});
+  w.meshes.push_back(
+      {s.vertices, std::vector<Eigen::Vector3d>(s.vertices.size(), Eigen::Vector3d::UnitZ()), s.indices});
   return static_cast<int>(w.meshes.size()) - 1;
 }
-inline int add_mesh_body(WorldDef& w, int mesh, double mass, double r, const Eigen::Isometry3d& pose, double restitution) {
+inline int add_mesh_body(WorldDef& w, int mesh, double mass, double r, const Eigen::Isometry3d& pose,
+                         double restitution) {
   const int body = add_body(w, "lump", mass, ball_inertia(mass, r), pose);
-  w.shapes[static_cast<std::size_t>(add_shape(w, body, ShapeKind::kMesh, {1, 1, 1}, 0.5, restitution))].mesh = mesh;
+  w.shapes[static_cast<std::size_t>(add_shape(w, body, ShapeKind::kMesh, {1, 1, 1}, 0.5, restitution))].mesh =
+      mesh;
   return body;
 }
 
@@ -38,13 +42,15 @@ inline WorldDef thin_wall(double restitution) {
 }
 
 inline HardScene shot_at_wall(double restitution, bool edge_first) {
-  HardScene s{edge_first ? "boxes 20 m/s on 1 mm wall" : "balls 20 m/s on 1 mm wall", thin_wall(restitution), 0.25, -0.0005};
+  HardScene s{edge_first ? "boxes 20 m/s on 1 mm wall" : "balls 20 m/s on 1 mm wall", thin_wall(restitution), 0.25,
+              -0.0005};
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < 9; ++i) {
     const Eigen::Vector3d place(0.25 * (i % 3 - 1), 0.25 * (i / 3 - 1), 0.3 + 0.037 * i);
-    const Eigen::Isometry3d pose = at(place.x(), place.y(), place.z()) *
-                                   Eigen::AngleAxisd(M_PI * u(random), Eigen::Vector3d(u(random), u(random), u(random)).normalized());
+    const Eigen::Isometry3d pose =
+        at(place.x(), place.y(), place.z()) *
+        Eigen::AngleAxisd(M_PI * u(random), Eigen::Vector3d(u(random), u(random), u(random)).normalized());
     const int body = edge_first ? add_box(s.world, 0.2, {0.06, 0.04, 0.02}, pose, 0.4, restitution)
                                 : add_ball(s.world, 0.1, 0.01 + 0.002 * i, place, 0.4, restitution);
     body_of(s.world, body).velocity_m_s = {0.5 * u(random), 0.5 * u(random), -20};
@@ -126,8 +132,17 @@ inline HardScene chain_and_post() {
 }
 
 inline std::vector<HardScene> hard_scenes() {
-  return {shot_at_wall(0, false), shot_at_wall(0.5, false), shot_at_wall(0, true), shot_at_wall(0.4, true), rods(), lumps(0),
-          lumps(5),               heap(60),                 cradle(0),             cradle(1e-4),            chain_and_post()};
+  return {shot_at_wall(0, false),
+          shot_at_wall(0.5, false),
+          shot_at_wall(0, true),
+          shot_at_wall(0.4, true),
+          rods(),
+          lumps(0),
+          lumps(5),
+          heap(60),
+          cradle(0),
+          cradle(1e-4),
+          chain_and_post()};
 }
 
 }  // namespace tactus::sim::test

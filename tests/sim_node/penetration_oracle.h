@@ -1,7 +1,7 @@
-// How deep shapes are in each other, by another way than the detectors that see gaps: ODE's closed forms for what is
-// round, flat or a box; for cylinders, which ODE measures along the wrong way, a search over all directions for the
-// one along which the shapes overlap least; for meshes all triangles of one against places all over the other: how far
-// the deepest of those that lie inside is from the surface.
+// How deep shapes are in each other, by another way than the detectors that see gaps: ODE's closed forms for what
+// is round, flat or a box; for cylinders, which ODE measures along the wrong way, a search over all directions for
+// the one along which the shapes overlap least; for meshes all triangles of one against places all over the other:
+// how far the deepest of those that lie inside is from the surface.
 #pragma once
 
 #include <memory>
@@ -98,7 +98,8 @@ class PenetrationOracle {
       default: return at + s.size_m.cwiseProduct(d.cwiseAbs()).sum() / 2;
     }
   }
-  // The least overlap over all directions, from i to j; 0: one separates the two, which proves that they do not overlap.
+  // The least overlap over all directions, from i to j; 0: one separates the two, which proves that they do not
+  // overlap.
   double least_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
     const auto overlap = [&](const Vector3d& n) { return reach(i, n) + reach(j, -n); };
     std::vector<Vector3d> starts{guess, poses_[i].linear().col(2), poses_[j].linear().col(2),
@@ -152,7 +153,8 @@ class PenetrationOracle {
   static Vector3d nearest(const Vector3d& p, const Corners& t) {
     // Ericson 2005, Real-Time Collision Detection, section 5.1.5: by the regions of the triangle.
     const Vector3d ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0], bp = p - t[1], cp = p - t[2];
-    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
+                 d6 = ac.dot(cp);
     if (d1 <= 0 && d2 <= 0) return t[0];
     if (d3 >= 0 && d4 <= d3) return t[1];
     if (d6 >= 0 && d5 <= d6) return t[2];
@@ -168,7 +170,8 @@ class PenetrationOracle {
     return best;
   }
 
-  // What of a shape may be inside a mesh: its corners, or places on its edges, in its own frame, with their roundness.
+  // What of a shape may be inside a mesh: its corners, or places on its edges, in its own frame, with their
+  // roundness.
   struct Probe {
     Vector3d place;
     double round_m = 0;
@@ -181,7 +184,9 @@ class PenetrationOracle {
     const ShapeDef& s = world_.shapes[j];
     out.clear();
     const Vector3d h = s.size_m / 2;
-    const auto corner = [&](int i) { return Vector3d(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(), i & 4 ? h.z() : -h.z()); };
+    const auto corner = [&](int i) {
+      return Vector3d(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(), i & 4 ? h.z() : -h.z());
+    };
     switch (s.kind) {
       case ShapeKind::kSphere: out.push_back({{0, 0, 0}, s.size_m.x()}); break;
       case ShapeKind::kCapsule:
@@ -190,7 +195,8 @@ class PenetrationOracle {
       case ShapeKind::kCylinder:
         for (int i = 0; i < 32; ++i)
           for (const double z : {-h.z(), 0.0, h.z()})
-            out.push_back({{s.size_m.x() * std::cos(i * M_PI / 16), s.size_m.x() * std::sin(i * M_PI / 16), z}, 0});
+            out.push_back(
+                {{s.size_m.x() * std::cos(i * M_PI / 16), s.size_m.x() * std::sin(i * M_PI / 16), z}, 0});
         break;
       case ShapeKind::kMesh: {
         const TriangleMesh& m = *shapes_[j].mesh;

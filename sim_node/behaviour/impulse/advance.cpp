@@ -7,7 +7,8 @@ namespace tactus::sim::impulse {
 namespace {
 
 // A step is divided so far that turning takes no surface further than this from the straight way that the contacts
-// know, m; design: well inside the thinnest walls, from where surfaces are put apart to the side that they came from.
+// know, m; design: well inside the thinnest walls, from where surfaces are put apart to the side that they came
+// from.
 constexpr double kBend_m = 1e-4;
 // An overlap that deep may have its normal wrong: the step is halved instead, m.
 constexpr double kDeep_m = 3e-4;
@@ -15,8 +16,8 @@ constexpr double kDeep_m = 3e-4;
 constexpr double kOverlap_m = 5e-6, kMostOverlap_m = 1e-5;
 // By so much a body may come further than its speed said, m; design: gravity over 4 ms; below what detectors add.
 constexpr double kFurther_m = 1e-4;
-// Contacts are not sought further ahead than this, m: what was planar from afar may be seen edge on when it comes; design:
-// a step of 1 ms at 20 m/s.
+// Contacts are not sought further ahead than this, m: what was planar from afar may be seen edge on when it comes;
+// design: a step of 1 ms at 20 m/s.
 constexpr double kFarthest_m = 0.0201;
 constexpr int kMostPieces = 64, kMostRounds = 8, kMostSearches = 3;
 
@@ -78,7 +79,8 @@ bool Advance::came_further(const World& world, double dt) {
     BodyMotion& before = assumed_[i];
     const Eigen::Vector3d moved = motions[i].centre_m - before.centre_m;
     const double angle = turned_rad(before, motions[i]), lever = extents_[i].bound_m;
-    if (moved.norm() + lever * angle <= (before.velocity_m_s.norm() + lever * before.spin_rad_s.norm()) * dt + kFurther_m)
+    if (moved.norm() + lever * angle <=
+        (before.velocity_m_s.norm() + lever * before.spin_rad_s.norm()) * dt + kFurther_m)
       continue;
     before.velocity_m_s = moved / dt;
     const Eigen::AngleAxisd turn(motions[i].orientation * before.orientation.conjugate());
@@ -127,7 +129,8 @@ bool Advance::attempt(World& world, ContactSource& source, double& dt, double fi
 // The deepest of the pairs that overlap by more than the limit, and by more than before; 0: none does.
 double Advance::worst(std::span<const Manifold> before, double limit) const {
   double deepest = 0;
-  for_each_deeper(after_, before, limit, [&](const Manifold&, double depth) { deepest = std::max(deepest, depth); });
+  for_each_deeper(after_, before, limit,
+                  [&](const Manifold&, double depth) { deepest = std::max(deepest, depth); });
   return deepest;
 }
 
@@ -144,8 +147,8 @@ void Advance::clear_overlaps(World& world, ContactSource& source, double next) {
   }
 }
 
-// The last resort: what is deeper in something than at the start of the step stays there, at rest. What it was in has
-// moved there meanwhile, or stays too; in the end all are where nothing overlapped.
+// The last resort: what is deeper in something than at the start of the step stays there, at rest. What it was in
+// has moved there meanwhile, or stays too; in the end all are where nothing overlapped.
 void Advance::hold_back(World& world, ContactSource& source, double next, std::span<const Manifold> before) {
   held_.clear();
   for (bool changed = true; changed;) {
@@ -167,7 +170,8 @@ void Advance::hold_back(World& world, ContactSource& source, double next, std::s
 }
 
 // Forces are means over the whole step, instants are counted from its start.
-void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun, double dt, double h) {
+void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun, double dt,
+                     double h) {
   merged_.clear();
   auto old = solved.begin();
   for (const Manifold& m : piece) {
@@ -204,13 +208,14 @@ double Advance::horizon_s(const World& world, double h) const {
   double fastest = 0;
   for (const int body : world.active_bodies()) {
     const BodyMotion& m = world.motions()[static_cast<std::size_t>(body)];
-    fastest = std::max(fastest, m.velocity_m_s.norm() + extents_[static_cast<std::size_t>(body)].bend_m * m.spin_rad_s.norm());
+    fastest = std::max(
+        fastest, m.velocity_m_s.norm() + extents_[static_cast<std::size_t>(body)].bend_m * m.spin_rad_s.norm());
   }
   return fastest * h > kFarthest_m ? std::max(h / kMostPieces, kFarthest_m / fastest) : h;
 }
 
 const StepReport& Advance::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
-                                     std::vector<Manifold>& solved) {
+                                std::vector<Manifold>& solved) {
   report_ = {};
   solved.clear();
   const double finest = h / kMostPieces;

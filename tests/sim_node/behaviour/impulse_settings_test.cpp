@@ -141,7 +141,8 @@ TEST_CASE("Solved by impulses, a ball joint's dry friction brakes every turning 
   const double inertia = 0.01;
   add_body(w, "knob", 1, inertia * Eigen::Matrix3d::Identity(), at(0, 0, 0));
   add_joint(w, JointKind::kBall, -1, 0, {0, 0, 0}, {1, 0, 0}).axes[0].friction = 0.02;
-  const Vector3d way = GENERATE(Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(1, -2, 0.5), Vector3d(1, 1, 1)).normalized();
+  const Vector3d way =
+      GENERATE(Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(1, -2, 0.5), Vector3d(1, 1, 1)).normalized();
   Solver s(w, by_impulse());
   REQUIRE(s.set_spin(0, 4 * way));
   run(s, 1);

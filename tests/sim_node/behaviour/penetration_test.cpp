@@ -55,7 +55,8 @@ TEST_CASE("The oracle of penetration knows how deep things are in each other") {
   const auto only = [&](std::initializer_list<int> there) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const bool is = std::find(there.begin(), there.end(), static_cast<int>(i)) != there.end();
-      bodies[i].position_m = w.bodies[i].pose.translation() + Vector3d(0, 0, is || w.bodies[i].is_static ? 0 : 100.0 * static_cast<double>(i + 1));
+      bodies[i].position_m = w.bodies[i].pose.translation() +
+                             Vector3d(0, 0, is || w.bodies[i].is_static ? 0 : 100.0 * static_cast<double>(i + 1));
       bodies[i].orientation = Eigen::Quaterniond(w.bodies[i].pose.linear());
     }
     return PenetrationOracle(w).deepest(bodies).depth_m;

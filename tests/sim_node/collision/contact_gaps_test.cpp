@@ -61,7 +61,8 @@ TEST_CASE("A bounce within one step begins, hits and ends at its instant inside 
   REQUIRE(t.of_kind(contact_event_t::HIT).size() == 1);
   REQUIRE(t.of_kind(contact_event_t::END).size() == 1);
   // Surfaces meet 10 um apart, which at this speed is 3 us early.
-  for (const contact_event_t& event : t.events) CHECK(event.time_ns * 1e-9 == Approx(exact_s).margin(1.1e-5 / speed + 1e-7));
+  for (const contact_event_t& event : t.events)
+    CHECK(event.time_ns * 1e-9 == Approx(exact_s).margin(1.1e-5 / speed + 1e-7));
   const contact_event_t hit = t.of_kind(contact_event_t::HIT)[0];
   CHECK(hit.approach_speed_m_s == Approx(speed).epsilon(1e-4));
   CHECK(hit.effective_mass_kg == Approx(0.2).epsilon(1e-4));
@@ -149,7 +150,8 @@ TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart i
   SECTION("begin, hit and end lie where the solver says, in steps of any length") {
     Manifold met = m;
     met.impact.blows = 2;
-    met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3, met.impact.effective_mass_kg = 0.1;
+    met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3,
+    met.impact.effective_mass_kg = 0.1;
     met.points[0].normal_force_N = 10;
     update(17, 0.016, 0.02, &met);
     REQUIRE(events.size() == 3);
