@@ -31,9 +31,9 @@ class Mechanics {
   // The world at its first instant: appends the events of what touches then. Once, before the first tick.
   virtual void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
 
-  // Act during the next tick, N at a point of the world m, N m. What never moves ignores it.
+  // Act during the next tick: N at a point of the world, m; N and N m at the centre of mass. What never moves ignores it.
   virtual void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) = 0;
-  virtual void add_torque(int body, const Eigen::Vector3d& torque_N_m) = 0;
+  virtual void add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) = 0;
 
   // One tick, from `now` on; appends the events that it reached, in any order. tools: as they are now.
   // Deterministic, but for when what is computed ahead is there. Realtime-safe once the lists have grown.

@@ -105,8 +105,7 @@ void Simulation::look() {
 
 void Simulation::apply_wrenches() {
   for (Wrench& w : wrenches_) {
-    mechanics_->add_force(w.body, w.force_N, mechanics_->motions()[static_cast<std::size_t>(w.body)].centre_m);
-    mechanics_->add_torque(w.body, w.torque_N_m);
+    mechanics_->add_wrench(w.body, w.force_N, w.torque_N_m);
     --w.steps;
   }
   std::erase_if(wrenches_, [](const Wrench& w) { return w.steps <= 0; });

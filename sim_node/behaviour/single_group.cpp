@@ -10,10 +10,14 @@ SingleGroup::SingleGroup(const WorldDef& world, const Settings& settings, Ids& i
       tracker_(surface_traits(world, settings), settings, ids),
       motions_(solver_.bodies().begin(), solver_.bodies().end()) {}
 
-void SingleGroup::look(sync::SimTime now, std::vector<contact_event_t>& events) {
-  // Tools stand where the caller has put them.
+// Tools stand where the caller has put them.
+void SingleGroup::read() {
   for (std::size_t i = 0; i < motions_.size(); ++i)
     if (solver_.bodies()[i].moves()) motions_[i] = solver_.bodies()[i];
+}
+
+void SingleGroup::look(sync::SimTime now, std::vector<contact_event_t>& events) {
+  read();
   tracker_.update(now, step_, motions_, solver_.contacts(), solver_.solved(), events);
 }
 

@@ -17,7 +17,10 @@ class SingleGroup : public Mechanics {
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) override {
     solver_.add_force(body, force_N, point_m);
   }
-  void add_torque(int body, const Eigen::Vector3d& torque_N_m) override { solver_.add_torque(body, torque_N_m); }
+  void add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) override {
+    solver_.add_force(body, force_N, solver_.bodies()[static_cast<std::size_t>(body)].centre_m);
+    solver_.add_torque(body, torque_N_m);
+  }
   void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   std::span<BodyMotion> motions() override { return motions_; }
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) override {
@@ -26,9 +29,15 @@ class SingleGroup : public Mechanics {
   void contacts(std::vector<contact_t>& out) override;
 
   bool apply(const impulse::SceneChange& change) override { return solver_.apply(change); }
-  bool set_pose(int body, const Eigen::Isometry3d& pose) override { return solver_.set_pose(body, pose); }
-  bool set_velocity(int body, const Eigen::Vector3d& v) override { return solver_.set_velocity(body, v); }
-  bool set_spin(int body, const Eigen::Vector3d& spin) override { return solver_.set_spin(body, spin); }
+  bool set_pose(int body, const Eigen::Isometry3d& pose) override {
+    return placed(solver_.set_pose(body, pose));
+  }
+  bool set_velocity(int body, const Eigen::Vector3d& v) override {
+    return placed(solver_.set_velocity(body, v));
+  }
+  bool set_spin(int body, const Eigen::Vector3d& spin) override {
+    return placed(solver_.set_spin(body, spin));
+  }
 
   void archive(StateArchive& a) override;
   void rename(std::int64_t) override { tracker_.rename(); }
@@ -36,6 +45,12 @@ class SingleGroup : public Mechanics {
   const Solver& solver() const { return solver_; }
 
  private:
+  // What has been set is so at once.
+  bool placed(bool done) {
+    read();
+    return done;
+  }
+  void read();
   void look(sync::SimTime now, std::vector<contact_event_t>& events);
 
   sync::Nanoseconds step_;

@@ -41,7 +41,8 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
   if (boxes_.empty()) return;
   const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
   std::nth_element(sizes_.begin(), middle, sizes_.end());
-  cell_m_ = std::max(2 * *middle, kSmallestCell_m);
+  // design: most boxes lie in one or two cells, a query sees few besides
+  cell_m_ = std::max(4 * *middle, kSmallestCell_m);
   for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
     const Range r = range_of(boxes_[static_cast<std::size_t>(i)]);
     if (r.cells() > kMostCells)

@@ -60,11 +60,11 @@ void DualGroups::act(const Load& load) {
 }
 
 void DualGroups::add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
-  act({body, force_N, point_m, Eigen::Vector3d::Zero()});
+  act({body, force_N, point_m, Eigen::Vector3d::Zero(), false});
 }
 
-void DualGroups::add_torque(int body, const Eigen::Vector3d& torque_N_m) {
-  act({body, Eigen::Vector3d::Zero(), motions_[index(body)].centre_m, torque_N_m});
+void DualGroups::add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) {
+  act({body, force_N, Eigen::Vector3d::Zero(), torque_N_m, true});
 }
 
 void DualGroups::gather_units(std::span<const int> bodies) {
@@ -128,7 +128,8 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
   if (stale_) find_contacts(settings_.step_s);
   stale_ = false;
   for (const Load& load : loads_) {
-    world_->add_force(load.body, load.force_N, load.point_m);
+    const Eigen::Vector3d centre = world_->motions()[index(load.body)].centre_m;
+    world_->add_force(load.body, load.force_N, load.at_centre ? centre : load.point_m);
     world_->add_torque(load.body, load.torque_N_m);
   }
   loads_.clear();

@@ -29,7 +29,7 @@ class DualGroups : public Mechanics {
   void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
   // Bodies that are acted on are in the haptic group from then on.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) override;
-  void add_torque(int body, const Eigen::Vector3d& torque_N_m) override;
+  void add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) override;
   // Never waits for the visual group.
   void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) override;
 
@@ -66,6 +66,7 @@ class DualGroups : public Mechanics {
   struct Load {
     int body;
     Eigen::Vector3d force_N, point_m, torque_N_m;
+    bool at_centre;  // point_m is not
   };
   void act(const Load& load);
   // To be set when the body is in the haptic group.

@@ -37,7 +37,7 @@ void DualGroups::archive(StateArchive& a) {
   a.list(loads_, kMostLoads, [&](Load& load) {
     a.index(load.body, bodies);
     a.require(load.body >= 0, "the state holds a push of nothing");
-    a(load.force_N), a(load.point_m), a(load.torque_N_m);
+    a(load.force_N), a(load.point_m), a(load.torque_N_m), a(load.at_centre);
   });
   a.list(changes_, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
   a.list(wishes_, kMostLoads, [&](Wish& w) {
