@@ -1,54 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sim_node/dual/dual_groups.h"
-#include "sim_node/dual/group_bodies.h"
-#include "tests/sim_node/small_worlds.h"
+#include "tests/sim_node/dual/dual_bench.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
-
-namespace {
-
-Settings dual_settings() {
-  Settings s;
-  s.groups = "dual";
-  s.visual_thread = "none";
-  return s;
-}
-
-// Both groups, one tick at a time, with one tool.
-struct Dual {
-  Ids ids{7, 0, 2};
-  DualGroups groups;
-  std::vector<GroupTool> tools;
-  std::vector<contact_event_t> events;
-  std::int64_t ticks = 0;
-
-  explicit Dual(const WorldDef& world, const Settings& settings = dual_settings(),
-                const Vector3d& tool = {0, 0, 50})
-      : groups(world, settings, ids), tools{{tool, Vector3d::Zero(), 0.01}} {
-    groups.start(tools, events);
-  }
-  sync::SimTime now() const { return sync::sim_time(ticks * 1'000'000); }
-  void tick() {
-    groups.tick(now(), tools, events);
-    ++ticks;
-  }
-  void run(int n) {
-    while (n-- > 0) tick();
-  }
-  const BodyMotion& body(int i) { return groups.motions()[static_cast<std::size_t>(i)]; }
-  int count(std::int8_t kind) const {
-    int n = 0;
-    for (const contact_event_t& e : events) n += e.kind == kind;
-    return n;
-  }
-};
-
-}  // namespace
 
 TEST_CASE("What no tool can reach falls in visual steps, on the parabola") {
   WorldDef w = empty_world();

@@ -1,0 +1,155 @@
+// Both groups at work, against a tool that does its worst and a thread that is never given time.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "tests/sim_node/dual/dual_bench.h"
+
+using namespace tactus;
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kBall_m = 0.03;
+
+// Where a body of the visual group is at an instant within its step: on the chords between its sub-steps.
+Vector3d on_its_way(const VisualStep& step, std::size_t unit, sync::Nanoseconds passed) {
+  const std::size_t k = step.time_before(passed);
+  const Vector3d from = step.states[k][unit].body.centre_m;
+  if (k + 1 >= step.times.size()) return from;
+  const Vector3d to = step.states[k + 1][unit].body.centre_m;
+  const double share =
+      sync::to_seconds(passed - step.times[k]) / sync::to_seconds(step.times[k + 1] - step.times[k]);
+  return from + share * (to - from);
+}
+
+// A tray of balls, thrown about.
+WorldDef tray(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> speed(-0.7, 0.7);
+  WorldDef w = empty_world();
+  add_floor(w, 0.3, 0.6);
+  for (const auto& [x, y, sx, sy] : {std::tuple{0.35, 0.0, 0.05, 0.8}, std::tuple{-0.35, 0.0, 0.05, 0.8},
+                                     std::tuple{0.0, 0.35, 0.8, 0.05}, std::tuple{0.0, -0.35, 0.8, 0.05}}) {
+    const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), at(x, y, 0.2));
+    add_shape(w, wall, ShapeKind::kBox, {sx, sy, 0.4}, 0.3, 0.6);
+  }
+  for (int i = 0; i < 16; ++i) {
+    const int ball =
+        add_ball(w, 0.1, kBall_m, {0.15 * (i % 4) - 0.22, 0.15 * (i / 4) - 0.22, 0.05 + 0.01 * i}, 0.3, 0.6);
+    w.bodies[static_cast<std::size_t>(ball)].velocity_m_s = {speed(random), speed(random), 0};
+  }
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("Whatever a hand does, bodies of one group never touch those of the other") {
+  const double acceleration = GENERATE(10.0, 100.0, 300.0);
+  const unsigned seed = GENERATE(1u, 2u);
+  CAPTURE(acceleration, seed);
+  Dual d(tray(seed));
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Vector3d direction(1, 0, 0);
+  double nearest_m = 1;
+  int moved_over = 0, pushed = 0;
+  for (int i = 0; i < 1500; ++i) {
+    GroupTool& tool = d.tools[0];
+    if (i == 0) tool = {{0, 0, 0.05}, Vector3d::Zero(), 0.01};
+    // Bang-bang, with its speed bounded, in the tray: at one ball after the other.
+    if (i % 47 == 0) {
+      const Vector3d at_ball = d.body(5 + static_cast<int>(random() % 16)).centre_m - tool.centre_m;
+      direction = (at_ball.normalized() + 0.3 * Vector3d(normal(random), normal(random), normal(random))).normalized();
+    }
+    tool.velocity_m_s += 0.001 * acceleration * direction;
+    if (tool.velocity_m_s.norm() > 1) tool.velocity_m_s.normalize();
+    tool.centre_m += 0.001 * tool.velocity_m_s;
+    for (int k = 0; k < 3; ++k) {
+      const double least = k == 2 ? 0.02 : -0.3, most = k == 2 ? 0.05 : 0.3;
+      if (tool.centre_m[k] < least || tool.centre_m[k] > most) tool.velocity_m_s[k] = 0;
+      tool.centre_m[k] = std::clamp(tool.centre_m[k], least, most);
+    }
+    // It pushes what it meets, as a hand of 2 kN/m would.
+    for (const int body : d.groups.haptic()) {
+      const Vector3d apart = d.body(body).centre_m - tool.centre_m;
+      const double depth = kBall_m + 0.01 - apart.norm();
+      if (depth <= 0) continue;
+      d.groups.add_force(body, std::min(20.0, 2000 * depth) * apart.normalized(), d.body(body).centre_m);
+      ++pushed;
+    }
+    d.tick();
+    const VisualStep& step = *d.groups.step();
+    const sync::Nanoseconds passed = d.now() - (d.groups.step_ends() - step.task.length);
+    for (std::size_t u = 0; u < step.units.size(); ++u) {
+      const int body = step.bodies[u];
+      if (d.groups.is_haptic(body)) continue;
+      const Vector3d place = on_its_way(step, u, passed);
+      for (const int other : d.groups.haptic())
+        nearest_m = std::min(nearest_m, (d.body(other).centre_m - place).norm() - 2 * kBall_m);
+      // Nor does the tool reach what it is not in a group with.
+      nearest_m = std::min(nearest_m, (tool.centre_m - place).norm() - kBall_m - tool.radius_m);
+    }
+    moved_over += d.groups.haptic().empty() ? 0 : 1;
+  }
+  CHECK(nearest_m > 0);
+  CHECK(pushed > 10);
+  CHECK(moved_over > 100);
+  // Nothing left the tray, and no ball sank into the floor.
+  for (const BodyMotion& m : d.groups.motions())
+    if (m.moves()) CHECK((m.centre_m.head<2>().cwiseAbs().maxCoeff() < 0.36 && m.centre_m.z() > kBall_m - 1e-5));
+}
+
+TEST_CASE("A visual step that is late holds its bodies, is counted, and delays no tick") {
+  WorldDef w = empty_world();
+  const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
+  for (int i = 0; i < 60; ++i) add_ball(w, 1, 0.05, {1.0 + 0.2 * (i % 8), 0.2 * (i / 8), 10});
+  Settings settings = dual_settings();
+  settings.visual_thread = "own";
+  Dual d(w, settings);
+  // Ticks as fast as they can be: the thread is far behind.
+  std::int64_t held = 0;
+  double last = 10;
+  for (int i = 0; i < 3000; ++i) {
+    d.tick();
+    const double z = d.body(ball).centre_m.z();
+    if (d.groups.held_ticks() > held && i > 0 && d.groups.held_ticks() > 1) CHECK(z <= last);
+    held = d.groups.held_ticks();
+    last = z;
+  }
+  CHECK(d.groups.late_steps() > 0);
+  CHECK(d.groups.held_ticks() >= d.groups.late_steps());
+  // It fell for as long as it was not held, on its parabola.
+  const double fell_s =
+      sync::to_seconds(d.groups.step()->begins.time_since_epoch() + d.groups.step()->task.length);
+  CHECK(d.groups.step()->states.back()[0].body.centre_m.z() == Approx(10 - kG / 2 * fell_s * fell_s).margin(1e-9));
+}
+
+TEST_CASE("A push brings a body into the haptic group, and what is set of it holds") {
+  WorldDef w = empty_world(0);
+  const int ball = add_ball(w, 0.2, 0.05, {0, 0, 1});
+  Dual d(w);
+  d.run(20);
+  CHECK_FALSE(d.groups.is_haptic(ball));
+  CHECK(d.groups.set_pose(ball, at(0.5, 0, 2)));
+  CHECK(d.groups.set_velocity(ball, {0, 1, 0}));
+  d.run(2);
+  CHECK(d.groups.is_haptic(ball));
+  CHECK(d.body(ball).centre_m.x() == Approx(0.5));
+  CHECK(d.body(ball).centre_m.y() == Approx(0.001).margin(0.0011));
+  for (int i = 0; i < 25; ++i) {
+    d.groups.add_wrench(ball, {1, 0, 0}, {0.001, 0, 0});
+    d.tick();
+  }
+  CHECK(d.body(ball).velocity_m_s.x() == Approx(0.025 / 0.2).epsilon(1e-9));
+  d.run(120);
+  CHECK_FALSE(d.groups.is_haptic(ball));
+  CHECK(d.body(ball).velocity_m_s.y() == Approx(1));
+  // Gravity holds for both groups, wherever the body is.
+  CHECK(d.groups.apply({.kind = impulse::SceneChange::kGravity, .values = {0, 0, -1}}));
+  const double before = d.groups.step()->end[static_cast<std::size_t>(ball)].velocity_m_s.z();
+  d.run(200);
+  CHECK(d.groups.step()->end[static_cast<std::size_t>(ball)].velocity_m_s.z() ==
+        Approx(before - 0.2).margin(0.04));
+}
