@@ -59,6 +59,20 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   for (const auto& [channel, counts] : summary["bus"].items()) check_keys(counts, {"messages", "bytes", "gaps"});
 }
 
+TEST_CASE("In two groups every sense presents what it owes, and the world keeps its rate") {
+  RunScript run;
+  run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
+  const int status = run.finish(kLongest_s);
+  INFO(run.processes.said("run"));
+  CHECK(status == 0);
+  const json summary = json::parse(contents(run.out() / "summary.json"));
+  for (const char* sense : {"audio", "haptic", "thermal", "visual"}) {
+    INFO(sense);
+    CHECK(summary["contacts"]["by_modality"][sense]["presented"].get<int>() > 0);
+    CHECK(summary["contacts"]["by_modality"][sense]["lost"].get<int>() == 0);
+  }
+}
+
 TEST_CASE("Without audio_node the others run as before, in the default scene") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
