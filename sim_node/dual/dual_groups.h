@@ -132,7 +132,7 @@ class DualGroups : public Mechanics {
   std::vector<contact_event_t> unheard_;
   // To tell of what is computed ahead.
   Ahead ahead_now_;
-  std::vector<int> ahead_bodies_, ahead_waiting_, told_promoted_;
+  std::vector<int> ahead_bodies_, ahead_waiting_;
   std::vector<BodyMotion> ahead_motions_;
 };
 

@@ -1,5 +1,4 @@
-// The state of both groups as bytes. Of the visual step that is going on they hold what it was computed from: it
-// is computed again, to the bit the same.
+// The state of both groups as bytes, with the visual step that is going on and the one that comes next.
 #include <algorithm>
 
 #include "sim_node/dual/dual_groups.h"

@@ -256,6 +256,9 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   out.live.resize(index(settings_.visual_substeps) + 1);
   sub_steps(tracker_, now_, task.length, out, true);
   for (const LiveContact& c : resting_contacts_) note_touching(c.manifold.body_a, c.manifold.body_b);
+  // They are told one after the other as their time comes; a sub-step finds them by shape.
+  std::stable_sort(out.events.begin(), out.events.end(),
+                   [](const contact_event_t& x, const contact_event_t& y) { return x.time_ns < y.time_ns; });
   now_ += task.length;
   note_sub_step(index(settings_.visual_substeps), task.length, out);
   note_ways(out);

@@ -60,6 +60,22 @@ TEST_CASE("A bounce within one visual step begins, hits and ends, at its instant
   CHECK(d.events[1].approach_speed_m_s == Approx(kG * fall).epsilon(0.005));
 }
 
+TEST_CASE("What happens in a visual step is told in the tick in which it happens") {
+  WorldDef w = empty_world();
+  add_floor(w, 0.5, 0.8);
+  for (int i = 0; i < 8; ++i) add_ball(w, 0.2, 0.05, {0.3 * i, 0, 0.5 - 0.004 * i}, 0.5, 0.8);
+  Dual d(w);
+  std::size_t told = 0;
+  for (int i = 0; i < 1500; ++i) {
+    d.tick();
+    for (; told < d.events.size(); ++told) {
+      CHECK(d.events[told].time_ns <= d.ticks * 1'000'000);
+      CHECK(d.events[told].time_ns > (d.ticks - 1) * 1'000'000);
+    }
+  }
+  CHECK(told > 30);
+}
+
 TEST_CASE("Groups of bodies at rest change hands without a begin or an end") {
   WorldDef w = empty_world();
   add_floor(w);
