@@ -141,6 +141,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
   }
   loads_.clear();
   advance_.step(*world_, source_, settings_.step_s, contacts_, solved_);
+  source_.frames().place_impacts(solved_);
   read_motions(active);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);
   tell_due(now + h, events);

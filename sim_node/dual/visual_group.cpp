@@ -186,6 +186,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     while (noted && wake_struck(h)) find(h);
     if (noted) note_sub_step(index(k), at(k), out);
     advance_.step(*world_, source_, h, contacts_, solved_);
+    frames_.place_impacts(solved_);
     found_ = noted;
     found_for_s_ = h;
     read_motions();
