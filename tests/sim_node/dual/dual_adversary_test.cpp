@@ -157,7 +157,8 @@ TEST_CASE("A push brings a body into the haptic group, and what is set of it hol
 TEST_CASE("The visual group in a thread of its own gives and takes bodies in contact, and is told of changes") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
-  for (int i = 0; i < 24; ++i) add_ball(w, 0.2, kBall_m, {0.1 * (i % 6), 0.1 * (i / 6), kBall_m + 0.02 * (i % 3)}, 0.4, 0.5);
+  for (int i = 0; i < 24; ++i)
+    add_ball(w, 0.2, kBall_m, {0.1 * (i % 6), 0.1 * (i / 6), kBall_m + 0.02 * (i % 3)}, 0.4, 0.5);
   Settings settings = dual_settings();
   settings.visual_thread = "own";
   Dual d(w, settings);
