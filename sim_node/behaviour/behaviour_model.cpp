@@ -14,6 +14,7 @@ constexpr std::array<BehaviourModel, 5> kModels{{
     {.name = "impulse",
      .what = "impulses: collisions pair by pair, then contact",
      .impulses = true,
+     .needs_gaps = true,
      .needs_trees = true},
     {.name = "penalty",
      .what = "spring and damper in a shell, of the end of the step",
@@ -74,7 +75,7 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
   if (!model.needs_gaps || detector.separation) return "";
   return "sim_node: the solver \"" + std::string(model.name) +
          "\" acts before surfaces meet, which the detector \"" + std::string(detector.name) +
-         "\" does not see; choose a detector that sees gaps, as \"layers\" does, or the solver \"impulse\"";
+         "\" does not see; choose a detector that sees gaps, as \"gaps\" does, or the solver \"quick\" or \"step\"";
 }
 
 std::string refusal(const WorldDef& world, const Settings& settings) {

@@ -23,7 +23,8 @@ struct Impact {
   double effective_mass_kg = 0;    // that it felt, joints included
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
-  // The places that met, in the frames of the bodies.
+  // The places that met, in the frames of the bodies as they lay when the step began (its last part, if it was
+  // divided). Of an impulse world: from their centres of mass, turned as since its start (impulse/body_frames.h).
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;
 };

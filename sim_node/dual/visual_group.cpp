@@ -188,6 +188,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     // Steps are of one of two lengths that differ by a tick: the next one may be as long as the one before.
     const double next_s = std::max(h, before_s_);
     advance_.step(*world_, source_, h, contacts_, solved_, next_s);
+    frames_.place_impacts(solved_);
     found_ = noted;
     found_for_s_ = next_s;
     before_s_ = h;
