@@ -80,9 +80,11 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
 
 std::string refusal(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
-  if (settings.groups == "dual" && model.name != "impulse")
+  if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
     return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
-           std::string(model.name) + "\"; choose solver = impulse, or groups = single";
+           std::string(model.name) +
+           "\"; choose solver = impulse, or penalty_explicit for springs of the start of the step near the tools, or "
+           "groups = single";
   if (model.needs_gaps) {
     const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;

@@ -75,7 +75,7 @@ TEST_CASE("Two groups refuse what one group does: no pairing falls back on anoth
   s.groups = "dual";
   s.visual_thread = "none";
   CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not see"));
-  s.solver = GENERATE("quick", "step");
+  s.solver = GENERATE("quick", "step", "penalty");
   CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.solver) && Contains("groups = single"));
   s = settings("impulse", "gaps");
   s.groups = "dual";
