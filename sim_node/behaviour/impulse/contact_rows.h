@@ -48,6 +48,7 @@ struct ContactPoint {
   int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
   int visit = -1;                                     // the one of the sweep at which it was last solved
   Press press = Press::kNone;
+  double lasts_s = 0;  // what its impulse is the force of: from the middle of the step before to that of this one
   double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
   double pressed_N_s = 0;                        // kGiven
   double shell_m = -1;                           // from which gap on it presses; negative: not known yet
