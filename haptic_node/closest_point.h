@@ -2,8 +2,10 @@
 // and Salisbury 1995, section 4; Ruspini, Kolarov and Khatib 1997): minimise |x - goal|^2 so that normal_i . x >=
 // offset_i.
 //
-// In three dimensions at most three half spaces bind, so all sets of up to three are tried until one satisfies the
-// Karush-Kuhn-Tucker conditions: exact, of bounded time, and without a state that could go wrong.
+// In three dimensions at most three half spaces bind (the problem is of LP type: Sharir and Welzl 1992). So the one
+// that is violated most is exchanged against those that bind, where all sets of up to three that hold it are tried
+// until one satisfies the Karush-Kuhn-Tucker conditions. Each exchange takes the point farther from the goal, so none
+// comes back: exact, linear in the half spaces per exchange, a few exchanges, and no state from tick to tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +19,7 @@ struct HalfSpace {
   double offset = 0;       // m, along the normal from the origin
 };
 
-inline constexpr std::size_t kMaxHalfSpaces = 12;
+inline constexpr std::size_t kMaxHalfSpaces = 64;
 
 struct ClosestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();

@@ -1,5 +1,4 @@
-// The quality ladder of touch: the solver for the proxy takes time that grows with the cube of the planes, so
-// fewer of them are considered when a tick takes more than half of its time. Pure.
+// The quality ladder of touch: the time of a tick grows with the planes, so fewer of them are considered when a tick takes more than half of its time. Pure.
 #pragma once
 
 #include <array>

@@ -14,7 +14,7 @@ Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return a == b ? 0.0 : std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 // `from` turned towards `to` by at most so much.
@@ -30,9 +30,10 @@ constexpr double kLargestSpin_rad_s = 100;
 
 }  // namespace
 
-const Surface* Surfaces::find(std::int64_t contact_id) const {
-  for (const Surface& s : list_)
-    if (s.contact_id == contact_id) return &s;
+const Surface* Surfaces::find(std::int64_t contact_id, std::size_t expected) const {
+  const std::size_t n = list_.size();
+  for (std::size_t k = 0, i = expected < n ? expected : 0; k < n; ++k, i = i + 1 < n ? i + 1 : 0)
+    if (list_[i].contact_id == contact_id) return &list_[i];
   return nullptr;
 }
 
@@ -50,10 +51,10 @@ double Surfaces::true_height(const Told& told, const Eigen::Vector3d& proxy) con
   return told.normal.dot(proxy - told.point) - radius_m_;
 }
 
-void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy) {
-  const auto known =
-      std::find_if(list_.begin(), list_.end(), [&](const Surface& s) { return s.contact_id == plane.contact_id; });
-  const bool is_new = known == list_.end();
+void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy,
+                    std::size_t expected) {
+  Surface* const known = const_cast<Surface*>(find(plane.contact_id, expected));
+  const bool is_new = known == nullptr;
   Surface& s = is_new ? list_.emplace_back() : *known;
   // Where the proxy is above the plane as rendered so far, had it only moved as predicted.
   const double rendered = is_new ? 0 : true_height(predict(s), proxy) + s.lag_m_;
@@ -70,6 +71,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   s.told_normal_ = to_eigen(plane.normal).normalized();
   s.at_ = at;
   s.leaves_in_s_ = -1;
+  s.taken_ = true;
   const Told told = predict(s);
   if (is_new) s.normal = told.normal;
   // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
@@ -100,7 +102,7 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
   std::array<Rank, kMaxOffered> ranks;
   for (std::size_t i = 0; i < offered; ++i) {
     const touch_plane_t& p = model.planes[i];
-    const Surface* known = find(p.contact_id);
+    const Surface* known = find(p.contact_id, i);
     const bool pressed = known && known->depth_m > 0;
     ranks[i] = {
         !pressed,
@@ -115,24 +117,24 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
 
 void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
   const auto chosen = choose(model, proxy, at_most);
-  for (Surface& s : list_) {
-    bool told = false;
-    for (std::size_t i = 0; i < kMaxOffered && !told; ++i)
-      told = chosen[i] && model.planes[i].contact_id == s.contact_id;
-    if (!told) leave(s);
-  }
+  for (Surface& s : list_) s.taken_ = false;
+  // The list is in the order of the planes where no message changed it: each is looked for at its own place first.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
-    if (chosen[i]) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy);
+    if (chosen[i]) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy, i);
+  for (Surface& s : list_)
+    if (!s.taken_) leave(s);
 }
 
 void Surfaces::forget_the_gone() {
   std::erase_if(list_,
                 [](const Surface& s) { return s.leaves_in_s_ == 0 || (s.leaves_in_s_ > 0 && s.depth_m <= 0); });
   // Those that leave have the last places; the one nearest its end goes first.
-  std::stable_sort(list_.begin(), list_.end(), [](const Surface& a, const Surface& b) {
-    const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
-    return rank(a) > rank(b);
-  });
+  // By insertion: std::stable_sort would ask for memory, and the list is nearly in order.
+  const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
+  for (auto next = list_.begin(); next != list_.end(); ++next)
+    std::rotate(std::upper_bound(list_.begin(), next, *next,
+                                 [&](const Surface& x, const Surface& y) { return rank(x) > rank(y); }),
+                next, next + 1);
   if (list_.size() > kMaxHalfSpaces) list_.erase(list_.begin() + kMaxHalfSpaces, list_.end());
 }
 

@@ -56,13 +56,14 @@ struct Surface {
   double lag_m_ = 0;          // rendered height of the proxy over it, less the true one
   double lag_speed_m_s_ = 0;  // at which the lag goes to zero
   double turn_rad_s_ = 0;     // at which the rendered normal follows
+  bool taken_ = false;        // from the newest model
   double leaves_in_s_ = -1;   // time left of one that the model has left out; negative: present
 };
 
 class Surfaces {
  public:
-  static constexpr std::size_t kMaxPresent = 8;
-  static constexpr std::size_t kMaxOffered = 32;  // of a touch model, the first; it has 8
+  static constexpr std::size_t kMaxPresent = 50;
+  static constexpr std::size_t kMaxOffered = 64;  // of a touch model, the first; on the wire it has 8
 
   Surfaces(double tool_radius_m, const SurfaceLimits& limits) : radius_m_(tool_radius_m), limits_(limits) {
     list_.reserve(kMaxHalfSpaces + kMaxPresent);
@@ -78,7 +79,8 @@ class Surfaces {
   // At most kMaxHalfSpaces.
   std::span<Surface> list() { return list_; }
   std::span<const Surface> list() const { return list_; }
-  const Surface* find(std::int64_t contact_id) const;
+  // expected: its index, if it is where it was; the search begins there.
+  const Surface* find(std::int64_t contact_id, std::size_t expected = 0) const;
 
  private:
   struct Told {
@@ -89,7 +91,7 @@ class Surfaces {
   std::bitset<kMaxOffered> choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
                                   std::size_t at_most) const;
   void take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most);
-  void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy);
+  void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy, std::size_t expected);
   void leave(Surface& s);
   void forget_the_gone();
   void render(Surface& s, const Eigen::Vector3d& proxy, double dt) const;

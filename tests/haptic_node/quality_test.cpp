@@ -63,7 +63,7 @@ struct Pressing {
 TEST_CASE("Touch considers fewer planes when ticks take half of their time, and all again when they long do not") {
   Quality quality(Settings{});
   CHECK(run(quality, 0.4, 4000) == 0);
-  CHECK(quality.planes() == 8);
+  CHECK(quality.planes() == 50);
   CHECK(run(quality, 0.6, 700) == 1);
   CHECK(quality.planes() == 5);
   CHECK(run(quality, 2, 700) == 2);

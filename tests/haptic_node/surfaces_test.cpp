@@ -144,7 +144,7 @@ TEST_CASE("No more surfaces are kept than can be solved for, however fast they c
   Touch touch;
   for (int ms = 0; ms < 100; ++ms) {
     std::vector<touch_plane_t> planes;
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 60; ++i)
       planes.push_back(plane(100 * ms + i, {0, 0, 0.001 * (i % 3)}, Vector3d(0.1 * (i % 5), 0.1 * (i % 7), 1)));
     const auto m = model(ms, planes);
     touch.tick(ms, {0, 0, -0.01}, &m);
