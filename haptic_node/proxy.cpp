@@ -8,19 +8,14 @@ namespace {
 // Longer than any arm: no coupling is stretched so far by a scene that makes sense.
 constexpr double kLongestStretch_m = 2;
 
-// v without its components along the binding normals (Gram-Schmidt; at most three are independent).
+// v without its component along the normal force of all surfaces together. Not: without those along every normal
+// that binds. Of two facets that meet in a shallow groove that would take the friction across it at once, in the
+// tick in which the second joins, though its share of the force begins at zero.
 Eigen::Vector3d tangential(const Eigen::Vector3d& v, std::span<const Surface> surfaces) {
-  Eigen::Vector3d basis[3];
-  int size = 0;
-  for (const Surface& s : surfaces) {
-    if (s.depth_m <= 0 || size == 3) continue;
-    Eigen::Vector3d n = s.normal;
-    for (int k = 0; k < size; ++k) n -= n.dot(basis[k]) * basis[k];
-    if (n.norm() > 1e-6) basis[size++] = n.normalized();
-  }
-  Eigen::Vector3d out = v;
-  for (int k = 0; k < size; ++k) out -= out.dot(basis[k]) * basis[k];
-  return out;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const Surface& s : surfaces) normal += s.depth_m * s.normal;
+  const double square = normal.squaredNorm();
+  return square > 0 ? Eigen::Vector3d(v - normal * (v.dot(normal) / square)) : v;
 }
 
 // Widest shift that the cones of the binding surfaces allow, m.
@@ -56,16 +51,25 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
   const Eigen::Vector3d pull = carried(surfaces, dt) - device;
   Eigen::Vector3d shift = touching_ ? tangential(pull, surfaces) : Eigen::Vector3d::Zero();
   ClosestPoint closest = solve(surfaces, device + shift);
-  // The set of binding surfaces and the width of the cone depend on the shift and it on them: three rounds settle
-  // it.
-  constexpr int kRounds = 3;
+  // The normal force and the width of the cone depend on the shift and it on them: a few rounds settle it.
+  constexpr int kRounds = 4, kNarrowings = 8;
+  constexpr double kSettled_m = 1e-9;
   bool slips = slipping_;
   for (int round = 0; round < kRounds && shift.norm() > 0; ++round) {
     const Eigen::Vector3d wanted = tangential(pull, surfaces);
     const double width = cone_width(surfaces, slipping_);
     slips = wanted.norm() > width;
     const double allowed = slips ? cone_width(surfaces, true) : wanted.norm();
-    shift = slips ? Eigen::Vector3d(wanted * (allowed / wanted.norm())) : wanted;
+    const Eigen::Vector3d next = slips ? Eigen::Vector3d(wanted * (allowed / wanted.norm())) : wanted;
+    const bool settled = (next - shift).norm() < kSettled_m;
+    if (settled) break;
+    shift = next;
+    closest = solve(surfaces, device + shift);
+  }
+  // Where they have not settled it may be wider than the cone that it has led to; without a shift it never is.
+  for (int k = 0; k <= kNarrowings && shift.norm() > cone_width(surfaces, slipping_) + kSettled_m; ++k) {
+    slips = true;
+    shift *= k < kNarrowings ? cone_width(surfaces, true) / shift.norm() : 0.0;
     closest = solve(surfaces, device + shift);
   }
   slipping_ = slips && shift.norm() > 0;

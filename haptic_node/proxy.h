@@ -1,5 +1,6 @@
 // The proxy: the image of the hand that stays on the surface (Zilles and Salisbury 1995; Ruspini, Kolarov and
-// Khatib 1997), with Coulomb friction as a cone around the binding surfaces (after Harwin and Melder 2002).
+// Khatib 1997), with Coulomb friction as a cone around the normal force of the binding surfaces (after Harwin and
+// Melder 2002).
 //
 // Friction shifts the goal: the proxy is the allowed point closest to (device + s), where the shift s draws back
 // to the place where the proxy was, seen from the moving surfaces, and is no longer than the cone is wide. So

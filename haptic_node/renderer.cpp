@@ -43,6 +43,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       period_s_(1 / settings.rate_Hz),
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
       surfaces_(radius_m_, surface_limits(settings)),
+      handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
@@ -103,7 +104,7 @@ Eigen::Vector3d Renderer::constraint_force(double dt) {
   coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& f : forces_) sum += f;
-  return sum;
+  return handover_.step(surfaces_.list(), sum, dt);
 }
 
 Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {

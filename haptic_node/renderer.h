@@ -14,6 +14,7 @@
 #include "haptic_node/contact_book.h"
 #include "haptic_node/coupling.h"
 #include "haptic_node/devices/device.h"
+#include "haptic_node/handover.h"
 #include "haptic_node/owed_begins.h"
 #include "haptic_node/proxy.h"
 #include "haptic_node/safety.h"
@@ -84,6 +85,7 @@ class Renderer {
 
   Surfaces surfaces_;
   Proxy proxy_;
+  Handover handover_;
   LoopDelay loop_delay_;
   Transients transients_;
   Safety& safety_;

@@ -92,6 +92,11 @@ void Surfaces::leave(Surface& s) {
 std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
                                                     std::size_t at_most) const {
   const std::size_t offered = std::min(model.planes.size(), kMaxOffered);
+  std::bitset<kMaxOffered> chosen;
+  if (offered <= std::min(at_most, kMaxPresent)) {  // as nearly always: no choice
+    for (std::size_t i = 0; i < offered; ++i) chosen.set(i);
+    return chosen;
+  }
   // One that is pressed goes before all others, so that where too many press none takes turns.
   struct Rank {
     bool free;
@@ -110,7 +115,6 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
   }
   const std::size_t count = std::min({offered, at_most, kMaxPresent});
   std::partial_sort(ranks.begin(), ranks.begin() + count, ranks.begin() + offered);
-  std::bitset<kMaxOffered> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.set(ranks[i].index);
   return chosen;
 }
