@@ -33,7 +33,10 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
   return g;
 }
 
-void LoopDelay::pass(double dt) { peak_s_ *= std::exp(-dt / kForget_s); }
+void LoopDelay::pass(double age_s, double dt) {
+  peak_s_ *= std::exp(-dt / kForget_s);
+  mean_s_ += (1 - std::exp(-dt / kMean_s)) * (std::clamp(age_s, 0.0, kLongest_s) - mean_s_);
+}
 
 void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& shift_m,
                      const Eigen::Vector3d& device_velocity, bool slipping, std::span<Eigen::Vector3d> forces) {

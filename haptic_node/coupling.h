@@ -35,19 +35,23 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
                      double loop_delay_s, double period_s, const CouplingLimits& limits);
 
 // How long it takes from a movement of the tool until the motion of the body that it causes is felt: the age of
-// the touch model when it is used, at worst lately, plus one step of the world and one tick.
+// the touch model when it arrives, at worst lately, or its mean age in use where that is more, plus one step of
+// the world and one tick. A model that is held for a time T acts as one that is T/2 late (Franklin, Powell and
+// Workman 1998, on the zero-order hold), which is the mean age: so thin models count as late, lost ones a little.
 class LoopDelay {
  public:
   // Age of a touch model that is used now, s.
   void observe(double age_s) { peak_s_ = std::max(peak_s_, std::min(age_s, kLongest_s)); }
-  // Once a tick: the worst is forgotten slowly, so that the stiffness does not flicker.
-  void pass(double dt);
-  double value_s(double step_s, double period_s) const { return peak_s_ + step_s + period_s; }
+  // Once a tick, with the age of the model in use, s: the worst is forgotten slowly, so that the stiffness does
+  // not flicker.
+  void pass(double age_s, double dt);
+  double value_s(double step_s, double period_s) const { return std::max(peak_s_, mean_s_) + step_s + period_s; }
 
  private:
   static constexpr double kForget_s = 1;     // time constant
   static constexpr double kLongest_s = 0.1;  // beyond, the touch model counts as lost anyway
-  double peak_s_ = 0;
+  static constexpr double kMean_s = 0.5;     // time constant of the mean; design: many models of 30 Hz
+  double peak_s_ = 0, mean_s_ = 0;
 };
 
 // Force of each surface on the hand, N, into `forces`: normal, never pulling; tangential along the proxy's shift

@@ -77,14 +77,15 @@ void Renderer::take_device(const TickInput& in) {
 
 void Renderer::take_touch(const TickInput& in, double dt) {
   const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0;
-  loop_delay_.pass(dt);
   if (silent) {
     // Whatever comes after the loss is new.
     surfaces_.clear();
     proxy_.reset(device_.position);
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
-  if (in.fresh && in.map) loop_delay_.observe(sync::to_seconds(in.map->to_sim(in.now) - *model_time_));
+  const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
+  loop_delay_.pass(age_s, dt);
+  if (in.fresh) loop_delay_.observe(age_s);
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   surfaces_.step(in.fresh, sim_now, proxy_.position(), dt, in.planes);
 }

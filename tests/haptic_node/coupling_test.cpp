@@ -48,10 +48,22 @@ TEST_CASE("The loop delay is the worst age lately, and forgets it slowly") {
   delay.observe(0.004);
   delay.observe(0.001);
   CHECK(delay.value_s(0.001, 0.001) == Approx(0.006));
-  for (int k = 0; k < 1000; ++k) delay.pass(1e-3);
+  for (int k = 0; k < 1000; ++k) delay.pass(0, 1e-3);
   CHECK(delay.value_s(0, 0) == Approx(0.004 * std::exp(-1)));
   delay.observe(1e9);
   CHECK(delay.value_s(0, 0) == Approx(0.1));
+}
+
+TEST_CASE("A touch model that is held for a while counts as late by half of that") {
+  LoopDelay delay;
+  const int held_ms = GENERATE(10, 33, 50);
+  double mean = 0;
+  for (int ms = 0; ms < 400 * held_ms; ++ms) {
+    if (ms % held_ms == 0) delay.observe(0);
+    delay.pass(1e-3 * (ms % held_ms), 1e-3);
+    if (ms >= 399 * held_ms) mean += delay.value_s(0, 0) / held_ms;
+  }
+  CHECK(mean == Approx(0.5e-3 * (held_ms - 1)).epsilon(0.1));
 }
 
 TEST_CASE("Forces push, never pull, and stay in the cone of friction") {
