@@ -5,7 +5,7 @@
 //   bin/passivity_table [--json FILE]
 //
 // generated: the most that device port and body port have given together, over what they had taken in, at any
-// moment of the episode (time-domain passivity: Hannaford and Ryu 2002, equation 3). The world of a wall takes
+// moment of the episode (time-domain passivity: Hannaford and Ryu 2002). The world of a wall takes
 // nothing. cycle: the force sways by more than 0.05 N rms at the end of the hold, be it by itself or because the
 // coupling's stiffness still changes. Beside it what is left of touch: the mean force of the hold against that of
 // springs in a row, the rendered stiffness against the surface's.
