@@ -18,6 +18,7 @@
 #include "thermal_node/choice.h"
 #include "thermal_node/quality.h"
 #include "thermal_node/renderer.h"
+#include "thermal_node/thickness.h"
 
 using namespace tactus;
 
@@ -71,7 +72,8 @@ int main(int argc, char** argv) try {
       node.set_state(node_health_t::WAITING, choice.problem);
       renderer.reset();
       if (choice.tool >= 0)
-        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body, element_degC);
+        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body, element_degC,
+                         thermal::thickness_of_bodies(*scenes.scene()));
     }
     if (!renderer) continue;
     const thermal::Tick tick =

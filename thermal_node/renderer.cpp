@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "thermal_node/bioheat_model.h"
+#include "thermal_node/skin_model.h"
+
 namespace tactus::thermal {
 namespace {
 
@@ -12,9 +15,13 @@ constexpr double kRoom_degC = 23;
 // Colder than this is nothing, hotter no solid: tungsten melts at 3422 degC.
 constexpr double kColdest_degC = -273.15, kHottest_degC = 3422;
 
-SkinProperties skin_properties(const Settings& s) {
-  return {s.skin_rest_degC, effusivity(s.skin_conductivity_W_mK, s.skin_density_kg_m3, s.skin_specific_heat_J_kgK),
-          s.perfusion_1_s, s.air_conductance_W_m2K};
+std::unique_ptr<Skin> make_skin(const Settings& s) {
+  if (s.model == "bioheat")
+    return std::make_unique<BioheatModel>(
+        Tissue{layers_of(s.site), s.skin_rest_degC, s.room_degC, s.perfusion_1_s, s.air_conductance_W_m2K});
+  return std::make_unique<SkinModel>(SkinProperties{
+      s.skin_rest_degC, effusivity(s.skin_conductivity_W_mK, s.skin_density_kg_m3, s.skin_specific_heat_J_kgK),
+      s.perfusion_1_s, s.air_conductance_W_m2K});
 }
 
 ControllerLimits limits(const Settings& s) {
@@ -29,15 +36,29 @@ bool usable(sync::How how) { return how != sync::How::kNone && how != sync::How:
 }  // namespace
 
 Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
-                   std::optional<double> element_degC)
+                   std::optional<double> element_degC, std::vector<double> thickness_m)
     : settings_(settings),
       materials_(std::move(materials)),
+      thickness_m_(std::move(thickness_m)),
       tool_(tool),
       tool_body_(tool_body),
       late_{kLate, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
-      skin_(skin_properties(settings)),
+      skin_(make_skin(settings)),
       lag_(element_degC.value_or(settings.skin_rest_degC)),
       controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)) {}
+
+ObjectProperties Renderer::object(const material_def_t& m, int body) const {
+  const double degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
+  ObjectProperties object{std::clamp(degC, kColdest_degC, kHottest_degC),
+                          effusivity(m.conductivity_W_mK, m.density_kg_m3, m.specific_heat_J_kgK)};
+  if (object.effusivity > 0 && m.conductivity_W_mK > 0) {
+    object.conductivity_W_mK = m.conductivity_W_mK;
+    object.heat_capacity_J_m3K = m.density_kg_m3 * m.specific_heat_J_kgK;
+  }
+  if (body >= 0 && body < static_cast<int>(thickness_m_.size()))
+    object.thickness_m = thickness_m_[static_cast<std::size_t>(body)];
+  return object;
+}
 
 // Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
 // the force and area of the touch itself and then weighted with its time.
@@ -48,9 +69,7 @@ Renderer::Exchange Renderer::exchange(const sync::ContactIntegral& c, double con
   if (c.material != material_ || c.body != body_) {
     material_ = c.material;
     body_ = c.body;
-    const double object_degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
-    skin_.set_object({std::clamp(object_degC, kColdest_degC, kHottest_degC),
-                      effusivity(m.conductivity_W_mK, m.density_kg_m3, m.specific_heat_J_kgK)});
+    skin_->set_object(object(m, c.body));
   }
   const double time_share = std::min(1.0, contact_s / interval_s);
   const Press press{settings_.reference_force_N, settings_.reference_area_m2, settings_.pressure_exponent};
@@ -110,9 +129,9 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
     e.conductance_W_m2K += now.conductance_W_m2K;
     e.touched_share += now.touched_share;
   }
-  skin_.step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
+  skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
   const double wanted =
-      lost ? settings_.skin_rest_degC : lag_.step(skin_.surface_degC(), interval_s, rendering.response_s);
+      lost ? settings_.skin_rest_degC : lag_.step(skin_->surface_degC(), interval_s, rendering.response_s);
   const Command command = controller_.step(wanted, interval_s);
   if (lost) lag_.set(command.command_degC);
 
@@ -122,8 +141,8 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   out.material = e.conductance_W_m2K > 0 ? material_ : -1;
   out.force_N = lost ? 0 : reading(tick.contact.force_N);
   out.area_m2 = lost ? 0 : reading(tick.contact.area_m2);
-  out.heat_flux_W_m2 = static_cast<float>(skin_.heat_flux_W_m2());
-  out.skin_degC = static_cast<float>(skin_.surface_degC());
+  out.heat_flux_W_m2 = static_cast<float>(skin_->heat_flux_W_m2());
+  out.skin_degC = static_cast<float>(skin_->surface_degC());
   out.commanded_degC = static_cast<float>(command.command_degC);
   out.limited = command.limited ? 1 : 0;
   return out;

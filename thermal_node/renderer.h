@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/material_def_t.hpp>
@@ -14,7 +15,7 @@
 #include "thermal_node/controller.h"
 #include "thermal_node/lag.h"
 #include "thermal_node/settings.gen.h"
-#include "thermal_node/skin_model.h"
+#include "thermal_node/skin.h"
 #include "thermal_node/ticks.h"
 
 namespace tactus::thermal {
@@ -25,15 +26,16 @@ inline constexpr sync::Late kLate = sync::Late::kAlwaysApply;
 // How well a tick is rendered.
 struct Rendering {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
-  double longest_substep_s = SkinModel::kLongestSubstep_s;
+  double longest_substep_s = Skin::kLongestSubstep_s;
 };
 
 class Renderer {
  public:
   // materials: of the scene; tool, tool_body: index of the tool in the scene and its body. element_degC: where the
-  // element stands, as another scene left it; nothing: at resting skin.
+  // element stands, as another scene left it; nothing: at resting skin. thickness_m: by body, see thickness.h; a
+  // body beyond its end is infinite.
   Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
-           std::optional<double> element_degC = std::nullopt);
+           std::optional<double> element_degC = std::nullopt, std::vector<double> thickness_m = {});
 
   // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
   // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
@@ -54,14 +56,16 @@ class Renderer {
   };
   Exchange exchange(const sync::ContactIntegral& contact, double contact_s, double interval_s);
   Exchange missed_touches(const Tick& tick, double interval_s);
+  ObjectProperties object(const material_def_t& material, int body) const;
   void report(const contact_event_t& event, const Tick& tick);
 
   Settings settings_;
   std::vector<material_def_t> materials_;
+  std::vector<double> thickness_m_;
   int tool_;
   int tool_body_;
   sync::LatePolicy late_;
-  SkinModel skin_;
+  std::unique_ptr<Skin> skin_;
   Lag lag_;
   Controller controller_;
   int material_ = -1;  // the one that is under the skin in the model

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thermal_node/tridiagonal.h"
+
 namespace tactus::thermal {
 namespace {
 
@@ -76,18 +78,15 @@ SkinModel::Equations SkinModel::equations(const Surface& surface) const {
   return e;
 }
 
-// Thomas' algorithm; the matrix is diagonally dominant, so it needs no pivots.
-SkinModel::Cells SkinModel::solve(const Equations& e, double factor, const Cells& right) {
-  Cells ratio, x;
-  double previous_ratio = 0, previous_x = 0;
+SkinModel::Cells SkinModel::solve(const Equations& e, double factor, Cells right) {
+  Cells lower, centre, upper, scratch;
   for (std::size_t i = 0; i < kCells; ++i) {
-    const double lower = -factor * e.lower[i];
-    const double pivot = 1 - factor * e.centre[i] - lower * previous_ratio;
-    ratio[i] = previous_ratio = -factor * e.upper[i] / pivot;
-    x[i] = previous_x = (right[i] - lower * previous_x) / pivot;
+    lower[i] = -factor * e.lower[i];
+    centre[i] = 1 - factor * e.centre[i];
+    upper[i] = -factor * e.upper[i];
   }
-  for (std::size_t i = kCells - 1; i-- > 0;) x[i] -= ratio[i] * x[i + 1];
-  return x;
+  solve_tridiagonal(lower, centre, upper, right, scratch);
+  return right;
 }
 
 void SkinModel::substep(double dt_s, const Equations& e, const Surface& s) {

@@ -15,6 +15,8 @@
 #include <array>
 #include <cstddef>
 
+#include "thermal_node/skin.h"
+
 namespace tactus::thermal {
 
 struct SkinProperties {
@@ -24,33 +26,17 @@ struct SkinProperties {
   double air_conductance_W_m2K = 8;
 };
 
-struct ObjectProperties {
-  double rest_degC = 23;
-  double effusivity = 0;
-};
-
 // Realtime-safe: yes (no allocation). Not thread-safe.
-class SkinModel {
+class SkinModel final : public Skin {
  public:
-  // Second-order accuracy needs substeps well below the time constant of a contact, 0.1 s and more.
-  static constexpr double kLongestSubstep_s = 0.005;
-
   explicit SkinModel(const SkinProperties& skin) : skin_(skin) {}
 
-  // Everything back to rest.
-  void reset();
-  // Puts another object, uniformly at its own temperature, under the skin.
-  void set_object(const ObjectProperties& object);
-
-  // Advances by dt seconds, during which the skin exchanges heat with the object through `conductance` (W/(m^2 K),
-  // the mean over dt) and, for the share of dt and area that it does not touch, with the room. Longer substeps are
-  // cheaper and less exact; they may change from step to step.
+  void reset() override;
+  void set_object(const ObjectProperties& object) override;
   void step(double dt_s, double conductance_W_m2K, double touched_share,
-            double longest_substep_s = kLongestSubstep_s);
-
-  double surface_degC() const { return skin_.rest_degC + surface_K_; }
-  // Mean over the last substep, out of the skin into the object, W/m^2.
-  double heat_flux_W_m2() const { return flux_; }
+            double longest_substep_s = kLongestSubstep_s) override;
+  double surface_degC() const override { return skin_.rest_degC + surface_K_; }
+  double heat_flux_W_m2() const override { return flux_; }
 
  private:
   // Cells: kSide of skin, deepest first, then kSide of object, surface first.
@@ -70,7 +56,7 @@ class SkinModel {
   Surface surface(double conductance_W_m2K, double touched_share) const;
   Equations equations(const Surface& s) const;
   // Solves (1 - factor * equations) x = right.
-  static Cells solve(const Equations& equations, double factor, const Cells& right);
+  static Cells solve(const Equations& equations, double factor, Cells right);
   void substep(double dt_s, const Equations& equations, const Surface& surface);
 
   SkinProperties skin_;

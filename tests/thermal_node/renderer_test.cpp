@@ -31,6 +31,12 @@ const std::vector<material_def_t> kMaterials{material(401, 8960, 385, 23), mater
                                              material(401, 8960, 385, 1000)};
 enum { kCopper, kPlastic, kFurnace };
 
+thermal::Settings with_model(const char* model) {
+  thermal::Settings settings;
+  settings.model = model;
+  return settings;
+}
+
 struct Hand {
   explicit Hand(std::vector<material_def_t> materials = kMaterials, const thermal::Settings& settings = {})
       : renderer(settings, std::move(materials), 0, 9) {}
@@ -88,7 +94,7 @@ contact_event_t event(std::int8_t kind, std::int64_t id, std::int64_t time_ns, i
 }  // namespace
 
 TEST_CASE("Untouched skin stays at rest") {
-  const thermal_state_t state = Hand().rest(500);
+  const thermal_state_t state = Hand(kMaterials, with_model(GENERATE("half_space", "bioheat"))).rest(500);
   CHECK(state.skin_degC == 33);
   CHECK(state.commanded_degC == 33);
   CHECK(state.material == -1);
@@ -111,7 +117,8 @@ TEST_CASE("Firmly pressed copper cools the skin as the closed form says, plastic
 }
 
 TEST_CASE("A lighter touch cools less, and so does a shorter one") {
-  Hand firm, light, brief;
+  const auto settings = with_model(GENERATE("half_space", "bioheat"));
+  Hand firm(kMaterials, settings), light(kMaterials, settings), brief(kMaterials, settings);
   const float by_firm = firm.press(kCopper, 1, 25).skin_degC;
   const float by_light = light.press(kCopper, 0.1, 25).skin_degC;
   const float by_brief = brief.press(kCopper, 1, 25, 2ms).skin_degC;
@@ -135,8 +142,9 @@ TEST_CASE("After the touch skin and command return to rest") {
 }
 
 TEST_CASE("The worst possible object does not drive the command out of the skin-safe range") {
+  const auto settings = with_model(GENERATE("half_space", "bioheat"));
   SECTION("copper at 1000 degrees") {
-    Hand hand;
+    Hand hand(kMaterials, settings);
     float before = 33;
     for (int i = 0; i < 500; ++i) {
       const thermal_state_t state = hand.press(kFurnace, 20);
@@ -153,7 +161,7 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
     std::mt19937 random(3);
     const auto any = [&] { return values[random() % std::size(values)]; };
     for (int trial = 0; trial < 300; ++trial) {
-      Hand hand({material(any(), any(), any(), any()), material(any(), any(), any(), any())});
+      Hand hand({material(any(), any(), any(), any()), material(any(), any(), any(), any())}, settings);
       for (int i = 0; i < 20; ++i) {
         Tick tick = hand.next();
         tick.contact.material = static_cast<int>(random() % 5) - 2;
@@ -235,8 +243,9 @@ TEST_CASE("An event of more than half a second ago is late, yet applied") {
 }
 
 TEST_CASE("The same contacts give the same command to the bit") {
-  const auto run = [] {
-    Hand hand;
+  const auto settings = with_model(GENERATE("half_space", "bioheat"));
+  const auto run = [&] {
+    Hand hand(kMaterials, settings);
     std::mt19937 random(5);
     double sum = 0;
     for (int i = 0; i < 200; ++i)
@@ -244,6 +253,31 @@ TEST_CASE("The same contacts give the same command to the bit") {
     return sum;
   };
   CHECK(run() == run());
+}
+
+TEST_CASE("With layers of tissue a sheet warms through and a block does not") {
+  const auto after_ten_seconds = [](const char* model, double thickness_m) {
+    Hand hand;
+    hand.renderer = Renderer(with_model(model), kMaterials, 0, 9, std::nullopt, {thickness_m});
+    return hand.press(kCopper, 1, 500).skin_degC;
+  };
+  CHECK(after_ten_seconds("bioheat", 0.001) > after_ten_seconds("bioheat", 0.1) + 1);
+  CHECK(after_ten_seconds("half_space", 0.001) == after_ten_seconds("half_space", 0.1));
+}
+
+TEST_CASE("When the scene brings another model the command goes on from where the element stands") {
+  Hand hand;
+  double before = hand.press(kCopper, 1, 200).commanded_degC;
+  REQUIRE(before < 28);
+  for (int i = 0; i < 6; ++i) {
+    const auto settings = with_model(i % 2 ? "half_space" : "bioheat");
+    hand.renderer = Renderer(settings, kMaterials, 0, 9, before);
+    for (int tick = 0; tick < 10; ++tick) {
+      const double command = hand.press(kCopper, 1).commanded_degC;
+      REQUIRE(std::abs(command - before) <= settings.slew_max_K_s * 0.02 + 1e-4);
+      before = command;
+    }
+  }
 }
 
 TEST_CASE("When the scene changes the command goes on from where the element stands, no faster than it may") {
