@@ -12,6 +12,7 @@ inline constexpr const char* kContacts = "CONTACTS";             // contact_fram
 inline constexpr const char* kWorldState = "WORLD_STATE";        // world_state_t
 inline constexpr const char* kToolState = "TOOL_STATE";          // tool_state_t
 inline constexpr const char* kThermalState = "THERMAL_STATE";    // thermal_state_t
+inline constexpr const char* kThermalDevice = "THERMAL_DEVICE";  // thermal_device_t
 inline constexpr const char* kPresented = "PRESENTED";           // presented_t
 inline constexpr const char* kNodeHealth = "NODE_HEALTH";        // node_health_t
 inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_t

@@ -24,6 +24,11 @@ std::unique_ptr<Skin> make_skin(const Settings& s) {
       s.perfusion_1_s, s.air_conductance_W_m2K});
 }
 
+// How far a plate may be beyond its range before it counts as out of control: an overshoot is less.
+constexpr double kRunaway_K = 2;
+// What a plate under a finger can be at all; what says otherwise is a broken sensor.
+constexpr double kColdestPlate_degC = -50, kHottestPlate_degC = 150;
+
 ControllerLimits limits(const Settings& s) {
   return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
 }
@@ -45,7 +50,11 @@ Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materia
       late_{kLate, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
       skin_(make_skin(settings)),
       lag_(element_degC.value_or(settings.skin_rest_degC)),
-      controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)) {}
+      flux_lag_(0),
+      display_({contact_conductance_W_m2K(settings.plate_conductivity_W_mK)}, make_skin(settings)),
+      dwell_({settings.dose_max_s, settings.cold_below_degC, settings.cold_max_s}),
+      controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)),
+      commanded_degC_(element_degC.value_or(settings.skin_rest_degC)) {}
 
 ObjectProperties Renderer::object(const material_def_t& m, int body) const {
   const double degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
@@ -116,6 +125,38 @@ void Renderer::report(const contact_event_t& event, const Tick& tick) {
   reports_.push_back(r);
 }
 
+double Renderer::load_W() const { return display_.finger_flux_W_m2() * settings_.reference_area_m2; }
+
+// From the skin as it should feel to what the plate is told: lag, then what the plate must be for it, then the
+// limits, the tightest last. A plate that its sensor finds out of its range or that reports a fault is called back
+// to rest.
+Command Renderer::command(const Rendering& rendering, double interval_s) {
+  const bool measured = rendering.plate && rendering.plate->plate_degC > kColdestPlate_degC &&
+                        rendering.plate->plate_degC < kHottestPlate_degC;
+  const double plate_degC = measured ? rendering.plate->plate_degC : commanded_degC_;
+  const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
+  const TemperatureRange range = dwell_.step(plate_degC, interval_s, wide);
+  const bool runaway =
+      rendering.plate && (!measured || rendering.plate->fault || plate_degC < wide.min_degC - kRunaway_K ||
+                          plate_degC > wide.max_degC + kRunaway_K);
+
+  const double skin_degC = lag_.step(skin_->surface_degC(), interval_s, rendering.response_s);
+  const double flux_W_m2 = flux_lag_.step(skin_->heat_flux_W_m2(), interval_s, rendering.response_s);
+  const double aim = display_.step(skin_degC, flux_W_m2, plate_degC, interval_s, rendering.longest_substep_s);
+  double wanted = settings_.display == "flux" ? aim : skin_degC;
+  if (input_lost_ || runaway) wanted = settings_.skin_rest_degC;
+
+  const double allowed = std::clamp(wanted, range.min_degC, range.max_degC);
+  Command command = controller_.step(allowed, interval_s);
+  command.limited = command.limited || allowed != wanted || runaway;
+  commanded_degC_ = command.command_degC;
+  if (input_lost_ || runaway) {
+    lag_.set(command.command_degC);
+    flux_lag_.set(0);
+  }
+  return command;
+}
+
 thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   reports_.clear();
   for (const contact_event_t& event : tick.events) report(event, tick);
@@ -130,10 +171,7 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
     e.touched_share += now.touched_share;
   }
   skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
-  const double wanted =
-      lost ? settings_.skin_rest_degC : lag_.step(skin_->surface_degC(), interval_s, rendering.response_s);
-  const Command command = controller_.step(wanted, interval_s);
-  if (lost) lag_.set(command.command_degC);
+  const Command command = this->command(rendering, interval_s);
 
   thermal_state_t out{};
   out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));

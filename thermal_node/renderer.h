@@ -13,6 +13,9 @@
 #include "sync/late.h"
 #include "thermal_node/contact_model.h"
 #include "thermal_node/controller.h"
+#include "thermal_node/devices/device.h"
+#include "thermal_node/dwell.h"
+#include "thermal_node/flux_display.h"
 #include "thermal_node/lag.h"
 #include "thermal_node/settings.gen.h"
 #include "thermal_node/skin.h"
@@ -27,6 +30,8 @@ inline constexpr sync::Late kLate = sync::Late::kAlwaysApply;
 struct Rendering {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
   double longest_substep_s = Skin::kLongestSubstep_s;
+  std::optional<PlateReading>
+      plate{};  // of the display since the last tick; nothing: it is where it was commanded
 };
 
 class Renderer {
@@ -41,6 +46,13 @@ class Renderer {
   // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
   // model and the rendering say.
   thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
+
+  // What the finger is thought to give to the plate, W.
+  double load_W() const;
+
+  // What the skin has had of warmth and cold; resume it when another scene takes over, for the skin is the same.
+  const Dwell& dwell() const { return dwell_; }
+  void resume(const Dwell& before) { dwell_.resume(before); }
 
   // Whether the last step had no input that could be relied on.
   bool input_lost() const { return input_lost_; }
@@ -58,6 +70,7 @@ class Renderer {
   Exchange missed_touches(const Tick& tick, double interval_s);
   ObjectProperties object(const material_def_t& material, int body) const;
   void report(const contact_event_t& event, const Tick& tick);
+  Command command(const Rendering& rendering, double interval_s);
 
   Settings settings_;
   std::vector<material_def_t> materials_;
@@ -66,8 +79,11 @@ class Renderer {
   int tool_body_;
   sync::LatePolicy late_;
   std::unique_ptr<Skin> skin_;
-  Lag lag_;
+  Lag lag_, flux_lag_;
+  FluxDisplay display_;
+  Dwell dwell_;
   Controller controller_;
+  double commanded_degC_;
   int material_ = -1;  // the one that is under the skin in the model
   int body_ = -1;
   bool input_lost_ = true;

@@ -97,9 +97,9 @@ TEST_CASE("Skin and a finite object without losses end at the temperature that t
 
 TEST_CASE("The profile of resting skin is the steady solution of Pennes' equation") {
   // T_a - T = (T_a - T_s) cosh(m (L - x))/cosh(m L), m^2 = w rho c of blood/k, and what comes out at the surface
-  // is lost to the room. The volumes are of second order: 0.1 % of the difference to the blood; between the middles of cells, of
-  // at most 1.2 mm, the profile is taken as linear: (1.2 mm m)^2/8 = 0.5 % at 0.0025/s, and with more blood the difference
-  // is gone where cells are as wide.
+  // is lost to the room. The volumes are of second order: 0.1 % of the difference to the blood; between the
+  // middles of cells, of at most 1.2 mm, the profile is taken as linear: (1.2 mm m)^2/8 = 0.5 % at 0.0025/s, and
+  // with more blood the difference is gone where cells are as wide.
   const double depth = 0.01, perfusion = GENERATE(0.0005, 0.0025, 0.02), air = 8;
   const BioheatModel skin(plain(depth, perfusion, air));
   const double m = std::sqrt(perfusion * kBloodHeatCapacity_J_m3K / 0.37);

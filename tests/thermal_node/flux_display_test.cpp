@@ -46,13 +46,14 @@ TEST_CASE("At rest the plate is wanted at rest") {
 }
 
 TEST_CASE("A plate without limits makes the finger lose what it would lose to the thing") {
-  // The command lags the touch by one tick; beyond the first ten the finger is within 1 % of the change.
+  // The command lags the touch by one tick; beyond the first ten the finger is within 3 % of the change, after
+  // a second within 1 %.
   const bool copper = GENERATE(true, false);
   Felt felt(3, copper ? 401 : 0.18, copper ? 37137 : 514, 1e9);
   for (int i = 0; i < 500; ++i) {
     felt.tick(true);
     const double change = 33 - felt.touch.surface_degC();
-    if (i >= 10) REQUIRE(std::abs(felt.error_K()) < 0.01 * change + 0.06 * change / (1 + 0.5 * i));
+    if (i >= 10) REQUIRE(std::abs(felt.error_K()) < (i < 50 ? 0.03 : 0.01) * change);
     if (i >= 50) CHECK(felt.person.heat_flux_W_m2() == Approx(felt.touch.heat_flux_W_m2()).epsilon(0.02));
   }
 }

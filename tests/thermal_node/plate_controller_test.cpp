@@ -92,8 +92,8 @@ TEST_CASE("Whatever is wanted, the plate itself stays within its range and rate"
       plate.follow(wanted, 0.01 * static_cast<double>(random() % 200), kDt, 0);
       REQUIRE(plate.state.plate_degC < limits.plate_max_degC + 0.3);
       REQUIRE(plate.state.plate_degC > limits.plate_min_degC - 0.3);
-      // An unknown load of 2 W moves the plate by 2.2 K/s more than was planned, as much again what was learnt of the
-      // load before it changed.
+      // An unknown load of 2 W moves the plate by 2.2 K/s more than was planned, as much again what was learnt of
+      // the load before it changed.
       REQUIRE(std::abs(plate.state.plate_degC - before) <= (limits.rate_K_s + 4.5) * kDt);
     }
   }
