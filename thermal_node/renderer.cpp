@@ -69,28 +69,44 @@ ObjectProperties Renderer::object(const material_def_t& m, int body) const {
   return object;
 }
 
-// Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
-// the force and area of the touch itself and then weighted with its time.
-Renderer::Exchange Renderer::exchange(const sync::ContactIntegral& c, double contact_s, double interval_s) {
-  if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
-    return {};
-  const material_def_t& m = materials_[static_cast<std::size_t>(c.material)];
-  if (c.material != material_ || c.body != body_) {
-    material_ = c.material;
-    body_ = c.body;
-    skin_->set_object(object(m, c.body));
+// Where the thing is held, with the heat that it has taken; a new one takes the place of what was touched longest
+// ago.
+std::size_t Renderer::thing_of(int body, int material) {
+  const auto same = [&](const Thing& t) { return t.body == body && t.material == material && t.touched >= 0; };
+  auto found = std::find_if(things_.begin(), things_.end(), same);
+  if (found == things_.end()) {
+    found = std::min_element(things_.begin(), things_.end(),
+                             [](const Thing& a, const Thing& b) { return a.touched < b.touched; });
+    *found = {material, body, tick_};
+    skin_->set_object(object(materials_[static_cast<std::size_t>(material)], body),
+                      static_cast<std::size_t>(found - things_.begin()));
   }
-  const double time_share = std::min(1.0, contact_s / interval_s);
-  const Press press{settings_.reference_force_N, settings_.reference_area_m2, settings_.pressure_exponent};
-  const double pressed = contact_share(c.force_N / time_share, c.area_m2 / time_share, press);
-  const double covered = c.area_m2 > 0 ? std::min(1.0, c.area_m2 / time_share / settings_.reference_area_m2) : 0;
-  return {contact_conductance_W_m2K(m.conductivity_W_mK) * pressed * time_share, covered * time_share};
+  found->touched = tick_;
+  return static_cast<std::size_t>(found - things_.begin());
 }
 
-// A touch that was over before this tick's interval but is heard of only now: its heat is still owed. The force
-// follows from the momentum of a plastic impact, m v, over the time of touch, as in sync/contact_integral.cpp.
-Renderer::Exchange Renderer::missed_touches(const Tick& tick, double interval_s) {
-  Exchange sum;
+// Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
+// the force and area of the touch itself and then weighted with its time.
+void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s) {
+  const double contact_s = sync::to_seconds(c.contact_time);
+  if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
+    return;
+  const double conductance =
+      contact_conductance_W_m2K(materials_[static_cast<std::size_t>(c.material)].conductivity_W_mK);
+  const double time_share = std::min(1.0, contact_s / interval_s);
+  const Press press{settings_.reference_force_N, settings_.reference_area_m2, settings_.pressure_exponent};
+  const double pressed = std::min(
+      time_share * contact_share(c.force_N / time_share, c.area_m2 / time_share, press), 1 - sum.pressed_share);
+  sum.pressed_share += pressed;
+  const double covered = c.area_m2 > 0 ? std::min(1.0, c.area_m2 / time_share / settings_.reference_area_m2) : 0;
+  sum.conductance_W_m2K[thing_of(c.body, c.material)] += conductance * pressed;
+  sum.touched_share = std::min(1.0, sum.touched_share + covered * time_share);
+}
+
+// Touches that were over before this tick's interval but are heard of only now: their heat is still owed. The
+// force follows from the momentum of a plastic impact, m v, over the time of touch, as in
+// sync/contact_integral.cpp.
+void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interval_s) {
   for (const contact_event_t& end : tick.events) {
     if (end.kind != contact_event_t::END || end.tool != tool_ || sync::sim_time(end.time_ns) > tick.sim_begin)
       continue;
@@ -98,16 +114,13 @@ Renderer::Exchange Renderer::missed_touches(const Tick& tick, double interval_s)
       return e.kind == contact_event_t::BEGIN && e.contact_id == end.contact_id;
     });
     if (begin == tick.events.end() || end.time_ns <= begin->time_ns) continue;
-    const double touch_s = static_cast<double>(end.time_ns - begin->time_ns) * 1e-9;
-    sync::ContactIntegral c;
+    sync::ContactPart c;
+    c.contact_time = sync::Nanoseconds(end.time_ns - begin->time_ns);
     c.force_N = static_cast<double>(begin->effective_mass_kg) * begin->approach_speed_m_s / interval_s;
     c.material = begin->body_a == tool_body_ ? begin->material_b : begin->material_a;
     c.body = begin->body_a == tool_body_ ? begin->body_b : begin->body_a;
-    const Exchange e = exchange(c, touch_s, interval_s);
-    sum.conductance_W_m2K += e.conductance_W_m2K;
-    sum.touched_share += e.touched_share;
+    add(sum, c, interval_s);
   }
-  return sum;
 }
 
 // Heat is a slow state: an event is applied in the tick in which it becomes due, however late, never dropped. The
@@ -163,12 +176,17 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
 
   const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
   const bool lost = input_lost_ = !usable(tick.contact.how);
-  Exchange e = interval_s > 0 ? missed_touches(tick, interval_s) : Exchange{};
+  ++tick_;
+  Exchange e;
+  if (interval_s > 0) add_missed_touches(e, tick, interval_s);
+  e.pressed_share = 0;  // those had the pad to themselves
   if (!lost) {
-    const Exchange now =
-        exchange(tick.contact, sync::to_seconds(tick.contact.contact_time), tick.contact_interval_s());
-    e.conductance_W_m2K += now.conductance_W_m2K;
-    e.touched_share += now.touched_share;
+    // What presses most, should it be more than the models hold.
+    std::vector<sync::ContactPart> parts = tick.contact.parts;
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const auto& a, const auto& b) { return a.force_N > b.force_N; });
+    parts.resize(std::min(parts.size(), Skin::kThings));
+    for (const sync::ContactPart& part : parts) add(e, part, tick.contact_interval_s());
   }
   skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
   const Command command = this->command(rendering, interval_s);
@@ -176,7 +194,8 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   thermal_state_t out{};
   out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));
   out.tool = tool_;
-  out.material = e.conductance_W_m2K > 0 ? material_ : -1;
+  const auto most = std::max_element(e.conductance_W_m2K.begin(), e.conductance_W_m2K.end());
+  out.material = *most > 0 ? things_[static_cast<std::size_t>(most - e.conductance_W_m2K.begin())].material : -1;
   out.force_N = lost ? 0 : reading(tick.contact.force_N);
   out.area_m2 = lost ? 0 : reading(tick.contact.area_m2);
   out.heat_flux_W_m2 = static_cast<float>(skin_->heat_flux_W_m2());

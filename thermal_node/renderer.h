@@ -1,6 +1,7 @@
 // The thermal sense of one tool: contacts in, skin temperature, command and reports of presentation out. Pure.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -63,11 +64,18 @@ class Renderer {
  private:
   // Means over the tick.
   struct Exchange {
-    double conductance_W_m2K = 0;
-    double touched_share = 0;  // of the pad and of the time
+    std::array<double, Skin::kThings> conductance_W_m2K{};  // to each thing under the skin
+    double touched_share = 0;                               // of the pad and of the time
+    double pressed_share = 0;  // of what the whole pad, firmly pressed, conducts: at most 1
   };
-  Exchange exchange(const sync::ContactIntegral& contact, double contact_s, double interval_s);
-  Exchange missed_touches(const Tick& tick, double interval_s);
+  // A thing that the models hold under the skin.
+  struct Thing {
+    int material = -1, body = -1;
+    std::int64_t touched = -1;  // tick in which it was last
+  };
+  void add(Exchange& sum, const sync::ContactPart& part, double interval_s);
+  void add_missed_touches(Exchange& sum, const Tick& tick, double interval_s);
+  std::size_t thing_of(int body, int material);
   ObjectProperties object(const material_def_t& material, int body) const;
   void report(const contact_event_t& event, const Tick& tick);
   Command command(const Rendering& rendering, double interval_s);
@@ -84,8 +92,8 @@ class Renderer {
   Dwell dwell_;
   Controller controller_;
   double commanded_degC_;
-  int material_ = -1;  // the one that is under the skin in the model
-  int body_ = -1;
+  std::array<Thing, Skin::kThings> things_{};
+  std::int64_t tick_ = 0;
   bool input_lost_ = true;
   std::vector<presentation_t> reports_;
 };

@@ -2,7 +2,9 @@
 // loses.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <span>
 
 namespace tactus::thermal {
 
@@ -25,17 +27,24 @@ class Skin {
 
   // Everything back to rest.
   virtual void reset() = 0;
+  // So many things can touch the skin at once.
+  static constexpr std::size_t kThings = 4;
   // Puts another object, uniformly at its own temperature, under the skin.
-  virtual void set_object(const ObjectProperties& object) = 0;
+  virtual void set_object(const ObjectProperties& object, std::size_t thing = 0) = 0;
 
-  // Advances by dt seconds, during which the skin exchanges heat with the object through `conductance` (W/(m^2 K),
-  // the mean over dt) and, for the share of dt and area that it does not touch, with the room. Longer substeps are
-  // cheaper and less exact; they may change from step to step.
-  virtual void step(double dt_s, double conductance_W_m2K, double touched_share,
+  // Advances by dt seconds, during which the skin exchanges heat with each thing through a conductance (W/(m^2 K),
+  // mean over dt and pad; those beyond the end are not touched) and, for the share of dt and area that it touches
+  // none, with the room. Longer substeps are cheaper and less exact; they may change from step to step.
+  virtual void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
                     double longest_substep_s = kLongestSubstep_s) = 0;
+  // With the first of them alone.
+  void step(double dt_s, double conductance_W_m2K, double touched_share,
+            double longest_substep_s = kLongestSubstep_s) {
+    step(dt_s, std::span<const double>(&conductance_W_m2K, 1), touched_share, longest_substep_s);
+  }
 
   virtual double surface_degC() const = 0;
-  // Mean over the last substep, out of the skin into the object, W/m^2.
+  // Mean over the last substep, out of the skin into all that touches it, W/m^2.
   virtual double heat_flux_W_m2() const = 0;
 };
 

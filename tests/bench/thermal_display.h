@@ -30,7 +30,7 @@ inline std::unique_ptr<Skin> skin_of(const std::string& model) {
 using Trace = std::vector<double>;
 
 // On the thing itself.
-inline Trace touch(const Material& m, const std::string& person, double seconds) {
+inline Trace touching(const Material& m, const std::string& person, double seconds) {
   const auto skin = skin_of(person);
   skin->set_object(m.object());
   Trace trace{skin->surface_degC()};
@@ -72,10 +72,7 @@ inline Trace display(const Material& m, const std::string& model, const std::str
     if (tick >= 0) trace.push_back(finger->surface_degC());
     Tick next = hand.next();
     if (tick >= 0) {
-      next.contact.contact_time = kTick;
-      next.contact.force_N = settings.reference_force_N;
-      next.contact.area_m2 = settings.reference_area_m2;
-      next.contact.material = next.contact.body = 0;
+      touch(next, 0, settings.reference_force_N, settings.reference_area_m2);
     }
     command = hand.renderer.step(next, {.plate = PlateReading{sum, plate.sink_degC, current}}).commanded_degC;
   }

@@ -79,7 +79,7 @@ json against_oracle(const std::vector<Material>& ten) {
     json row{{"material", m.name}, {"effusivity", m.effusivity_()}};
     for (const std::string model : {"half_space", "bioheat"}) {
       auto truth = truth_of(m, model);
-      const Trace trace = touch(m, model, 10);
+      const Trace trace = touching(m, model, 10);
       double off_K = 0;
       for (const double t : kTimes) {
         truth.advance(t);
@@ -166,7 +166,7 @@ json displayed(const std::vector<Material>& ten, const std::string& model, const
       "flux");
   json rows;
   for (const Material& m : ten) {
-    const Trace real = touch(m, person, 5);
+    const Trace real = touching(m, person, 5);
     const Trace flux = display(m, model, person, Drive::kFlux, 5),
                 skin = display(m, model, person, Drive::kSkin, 5),
                 passive = display(m, model, person, Drive::kPassive, 5);

@@ -39,6 +39,17 @@ inline Settings bare() {
   return settings;
 }
 
+// Fills a tick with a touch of one body, whose id is that of its material.
+inline void touch(Tick& tick, int material, double force_N, double area_m2 = 1e-4,
+                  sync::Nanoseconds contact = kTick) {
+  const double share = sync::to_seconds(contact) / sync::to_seconds(kTick);
+  tick.contact.contact_time = contact;
+  tick.contact.force_N = force_N * share;
+  tick.contact.area_m2 = area_m2 * share;
+  tick.contact.material = tick.contact.body = material;
+  tick.contact.parts = {{material, material, contact, tick.contact.force_N, tick.contact.area_m2}};
+}
+
 struct Hand {
   explicit Hand(std::vector<material_def_t> materials = kMaterials, const Settings& settings = {})
       : renderer(settings, std::move(materials), 0, 9) {}
@@ -69,12 +80,7 @@ struct Hand {
     thermal_state_t state{};
     for (int i = 0; i < ticks; ++i) {
       Tick tick = next();
-      const double share = sync::to_seconds(contact) / sync::to_seconds(kTick);
-      tick.contact.contact_time = contact;
-      tick.contact.force_N = force_N * share;
-      tick.contact.area_m2 = 1e-4 * share;
-      tick.contact.material = material;
-      tick.contact.body = material;
+      touch(tick, material, force_N, 1e-4, contact);
       state = renderer.step(tick);
     }
     return state;

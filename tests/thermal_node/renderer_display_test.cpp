@@ -17,10 +17,7 @@ struct Displayed {
   thermal_state_t tick(int material, double force_N) {
     Tick tick = hand.next();
     if (material >= 0) {
-      tick.contact.contact_time = kTick;
-      tick.contact.force_N = force_N;
-      tick.contact.area_m2 = 1e-4;
-      tick.contact.material = tick.contact.body = material;
+      touch(tick, material, force_N);
     }
     reading = *device.step(commanded, hand.renderer.load_W(), tick.end);
     const thermal_state_t state = hand.renderer.step(tick, {.plate = reading});
@@ -78,10 +75,7 @@ TEST_CASE("Whatever a display says of itself, the command stays in its range and
   float before = 33;
   for (int i = 0; i < 5000; ++i) {
     Tick tick = hand.next();
-    tick.contact.contact_time = kTick;
-    tick.contact.force_N = 1;
-    tick.contact.area_m2 = 1e-4;
-    tick.contact.material = tick.contact.body = static_cast<int>(random() % 3);
+    touch(tick, static_cast<int>(random() % 3), 1);
     const auto any = [&] { return values[random() % std::size(values)]; };
     const thermal_state_t state = hand.renderer.step(
         tick, {.plate = PlateReading{any(), any(), any(), any(), random() % 2 == 0, random() % 9 == 0}});
@@ -102,10 +96,7 @@ TEST_CASE("A plate that ran away or reports a fault is called back to rest, and 
     thermal_state_t state{};
     for (int i = 0; i < 100; ++i) {
       Tick tick = hand.next();
-      tick.contact.contact_time = kTick;
-      tick.contact.force_N = 1;
-      tick.contact.area_m2 = 1e-4;
-      tick.contact.material = tick.contact.body = kCopper;
+      touch(tick, kCopper, 1);
       state = hand.renderer.step(tick, {.plate = bad});
       CHECK(state.limited == 1);
     }

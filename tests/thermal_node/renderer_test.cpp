@@ -103,9 +103,10 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
       Hand hand({material(any(), any(), any(), any()), material(any(), any(), any(), any())}, settings);
       for (int i = 0; i < 20; ++i) {
         Tick tick = hand.next();
-        tick.contact.material = static_cast<int>(random() % 5) - 2;
-        tick.contact.body = static_cast<int>(random() % 2);
-        tick.contact.contact_time = sync::Nanoseconds(static_cast<std::int64_t>(random() % 40) * kMs);
+        for (std::size_t n = random() % 7; n > 0; --n)
+          tick.contact.parts.push_back({static_cast<int>(random() % 3), static_cast<int>(random() % 5) - 2,
+                                        sync::Nanoseconds(static_cast<std::int64_t>(random() % 40) * kMs), any(),
+                                        any()});
         tick.contact.force_N = any();
         tick.contact.area_m2 = any();
         if (i % 2) tick.contact_interval = sync::Nanoseconds(0);
@@ -129,9 +130,7 @@ TEST_CASE("Input that is stale or absent returns the command to resting skin, no
     for (int i = 0; i < 50; ++i) {
       Tick tick = hand.next();
       tick.contact.how = how;
-      tick.contact.contact_time = kTick;
-      tick.contact.force_N = 1;
-      tick.contact.material = kCopper;
+      touch(tick, kCopper, 1);
       const thermal_state_t state = hand.renderer.step(tick);
       CHECK(hand.renderer.input_lost());
       CHECK(state.material == -1);
@@ -194,6 +193,55 @@ TEST_CASE("The same contacts give the same command to the bit") {
   CHECK(run() == run());
 }
 
+TEST_CASE("Two things at once cool by what each takes") {
+  const auto settings = with_model(GENERATE("half_space", "bioheat"));
+  const auto after_a_second = [&](double on_copper_N, double on_plastic_N) {
+    Hand hand(kMaterials, settings);
+    thermal_state_t state{};
+    for (int i = 0; i < 50; ++i) {
+      Tick tick = hand.next();
+      if (on_copper_N > 0) tick.contact.parts.push_back({kCopper, kCopper, kTick, on_copper_N, 0.5e-4});
+      if (on_plastic_N > 0) tick.contact.parts.push_back({kPlastic, kPlastic, kTick, on_plastic_N, 0.5e-4});
+      state = hand.renderer.step(tick);
+    }
+    return state;
+  };
+  const auto both = after_a_second(0.4, 0.4), copper = after_a_second(0.4, 0), plastic = after_a_second(0, 0.4),
+             two_of_copper = after_a_second(0.8, 0);
+  CHECK(both.skin_degC < copper.skin_degC - 0.2);
+  CHECK(copper.skin_degC < plastic.skin_degC - 0.2);
+  CHECK(both.skin_degC > two_of_copper.skin_degC + 0.2);
+  CHECK(both.material == kCopper);
+  CHECK(plastic.material == kPlastic);
+}
+
+TEST_CASE("More than the whole pad does not conduct, however many things press it") {
+  Hand one, many;
+  thermal_state_t a{}, b{};
+  for (int i = 0; i < 50; ++i) {
+    a = one.press(kCopper, 10);
+    Tick tick = many.next();
+    for (int body = 0; body < 7; ++body) tick.contact.parts.push_back({body, kCopper, kTick, 10, 1e-4});
+    b = many.renderer.step(tick);
+  }
+  CHECK(b.skin_degC == Approx(a.skin_degC).margin(0.01));
+}
+
+TEST_CASE("A thing touched again is still as cold or as warm as the touch has left it") {
+  // Plastic that a finger has warmed cools it less the second time, though copper was touched in between; another
+  // piece of the same plastic cools it anew.
+  Hand warmed, fresh;
+  const auto flux = [&](Hand& hand, int body) {
+    hand.press(kPlastic, 1, 250);
+    hand.press(kCopper, 1, 5);
+    hand.rest(10);
+    Tick tick = hand.next();
+    tick.contact.parts = {{body, kPlastic, kTick, 1, 1e-4}};
+    return hand.renderer.step(tick).heat_flux_W_m2;
+  };
+  CHECK(flux(warmed, kPlastic) < 0.8 * flux(fresh, 77));
+}
+
 TEST_CASE("With layers of tissue a sheet warms through and a block does not") {
   const auto after_ten_seconds = [](const char* model, double thickness_m) {
     Hand hand;
@@ -253,10 +301,7 @@ TEST_CASE("A slow display is later than the skin, and switching it on and off is
   float before = hand.press(kCopper, 1, 10).commanded_degC;
   for (int i = 0; i < 200; ++i) {
     Tick tick = hand.next();
-    tick.contact.contact_time = kTick;
-    tick.contact.force_N = 1;
-    tick.contact.area_m2 = 1e-4;
-    tick.contact.material = tick.contact.body = kCopper;
+    touch(tick, kCopper, 1);
     const bool slow = i >= 10 && i < 100;
     const thermal_state_t state = hand.renderer.step(tick, {.response_s = slow ? 2.0 : 0.0});
     // The element's own limit; the step to the skin's temperature takes some ticks of it.
@@ -272,10 +317,7 @@ TEST_CASE("However slow a display is on purpose, it is in the safe range, and lo
   Hand hand(kMaterials, bare());
   for (int i = 0; i < 200; ++i) {
     Tick tick = hand.next();
-    tick.contact.contact_time = kTick;
-    tick.contact.force_N = 20;
-    tick.contact.area_m2 = 1e-4;
-    tick.contact.material = tick.contact.body = kFurnace;
+    touch(tick, kFurnace, 20);
     REQUIRE(hand.renderer.step(tick, {.response_s = 0.5}).commanded_degC <= 42);
   }
   thermal_state_t state{};
