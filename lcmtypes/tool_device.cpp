@@ -15,7 +15,7 @@ double number(std::string_view word, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
-    refuse(text, "\"" + std::string(word) + "\" is no number");
+    refuse(text, '"' + std::string(word) + "\" is no number");
   return value;
 }
 

@@ -105,7 +105,7 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
       line += " | " + m.modality + " " + std::to_string(m.presented) + "/" + std::to_string(m.owed) +
               (m.lost > 0 ? " LOST " + std::to_string(m.lost) : "");
     for (const pair_report_t& p : report_->pairs)
-      line += " | " + p.a + " to " + p.b + " " + duration(Nanoseconds(std::abs(p.p50_ns))).insert(0, p.p50_ns < 0 ? "-" : "") +
+      line += " | " + p.a + " to " + p.b + (p.p50_ns < 0 ? " -" : " ") + duration(Nanoseconds(std::abs(p.p50_ns))) +
               " +-" + uncertainty(Nanoseconds(p.uncertainty_ns));
     out += cut(line, 2 * width);
   }

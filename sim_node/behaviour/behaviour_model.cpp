@@ -14,6 +14,7 @@ constexpr std::array<BehaviourModel, 5> kModels{{
     {.name = "impulse",
      .what = "impulses: collisions pair by pair, then contact",
      .impulses = true,
+     .needs_gaps = true,
      .needs_trees = true},
     {.name = "penalty",
      .what = "spring and damper in a shell, of the end of the step",
@@ -74,14 +75,16 @@ std::string refusal(const BehaviourModel& model, const DetectorAbilities& detect
   if (!model.needs_gaps || detector.separation) return "";
   return "sim_node: the solver \"" + std::string(model.name) +
          "\" acts before surfaces meet, which the detector \"" + std::string(detector.name) +
-         "\" does not see; choose a detector that sees gaps, as \"layers\" does, or the solver \"impulse\"";
+         "\" does not see; choose a detector that sees gaps, as \"gaps\" does, or the solver \"quick\" or \"step\"";
 }
 
 std::string refusal(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
-  if (settings.groups == "dual" && model.name != "impulse")
+  if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
     return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
-           std::string(model.name) + "\"; choose solver = impulse, or groups = single";
+           std::string(model.name) +
+           "\"; choose solver = impulse, or penalty_explicit for springs of the start of the step near the tools, or "
+           "groups = single";
   if (model.needs_gaps) {
     const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;

@@ -17,7 +17,8 @@ struct BehaviourModel {
   std::string_view name, what;
   // Solved by impulse::World, free bodies and systems of joints alike; else by ODE.
   bool impulses = false;
-  // Acts before surfaces meet: contacts have to say how far they still are apart. The others make do with overlap.
+  // Acts before surfaces meet, and puts apart what overlaps all the same: contacts have to say how far they still are
+  // apart, or what was put apart would be no contact any more and never be solved. The others make do with overlap.
   bool needs_gaps = false;
   // Joints must not close a loop.
   bool needs_trees = false;

@@ -76,6 +76,7 @@ void ImpulseSolver::look() {
 
 void ImpulseSolver::step(double h) {
   report_ = advance_.step(*world_, source_, h, contacts_, solved_);
+  source_.frames().place_impacts(solved_);
   read();
 }
 

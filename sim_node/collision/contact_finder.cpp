@@ -1,6 +1,7 @@
 #include "sim_node/collision/contact_finder.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "sim_node/collision/gaps/choose.h"
 #include "sim_node/collision/layer_options.h"
@@ -37,7 +38,10 @@ ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, st
   gaps_ = make_detector("gaps", options, trees);
   auto chosen = make_detector(settings.detector, options, trees);
   const DetectorAbilities can = chosen->abilities();
-  if (can.separation && can.name != "gaps") chosen_ = std::move(chosen);
+  if (!can.separation)
+    throw std::runtime_error("sim_node: the detector \"" + settings.detector +
+                             "\" sees no gaps, which contacts that are found ahead need; choose auto, gaps, layers, ccd or fcl");
+  if (can.name != "gaps") chosen_ = std::move(chosen);
   only_triangles_ = can.name == "layers";
   chosen_takes_.resize(kKinds * kKinds, false);
   for (std::size_t i = 0; chosen_ && i < kKinds; ++i)

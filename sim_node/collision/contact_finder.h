@@ -15,11 +15,11 @@
 
 namespace tactus::sim {
 
-// Every pair is looked at by the detector that the settings choose, where that sees gaps and takes the pair, and
-// by `gaps` otherwise.
+// Every pair is looked at by the detector that the settings choose, where that takes the pair of kinds, and by `gaps`
+// otherwise, and where the surfaces pass through each other, which the chosen one cannot resolve.
 class ContactFinder {
  public:
-  // Throws std::runtime_error with one sentence when the chosen detector cannot take a shape of the world. trees:
+  // Throws std::runtime_error with one sentence when the chosen detector sees no gaps. trees:
   // of this world, where others use them too.
   ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees = nullptr);
 

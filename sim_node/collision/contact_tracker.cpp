@@ -36,13 +36,12 @@ double deepest(const Manifold& c) {
 
 // Only the points that `keep`; all of them when it keeps none.
 template <class Keep>
-Manifold of_points(const Manifold& c, Keep keep) {
-  Manifold out = c;
+void take_points(const Manifold& c, Keep keep, Manifold& out) {
+  out = c;
+  if (std::none_of(c.used().begin(), c.used().end(), keep)) return;
   out.count = 0;
   for (const ManifoldPoint& p : c.used())
     if (keep(p)) out.points[static_cast<std::size_t>(out.count++)] = p;
-  if (out.count == 0) return c;
-  return out;
 }
 
 Vector3d tangential(const Vector3d& v, const Vector3d& n) { return v - v.dot(n) * n; }
@@ -54,23 +53,24 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
     : surfaces_(std::move(surfaces)), settings_(settings), meets_at_m_(meeting_distance_m(settings)), ids_(ids) {}
 
-// At the point whose surfaces close fastest.
-ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<const BodyMotion> bodies) const {
+// The point whose surfaces close fastest.
+ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<const BodyMotion> bodies) const {
   const BodyMotion &a = at(bodies, c.body_a), &b = at(bodies, c.body_b);
-  Meeting best;
-  const ManifoldPoint* fastest = nullptr;
+  Closing fastest;
   for (const ManifoldPoint& p : c.used()) {
     const double speed = (a.velocity_at(p.point_m) - b.velocity_at(p.point_m)).dot(p.normal);
-    if (fastest && speed <= best.speed_m_s) continue;
-    best.speed_m_s = speed;
-    fastest = &p;
+    if (!fastest.point || speed > fastest.speed_m_s) fastest = {&p, speed};
   }
-  best.depth_m = std::max(0.0, fastest->depth_m + meets_at_m_);
-  best.place_m = fastest->point_m;
-  best.normal = fastest->normal;
-  best.mass_kg = effective_mass(a, b, best.place_m, best.normal);
-  best.curvature_1_m = curvature_of(c, *fastest, bodies);
-  return best;
+  return fastest;
+}
+
+ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<const BodyMotion> bodies) const {
+  const auto [point, speed_m_s] = closing(c, bodies);
+  return {.speed_m_s = speed_m_s,
+          .mass_kg = effective_mass(at(bodies, c.body_a), at(bodies, c.body_b), point->point_m, point->normal),
+          .curvature_1_m = curvature_of(c, *point, bodies),
+          .place_m = point->point_m,
+          .normal = point->normal};
 }
 
 double ContactTracker::curvature_of(const Manifold& c, const ManifoldPoint& p, std::span<const BodyMotion> bodies) const {
@@ -118,8 +118,9 @@ void ContactTracker::tell(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   emit(c, kind, when, meeting(c.manifold, bodies));
 }
 
-// Takes the newest manifold as the state of the contact.
-void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const BodyMotion> bodies, bool rolls) {
+// Its manifold is the newest: so is its state.
+void ContactTracker::remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls) {
+  const Manifold& m = c.manifold;
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
   const Vector3d place = centre_of(m), n = m.points[0].normal;
   const Vector3d surfaces = 0.5 * (a.velocity_at(place) + b.velocity_at(place));
@@ -129,7 +130,6 @@ void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const
     if (beyond.norm() < kJump_m) rolling = beyond / step_s_;
   }
   c.rolling_m_s += (rolling - c.rolling_m_s) * std::min(1.0, step_s_ / kRollingTime_s);
-  c.manifold = m;
   c.place_m = place;
   c.touching = true;
   c.gap_m = 0;
@@ -138,15 +138,16 @@ void ContactTracker::remember(LiveContact& c, const Manifold& m, std::span<const
   c.b_body_m = b.to_body(p.point_m - 0.5 * p.depth_m * p.normal);
 }
 
-void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, const Meeting& how) {
-  if (is_new) emit(c, contact_event_t::BEGIN, when, how);
+template <class How>
+void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, How how) {
+  if (is_new) emit(c, contact_event_t::BEGIN, when, how());
   const bool rested = !c.has_hit || now_ - c.last_hit >= sync::from_seconds(settings_.hit_interval_s);
-  if (c.armed && rested && how.speed_m_s > settings_.hit_speed_m_s) {
-    emit(c, contact_event_t::HIT, when, how);
+  if (c.armed && rested && speed_m_s > settings_.hit_speed_m_s) {
+    emit(c, contact_event_t::HIT, when, how());
     c.armed = false;
     c.has_hit = true;
     c.last_hit = now_;
-  } else if (how.speed_m_s < kRearm * settings_.hit_speed_m_s) {
+  } else if (speed_m_s < kRearm * settings_.hit_speed_m_s) {
     c.armed = true;
   }
 }
@@ -196,21 +197,21 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
   }
   if (struck) {
     const Impact& i = struck->impact;
-    const Manifold met = of_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; });
     if (!before) c.place_m = i.place_m;
-    c.manifold = met;
+    take_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; }, c.manifold);
     c.a_body_m = i.a_body_m, c.b_body_m = i.b_body_m;
-    meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), meeting(met, i));
+    meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), i.speed_m_s, [&] { return meeting(c.manifold, i); });
   }
   if (touches) {
     const double far = meets_at_m_ + kParted_m;
-    const Manifold met = of_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; });
-    remember(c, met, bodies, touched);
+    take_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; }, c.manifold);
+    remember(c, bodies, touched);
     if (struck) return;
     // The impact was inside the step: where the overlap began.
-    const Meeting how = meeting(met, bodies);
-    const double since_s = how.speed_m_s > 0 ? std::clamp(how.depth_m / how.speed_m_s, 0.0, step_s_) : 0;
-    meet(c, !before, now_ - sync::from_seconds(since_s), how);
+    const auto [point, speed_m_s] = closing(c.manifold, bodies);
+    const double depth_m = std::max(0.0, point->depth_m + meets_at_m_);
+    const double since_s = speed_m_s > 0 ? std::clamp(depth_m / speed_m_s, 0.0, step_s_) : 0;
+    meet(c, !before, now_ - sync::from_seconds(since_s), speed_m_s, [&] { return meeting(c.manifold, bodies); });
   } else if (part(c, near, struck, bodies)) {
     next_.pop_back();
   }

@@ -48,6 +48,8 @@ class ContactTracker {
               std::span<const Manifold> contacts, std::span<const Manifold> solved, std::vector<contact_event_t>& events);
 
   std::span<const LiveContact> live() const { return live_; }
+  // Those before the last update, once: what is in `into` goes, its room is used.
+  void take_previous(std::vector<LiveContact>& into) { std::swap(next_, into); }
   // The contact as a message.
   void describe(const LiveContact& contact, std::span<const BodyMotion> bodies, contact_t& out) const;
 
@@ -71,17 +73,22 @@ class ContactTracker {
     double speed_m_s = 0;  // at which they close; negative: they part
     double mass_kg = 0;    // that the meeting feels
     double curvature_1_m = 0;
-    double depth_m = 0;
     Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitZ();
   };
+  struct Closing {
+    const ManifoldPoint* point = nullptr;
+    double speed_m_s = 0;
+  };
+  Closing closing(const Manifold& contact, std::span<const BodyMotion> bodies) const;
   Meeting meeting(const Manifold& contact, std::span<const BodyMotion> bodies) const;
   Meeting meeting(const Manifold& contact, const Impact& impact) const;
   void follow(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
-  // A hit when the surfaces close fast enough.
-  void meet(LiveContact& c, bool is_new, sync::SimTime when, const Meeting& how);
+  // A hit when the surfaces close fast enough. how: gives the Meeting, should there be something to say.
+  template <class How>
+  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, How how);
   // True when it has ended.
   bool part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
-  void remember(LiveContact& c, const Manifold& contact, std::span<const BodyMotion> bodies, bool rolls);
+  void remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls);
   void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& how);
   double curvature_of(const Manifold& contact, const ManifoldPoint& p, std::span<const BodyMotion> bodies) const;
 

@@ -17,13 +17,14 @@ struct ManifoldPoint {
 
 // What a step did at a pair of shapes: how they met in it, if they did.
 struct Impact {
-  int blows = 0;                    // 0: they touched before, or did not touch
-  double first_s = 0, last_s = 0;   // instants of the first and the last blow, from the start of the step
-  double speed_m_s = 0;             // at which the surfaces closed before the first
-  double effective_mass_kg = 0;     // that it felt, joints included
+  int blows = 0;                   // 0: they touched before, or did not touch, and the rest says nothing
+  double first_s = 0, last_s = 0;  // instants of the first and the last blow, from the start of the step
+  double speed_m_s = 0;            // at which the surfaces closed before the first
+  double effective_mass_kg = 0;    // that it felt, joints included
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
-  // The places that met, in the frames of the bodies.
+  // The places that met, in the frames of the bodies as they lay when the step began (its last part, if it was
+  // divided). Of an impulse world: from their centres of mass, turned as since its start (impulse/body_frames.h).
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;
 };
@@ -36,6 +37,19 @@ struct Manifold {
   int count = 0;
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
   Impact impact;  // once solved
+
+  // Only what is used is copied: lists of manifolds are most of what a step moves about.
+  Manifold() = default;
+  Manifold(const Manifold& o) { *this = o; }
+  Manifold& operator=(const Manifold& o) {
+    shape_a = o.shape_a, shape_b = o.shape_b, body_a = o.body_a, body_b = o.body_b, count = o.count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) points[i] = o.points[i];
+    if (o.impact.blows > 0)
+      impact = o.impact;
+    else
+      impact.blows = 0;
+    return *this;
+  }
 
   std::span<const ManifoldPoint> used() const { return {points.data(), static_cast<std::size_t>(count)}; }
   std::span<ManifoldPoint> used() { return {points.data(), static_cast<std::size_t>(count)}; }

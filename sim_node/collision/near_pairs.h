@@ -32,7 +32,7 @@ class NearPairs {
   struct Extent {  // of a shape, in its own frame
     Eigen::Vector3d middle_m{0, 0, 0}, half_m{0, 0, 0};
     double round_m = 0;
-    double around_centre_m = 0;  // no point of it is further from the centre of mass of its body
+    double lever_m = 0;  // of what turning its body moves, from the centre of mass: not of what is round
   };
   struct HalfSpace {
     int shape;
@@ -44,10 +44,15 @@ class NearPairs {
     Bounds bounds;       // during the step, and half the tolerance
     double grown_m = 0;  // for blows; within the bounds
   };
+  struct Span {  // of one that is swept, on the axis
+    double least_m, most_m;
+    std::size_t swept;
+  };
   static Extent extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees);
   Bounds bounds_of_shape(int shape) const;
   void place(const BodyMotion& m, int body, double h_s);
   void with_fixed(std::size_t i, std::span<const BodyMotion> bodies, double h_s);
+  void order_swept();
   void among_moving(std::span<const BodyMotion> bodies, double h_s);
   void add(int shape_a, int shape_b, double reach_m);
   bool may_touch(int body_a, int body_b) const;
@@ -59,6 +64,7 @@ class NearPairs {
   std::vector<Eigen::Isometry3d> in_body_, poses_;  // about the centre of mass of the body; in the world
   std::vector<int> body_of_;
   std::vector<double> restitution_;          // per shape
+  std::vector<int> half_space_of_;           // per shape; -1: it is none
   std::vector<double> blow_m_s_;             // per body: what blows within the step may add to its speed
   std::vector<std::vector<int>> shapes_of_;  // per body that moves
   std::vector<int> fixed_;                   // shapes in the grid, by their number there
@@ -66,6 +72,7 @@ class NearPairs {
   std::vector<HalfSpace> half_spaces_;
   std::vector<std::pair<int, int>> apart_;  // sorted pairs of bodies that do not collide
   std::vector<Swept> swept_;
+  std::vector<Span> order_;
   std::vector<int> met_;
   std::vector<NearPair> pairs_;
 };

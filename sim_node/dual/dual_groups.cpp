@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "sim_node/behaviour/behaviour_model.h"
 #include "sim_node/dual/group_bodies.h"
 
 namespace tactus::sim {
@@ -19,11 +21,16 @@ GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
   return l;
 }
 
+const Settings& accepted(const WorldDef& def, const Settings& s) {
+  if (const std::string why = refusal(def, s); !why.empty()) throw std::runtime_error(why);
+  return s;
+}
+
 }  // namespace
 
 DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
                        const std::shared_ptr<MeshTrees>& trees)
-    : settings_(settings),
+    : settings_(accepted(def, settings)),
       world_(impulse::build_world(def, for_haptic_group(settings))),
       source_(def, settings, trees),
       advance_(extents_of(def)),
@@ -134,6 +141,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
   }
   loads_.clear();
   advance_.step(*world_, source_, settings_.step_s, contacts_, solved_);
+  source_.frames().place_impacts(solved_);
   read_motions(active);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);
   tell_due(now + h, events);

@@ -43,7 +43,7 @@ std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& w
 }
 
 Settings for_haptic_group(Settings s) {
-  s.solver = "penalty";
+  if (s.solver != "penalty_explicit") s.solver = "penalty";
   return s;
 }
 

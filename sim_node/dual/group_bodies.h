@@ -17,8 +17,8 @@ std::vector<double> body_radii(const WorldDef& world, MeshTrees& trees);
 // world: of impulses, for its systems of joints.
 std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world, MeshTrees& trees);
 
-// Settings with the behaviour models that the groups have: penalty contact where a hand may be, impulses
-// elsewhere.
+// Settings with the behaviour models that the groups have: penalty contact where a hand may be, of the end of the step
+// unless the settings ask for the explicit form; impulses elsewhere.
 Settings for_haptic_group(Settings settings);
 Settings for_visual_group(Settings settings);
 

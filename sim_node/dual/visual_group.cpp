@@ -185,12 +185,20 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     h = sync::to_seconds(at(k + 1) - at(k));
     while (noted && wake_struck(h)) find(h);
     if (noted) note_sub_step(index(k), at(k), out);
-    advance_.step(*world_, source_, h, contacts_, solved_);
+    // Steps are of one of two lengths that differ by a tick: the next one may be as long as the one before.
+    const double next_s = std::max(h, before_s_);
+    advance_.step(*world_, source_, h, contacts_, solved_, next_s);
+    frames_.place_impacts(solved_);
     found_ = noted;
-    found_for_s_ = h;
+    found_for_s_ = next_s;
+    before_s_ = h;
     read_motions();
     const std::size_t first = out.events.size();
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
+    if (noted) {
+      tracker.take_previous(out.live[index(k)]);
+      add_resting(out.live[index(k)]);
+    }
     for (const LiveContact& c : tracker.live()) note_touching(c.manifold.body_a, c.manifold.body_b);
     for (std::size_t i = first; i < out.events.size(); ++i)
       note_touching(out.events[i].body_a, out.events[i].body_b);
@@ -209,8 +217,10 @@ void VisualGroup::note_sub_step(std::size_t k, sync::Nanoseconds passed, VisualS
   out.times.push_back(passed);
   out.states[k].resize(units_.size());
   for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], out.states[k][i]);
-  out.live[k].assign(tracker_.live().begin(), tracker_.live().end());
-  out.live[k].insert(out.live[k].end(), resting_contacts_.begin(), resting_contacts_.end());
+}
+
+void VisualGroup::add_resting(std::vector<LiveContact>& live) const {
+  live.insert(live.end(), resting_contacts_.begin(), resting_contacts_.end());
 }
 
 // Straight ways lead from where the bodies are to where they will be.
@@ -261,6 +271,8 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
                    [](const contact_event_t& x, const contact_event_t& y) { return x.time_ns < y.time_ns; });
   now_ += task.length;
   note_sub_step(index(settings_.visual_substeps), task.length, out);
+  out.live.back().assign(tracker_.live().begin(), tracker_.live().end());
+  add_resting(out.live.back());
   note_ways(out);
   settle(task.length);
   out.end = motions_;

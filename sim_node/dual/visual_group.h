@@ -58,6 +58,7 @@ class VisualGroup {
   void read_motions();
   void note_touching(int a, int b);
   void note_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out);
+  void add_resting(std::vector<LiveContact>& live) const;
   void note_ways(VisualStep& out);
 
   Settings settings_;
@@ -74,7 +75,7 @@ class VisualGroup {
   Resting resting_;
   sync::SimTime now_{};
   bool found_ = false;  // contacts_ are those of the present poses, sought for steps of found_for_s_
-  double found_for_s_ = 0;
+  double found_for_s_ = 0, before_s_ = 0;  // and the length of the sub-step before
   std::vector<int> units_, awake_;            // ascending
   std::vector<char> mask_, supported_;        // of each body
   std::vector<BodyMotion> motions_, sought_;  // as they are, and as contacts were last sought for

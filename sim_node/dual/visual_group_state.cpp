@@ -22,7 +22,7 @@ void VisualGroup::archive(StateArchive& a) {
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
   a.list(contacts_, kMostContacts, [&](Manifold& m) { sim::archive(a, m, motions_.size(), finder_.shapes()); });
   bool found = found_;
-  a(found), a(found_for_s_);
+  a(found), a(found_for_s_), a(before_s_);
   if (!a.reads()) return;
   sought_ = motions_;
   activate();

@@ -1,6 +1,6 @@
 // Penalty against analytic contact: what a step costs, whether forces are finite and continuous, which step a
-// stiffness needs, and how stiff contact may be at a given step. Table 1 of Kim, Sung, Park 2005 and its claim of
-// better stability, measured.
+// stiffness needs, and how stiff contact may be at a given step; then the same scene in one group and in two.
+// Table 1 of Kim, Sung, Park 2005 and its claim of better stability, measured.
 //
 //   bin/stability_table [--json FILE]
 #include <CLI/CLI.hpp>
@@ -12,19 +12,21 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "tests/bench/stability.h"
+#include "tests/bench/stability_groups.h"
 #include "tests/sim_node/toys.h"
 
 using namespace tactus::sim;
+using namespace tactus::sim::bench;
 using namespace tactus::sim::test;
 using nlohmann::json;
 
 namespace {
 
 // design: a shell so thick that 1 m/s is stopped in it.
-constexpr double kShell_m = 0.02, kLightest_kg = 0.05, kDampingRatio = 0.05;
-constexpr double kStiffestTried = 1e5;  // k h^2 / m: far beyond what any explicit step bears
+constexpr double kShell_m = 0.02;
 
-// A way to solve contact. A simulation that steps groups of bodies differently is one more row of `models`.
+// A way to solve contact.
 struct Model {
   std::string name;
   // Steps a scene by h, however often it needs to inside.
@@ -45,12 +47,7 @@ std::vector<Model> models() {
           {"analytic", step, [](double, double) { return penalty(0, 0, false); }}};
 }
 
-// A tower of boxes, or a ball, at rest in a shell that is so many times as thick as one of them bends its springs:
-// there spring and damper are linear.
-constexpr double kBends = 8;
-static_assert(kBends * impulse::kDamperSetsIn < 1);
-double bend_m(double k) { return kLightest_kg * kToyG / k; }
-
+// A tower of boxes, or a ball, at rest in its springs.
 struct Resting {
   Toys toys;
   std::vector<std::pair<int, double>> bodies;  // and their mass
@@ -103,18 +100,9 @@ bool stays_stable(const Model& model, int boxes, double x, double h) {
   return true;
 }
 
-// The largest k h^2 / m at which it does, to 1 %; 0: none, since a softer tower topples for want of stiffness.
+// The largest k h^2 / m at which it does; 0: none, since a softer tower topples for want of stiffness.
 double stiffest(const Model& model, int boxes, double h) {
-  double low = kStiffestTried, high = low;
-  for (; !stays_stable(model, boxes, low, h); low /= 1.5) {
-    if (low < 0.01) return 0;
-    high = low;
-  }
-  while (high / low > 1.01) {
-    const double middle = std::sqrt(low * high);
-    (stays_stable(model, boxes, middle, h) ? low : high) = middle;
-  }
-  return low;
+  return largest(kStiffestTried, 0.01, [&](double x) { return stays_stable(model, boxes, x, h); });
 }
 
 // A ball that arrives at 1 m/s: its largest force, and the largest change from one step to the next.
@@ -167,6 +155,43 @@ double cost_us(const Model& model, double k, double h) {
   return median(took);
 }
 
+// "> most" when there is no limit.
+std::string limit(double x, double most, const char* form) {
+  char text[32];
+  std::snprintf(text, sizeof text, x >= most ? "> %.0e" : x > 0 ? form : "none", x);
+  return text;
+}
+
+// The whole simulation, in one group and in two.
+json groups() {
+  constexpr double kStiffestHand_N_m = 1e6, kSoftestHand_N_m = 50;
+  json out = json::array();
+  std::printf("\n%-26s | %-44s | %s\n%-26s | %10s %12s %8s %12s | %s\n", "a hand beside, the same far away",
+              "largest stable k h^2/m, and k in N/m", "hands that hold a box", "contact", "ball", "N/m", "tower",
+              "N/m", "of 200 g, N/m each");
+  for (const GroupedRow& row : grouped_rows()) {
+    json r = {{"contact", row.name}, {"step_s", row.step_s}};
+    std::printf("%-26s |", row.name.c_str());
+    for (const int boxes : {0, 3}) {
+      const double x =
+          largest(kStiffestTried, 0.01, [&](double tried) { return grouped_stays_stable(row, boxes, tried); });
+      const double to_N_m = kLightest_kg / (row.step_s * row.step_s);
+      std::printf(boxes ? " %8s %12s" : " %10s %12s", limit(x, kStiffestTried, "%.2f").c_str(),
+                  limit(x * to_N_m, kStiffestTried * to_N_m, "%.0f").c_str());
+      std::fflush(stdout);
+      const std::string what = boxes ? "tower" : "ball";
+      r[what + "_kh2_m"] = x;
+      r[what + "_N_m"] = x * to_N_m;
+    }
+    const double hand = largest(kStiffestHand_N_m, kSoftestHand_N_m, [&](double k) { return hands_hold(row, k); });
+    std::printf(" | %s\n", limit(hand, kStiffestHand_N_m, "%.0f").c_str());
+    std::fflush(stdout);
+    r["hand_N_m"] = hand;
+    out.push_back(r);
+  }
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -196,9 +221,7 @@ int main(int argc, char** argv) {
     for (const int boxes : {0, 3}) {
       for (const double h : {0.001, 1.0 / 60}) {
         const double most = stiffest(model, boxes, h);
-        char text[32];
-        std::snprintf(text, sizeof text, most >= kStiffestTried ? "> %.0e" : most > 0 ? "%.2f" : "none", most);
-        std::printf(" %8s", text);
+        std::printf(" %8s", limit(most, kStiffestTried, "%.2f").c_str());
         if (model.name == "penalty, explicit" && boxes)
           (h < 0.01 ? at_1ms_N_m : at_60Hz_N_m) = most * kLightest_kg / (h * h);
         row[std::string(boxes ? "tower" : "ball") + (h < 0.01 ? "_kh2_m_1ms" : "_kh2_m_60Hz")] = most;
@@ -218,5 +241,6 @@ int main(int argc, char** argv) {
       "is a factor of "
       "%.0f\n",
       at_1ms_N_m, at_60Hz_N_m, at_1ms_N_m / at_60Hz_N_m);
-  if (!file.empty()) std::ofstream(file) << out.dump(1) << "\n";
+  const json grouped = groups();
+  if (!file.empty()) std::ofstream(file) << json{{"contact", out}, {"groups", grouped}}.dump(1) << "\n";
 }

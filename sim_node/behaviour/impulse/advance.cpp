@@ -99,7 +99,7 @@ bool Advance::lacks_pair(std::span<const Manifold> contacts) const {
   return false;
 }
 
-bool Advance::attempt(World& world, ContactSource& source, double& dt, double finest, double h,
+bool Advance::attempt(World& world, ContactSource& source, double& dt, double finest, double next_h,
                       std::vector<Manifold>& contacts) {
   world.step(contacts, dt);
   const bool divisible = dt > finest * 1.001;
@@ -117,7 +117,7 @@ bool Advance::attempt(World& world, ContactSource& source, double& dt, double fi
       return false;
     }
   }
-  source.find(world.motions(), world.active_bodies(), horizon_s(world, h), after_);
+  source.find(world.motions(), world.active_bodies(), horizon_s(world, next_h), after_);
   if (divisible && worst(contacts, kDeep_m) > 0) {
     dt = std::max(finest, dt / 2);
     world.take_back(kept_);
@@ -215,8 +215,9 @@ double Advance::horizon_s(const World& world, double h) const {
 }
 
 const StepReport& Advance::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
-                                std::vector<Manifold>& solved) {
+                                std::vector<Manifold>& solved, double next_h) {
   report_ = {};
+  next_h = std::max(h, next_h);
   solved.clear();
   const double finest = h / kMostPieces;
   double begun = 0, dt = horizon_s(world, h);
@@ -229,15 +230,15 @@ const StepReport& Advance::step(World& world, ContactSource& source, double h, s
     assumed_.resize(world.motions().size());
     for (const int body : world.active_bodies())
       assumed_[static_cast<std::size_t>(body)] = world.motions()[static_cast<std::size_t>(body)];
-    while (!attempt(world, source, dt, finest, h, contacts)) {
+    while (!attempt(world, source, dt, finest, next_h, contacts)) {
     }
-    const double next = horizon_s(world, h);
+    const double next = horizon_s(world, next_h);
     add_to(solved, contacts, begun, dt, h);
     clear_overlaps(world, source, next);
     hold_back(world, source, next, contacts);
     std::swap(contacts, after_);
     begun += dt;
-    dt = std::min(2 * dt, next);
+    dt = std::min({2 * dt, next, h});
     if (h - begun > 1e-9 * h) world.load_again(kept_);
   }
   report_.deepest_m = deepest_of(contacts);

@@ -37,14 +37,14 @@ class Advance {
   // How far ahead contacts are to be sought for a step of h_s: all of it, or less when something is fast.
   double horizon_s(const World& world, double h_s) const;
 
-  // contacts: of the present poses, found for a step of horizon_s(); those of the new poses afterwards, for
-  // another such step. solved: what the step did to them. Realtime-safe once its lists have grown.
+  // contacts: of the present poses, found for a step of horizon_s(); those of the new poses afterwards, for a step of
+  // next_h_s, or of h_s again. solved: what the step did to them. Realtime-safe once its lists have grown.
   const StepReport& step(World& world, ContactSource& source, double h_s, std::vector<Manifold>& contacts,
-                         std::vector<Manifold>& solved);
+                         std::vector<Manifold>& solved, double next_h_s = 0);
 
  private:
   // One try of a piece of dt: false: it was taken back, and dt or the contacts have changed.
-  bool attempt(World& world, ContactSource& source, double& dt, double finest_s, double h_s,
+  bool attempt(World& world, ContactSource& source, double& dt, double finest_s, double next_h_s,
                std::vector<Manifold>& contacts);
   int pieces_for(const World& world, std::span<const Manifold> contacts, double dt) const;
   bool came_further(const World& world, double dt);

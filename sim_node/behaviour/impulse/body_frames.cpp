@@ -10,6 +10,12 @@ BodyFrames::BodyFrames(const WorldDef& def) {
       const auto i = static_cast<std::size_t>(body);
       if (!def.bodies[i].is_static) frames_[i].at_rest = Eigen::Quaterniond(def.bodies[i].pose.linear()).normalized();
     }
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    Frame& f = frames_[i];
+    const BodyDef& b = def.bodies[i];
+    f.in_body = b.is_static || b.tool >= 0 ? b.pose.inverse()
+                                           : Eigen::Translation3d(f.centre_in_body_m) * f.at_rest.conjugate();
+  }
 }
 
 std::vector<BodyMotion> BodyFrames::at_start(const WorldDef& def) const {
@@ -34,6 +40,14 @@ BodyMotion BodyFrames::motion(int body, const BodyMotion& moved) const {
   m.orientation = moved.orientation * f.at_rest;
   m.position_m = m.centre_m - m.orientation * f.centre_in_body_m;
   return m;
+}
+
+void BodyFrames::place_impacts(std::span<Manifold> solved) const {
+  for (Manifold& m : solved) {
+    if (m.impact.blows == 0) continue;
+    m.impact.a_body_m = frames_[static_cast<std::size_t>(m.body_a)].in_body * m.impact.a_body_m;
+    m.impact.b_body_m = frames_[static_cast<std::size_t>(m.body_b)].in_body * m.impact.b_body_m;
+  }
 }
 
 }  // namespace tactus::sim::impulse

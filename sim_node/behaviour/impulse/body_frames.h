@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/body_motion.h"
+#include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 
 namespace tactus::sim::impulse {
@@ -18,11 +19,16 @@ class BodyFrames {
   std::vector<BodyMotion> at_start(const WorldDef& def) const;
   // moved: of an impulse world. Of a body that moves. Realtime-safe: yes.
   BodyMotion motion(int body, const BodyMotion& moved) const;
+  // Where surfaces met in a step, in the frames of the bodies of the scene; as an impulse world has it before, once only.
+  // Realtime-safe: yes.
+  void place_impacts(std::span<Manifold> solved) const;
 
  private:
   struct Frame {
     Eigen::Vector3d centre_in_body_m;
     Eigen::Quaterniond at_rest;  // of a link; else the identity
+    // From the frame that an impulse world has for it, which never moves for what does not.
+    Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
   };
   std::vector<Frame> frames_;
 };

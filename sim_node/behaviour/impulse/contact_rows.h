@@ -27,8 +27,8 @@ struct Coupling {
   std::size_t jacobian = 0, response = 0;  // where each 3 x rates, row-major, begins in the pool
 };
 
-// How a point presses before its surfaces meet: not at all, with a spring and a damper of the end of the step, or with
-// an impulse that is given.
+// How a point presses before its surfaces meet: not at all, with a spring and a damper of the end of the step, or
+// with an impulse that is given.
 enum class Press { kNone, kSoft, kGiven };
 
 // In its own axes: normal (from a to b), and two tangents. Impulses act on b, and oppositely on a.
@@ -48,6 +48,7 @@ struct ContactPoint {
   int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
   int visit = -1;                                     // the one of the sweep at which it was last solved
   Press press = Press::kNone;
+  double lasts_s = 0;  // what its impulse is the force of: from the middle of the step before to that of this one
   double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
   double pressed_N_s = 0;                        // kGiven
   double shell_m = -1;                           // from which gap on it presses; negative: not known yet
@@ -58,8 +59,8 @@ struct ContactGroup {
   int first = 0, count = 0, manifold = 0;
   int mover_a = -1, mover_b = -1;  // what they move: a twist, or beyond those a system; -1: nothing
   double restitution = 0;
-  // How the surfaces meet in the step: blows so far, at their first and last instants after its start, and the point
-  // and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
+  // How the surfaces meet in the step: blows so far, at their first and last instants after its start, and the
+  // point and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
   int blows = 0, met = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
   bool shielded = false;  // takes no blow: springs press

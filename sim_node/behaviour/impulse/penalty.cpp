@@ -28,6 +28,7 @@ void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocit
 
 void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
   for (ContactPoint& p : rows.points) {
+    p.lasts_s = h;
     const double inside = p.shell_m - p.gap_m;
     const double damping =
         penalty.damping_N_s_m * std::clamp(inside / (kDamperSetsIn * penalty.thickness_m), 0.0, 1.0);

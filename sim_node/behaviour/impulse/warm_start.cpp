@@ -16,7 +16,7 @@ Eigen::Vector3d place(const Manifold& m, const ManifoldPoint& p, std::span<const
 
 }  // namespace
 
-void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h,
+void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
                        ContactRows& rows) const {
   auto kept = kept_.begin();
   for (const ContactGroup& g : rows.groups) {
@@ -33,7 +33,7 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
         const double apart = (k->place_m - here).squaredNorm();
         if (apart >= nearest) continue;
         nearest = apart;
-        p.impulse = h * (p.axes * k->force_N);
+        p.impulse = p.lasts_s * (p.axes * k->force_N);
         p.impulse.x() = std::max(0.0, p.impulse.x());
         p.shell_m = k->shell_m;
       }
@@ -41,7 +41,7 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
   }
 }
 
-void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h,
+void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
                      const ContactRows& rows) {
   kept_.clear();
   for (const ContactGroup& g : rows.groups) {
@@ -50,7 +50,7 @@ void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMot
       const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
       if (p.impulse.x() <= 0 && p.press == Press::kNone) continue;
       kept_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
-                       p.axes.transpose() * p.impulse / h, p.shell_m});
+                       p.axes.transpose() * p.impulse / p.lasts_s, p.shell_m});
     }
   }
 }

@@ -14,13 +14,11 @@ namespace tactus::sim::impulse {
 
 class WarmStart {
  public:
-  // Sets point.impulse for a step of h_s, from the point of the same pair of shapes that lies nearest in the moving body. contacts:
-  // ordered by their shapes, those of the groups; poses: of every body, at the start of the step.
-  void recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h_s,
-              ContactRows& rows) const;
+  // Sets point.impulse from the force of the point of the same pair of shapes that lies nearest in the moving
+  // body. contacts: ordered by their shapes, those of the groups; poses: of every body, at the start of the step.
+  void recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, ContactRows& rows) const;
   // Keeps those that were found.
-  void keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, double h_s,
-            const ContactRows& rows);
+  void keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, const ContactRows& rows);
   void clear() { kept_.clear(); }
   void archive(StateArchive& a, std::size_t shapes);
 

@@ -15,6 +15,7 @@ int World::add_fixed() {
 int World::add_free(const FreeBody& body) {
   movers_.push_back({Kind::kFree, static_cast<int>(free_.size()), 0});
   free_.push_back(body);
+  lasts_s_.push_back(0);
   body_of_.push_back(static_cast<int>(movers_.size()) - 1);
   motions_.push_back(motion_of(body));
   return static_cast<int>(movers_.size()) - 1;
@@ -78,6 +79,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
     if (i < free_.size()) {
       FreeBody& b = free_[i];
       b.velocity_m_s = velocity_for(b, h);
+      lasts_s_[i] = b.step_s < 0 ? h : (b.step_s + h) / 2;
       b.step_s = h;
       const Flight& f = flights_[i] = fly(b, h);
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
@@ -132,7 +134,7 @@ void World::couple(ContactPoint& p, int system, int link_a, int link_b, const Ei
   ++p.couplings;
 }
 
-void World::build_rows(std::span<const Manifold> contacts) {
+void World::build_rows(std::span<const Manifold> contacts, double h) {
   rows_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Manifold& m = contacts[i];
@@ -154,13 +156,16 @@ void World::build_rows(std::span<const Manifold> contacts) {
       if (a.kind == Kind::kFree) {
         p.a = a.index + 1;
         p.arm_a = at.point_m - free_[index(a.index)].centre_m;
+        p.lasts_s = lasts_s_[index(a.index)];
       }
       if (b.kind == Kind::kFree) {
         p.b = b.index + 1;
         p.arm_b = at.point_m - free_[index(b.index)].centre_m;
+        p.lasts_s = std::max(p.lasts_s, lasts_s_[index(b.index)]);
       } else {
         p.arm_b.setZero();
       }
+      if (a.kind == Kind::kLink || b.kind == Kind::kLink) p.lasts_s = h;
       const bool one = a.kind == Kind::kLink && b.kind == Kind::kLink && a.index == b.index;
       if (one) couple(p, a.index, a.link, b.link, at.point_m);
       if (a.kind == Kind::kLink && !one) couple(p, a.index, a.link, -1, at.point_m);
@@ -201,7 +206,8 @@ void World::ask(double h) {
   }
 }
 
-void World::sweep() {
+void World::sweep(double h) {
+  const double settled_m_s = law_.settled_m_s2 * h;
   for (const ContactPoint& p : rows_.points)
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
@@ -222,7 +228,7 @@ void World::sweep() {
     if (change == 0) return 0.0;
     p.impulse = next;
     rows_.apply(p, by, velocity_);
-    if (change >= law_.settled_m_s) {
+    if (change >= settled_m_s) {
       ++visits;
       if (p.mover_a) a = visits;
       if (p.mover_b) b = visits;
@@ -231,7 +237,7 @@ void World::sweep() {
   };
   const auto joint = [&](JointRow& row) {
     const double change = impulse::sweep(row, rows_.pool, velocity_);
-    if (change >= law_.settled_m_s) stirred_[index(row.mover + 1)] = ++visits;
+    if (change >= settled_m_s) stirred_[index(row.mover + 1)] = ++visits;
     return change;
   };
   for (sweeps_ = 0; sweeps_ < law_.sweeps;) {
@@ -244,7 +250,7 @@ void World::sweep() {
       for (auto number = order.begin(); number != order.end(); ++number) visit(*number);
     else
       for (auto number = order.rbegin(); number != order.rend(); ++number) visit(*number);
-    if (change < law_.settled_m_s) break;
+    if (change < settled_m_s) break;
   }
 }
 
@@ -305,7 +311,7 @@ void World::tell(std::span<Manifold> contacts, double h) const {
     Manifold& m = contacts[index(g.manifold)];
     for (int i = 0; i < g.count; ++i) {
       const ContactPoint& p = rows_.points[index(g.first + i)];
-      m.points[index(i)].normal_force_N = (p.blow_N_s + p.impulse.x()) / h;
+      m.points[index(i)].normal_force_N = p.blow_N_s / h + p.impulse.x() / p.lasts_s;
     }
     m.impact = {};
     if (g.met < 0 || m.points[index(g.met)].normal_force_N <= 0) continue;
@@ -317,7 +323,8 @@ void World::tell(std::span<Manifold> contacts, double h) const {
     m.impact.last_s = std::min(g.last_s, h);
     m.impact.speed_m_s = g.speed_m_s;
     m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.met)].mobility(0, 0);
-    const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a), met_b = on_b + g.first_s * b.velocity_at(on_b);
+    const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
+                          met_b = on_b + g.first_s * b.velocity_at(on_b);
     m.impact.place_m = (met_a + met_b) / 2;
     // Along the normal, what stands still knows better.
     if (!a.moves() || !b.moves())
@@ -330,9 +337,9 @@ void World::tell(std::span<Manifold> contacts, double h) const {
 
 void World::step(std::span<Manifold> contacts, double h) {
   start_velocities(contacts, h);
-  build_rows(contacts);
+  build_rows(contacts, h);
   build_joints(h);
-  warm_.recall(contacts, motions_, h, rows_);
+  warm_.recall(contacts, motions_, rows_);
   const bool presses = law_.penalty.stiffness_N_m > 0;
   if (presses) shield(rows_, law_.penalty, velocity_, h);
   collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
@@ -340,9 +347,9 @@ void World::step(std::span<Manifold> contacts, double h) {
   ask(h);
   if (presses) press(rows_, law_.penalty, velocity_, h);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
-  sweep();
+  sweep(h);
   if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);
-  warm_.keep(contacts, motions_, h, rows_);
+  warm_.keep(contacts, motions_, rows_);
   for (const JointRow& row : joints_) *row.memory = row.impulse;
   tell(contacts, h);
   finish(h);

@@ -20,8 +20,8 @@
 namespace tactus::sim::impulse {
 
 struct Law {
-  int sweeps = 40;                 // most, over all contacts of a step
-  double settled_m_s = 1e-9;       // sweeps end when no point changes by more
+  int sweeps = 40;             // most, over all contacts of a step
+  double settled_m_s2 = 1e-6;  // sweeps end when no point changes by more in the time of a step: 1e-7 of weight
   double bounce_speed_m_s = 0.02;  // slower impacts do not bounce
   double slack_m = 1e-4;           // overlap that is not repaired
   double repair = 0.2;             // share of a deeper one that is taken back in a step
@@ -37,7 +37,11 @@ struct Surface {
 
 // What moves as one, by value: a free body, or all links of a system.
 struct UnitState {
-  FreeBody body;  // velocity: of now
+  struct {
+    Eigen::Vector3d centre_m{0, 0, 0};
+    Eigen::Quaterniond orientation{1, 0, 0, 0};
+    Eigen::Vector3d velocity_m_s{0, 0, 0}, spin_rad_s{0, 0, 0};
+  } body;  // of now
   articulated::ArticulatedSystem::State joints;
 };
 
@@ -111,9 +115,9 @@ class World {
   // alone, no speed comes of it. contacts: of the present poses; overlaps deeper than most_m are left alone.
   void separate(std::span<const Manifold> contacts, double most_m);
 
-  // What may be set between steps; each holds from the next one on. Velocities of a link are those that it has at the
-  // instant when its joints begin to hold: the others take their share, as from a blow (Featherstone 2008, section
-  // 11.7). False: the body is not free, or has no such axis.
+  // What may be set between steps; each holds from the next one on. Velocities of a link are those that it has at
+  // the instant when its joints begin to hold: the others take their share, as from a blow (Featherstone 2008,
+  // section 11.7). False: the body is not free, or has no such axis.
   void set_gravity(int body, const Eigen::Vector3d& gravity_m_s2);
   bool set_mass(int body, double mass_kg);  // the inertia in proportion
   bool set_pose(int body, const Eigen::Vector3d& centre_m, const Eigen::Quaterniond& orientation);
@@ -148,7 +152,7 @@ class World {
   void activate_all();
   void add_drift();
   void start_velocities(std::span<const Manifold> contacts, double h);
-  void build_rows(std::span<const Manifold> contacts);
+  void build_rows(std::span<const Manifold> contacts, double h);
   void build_joints(double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
   void ask(double h);
@@ -158,7 +162,7 @@ class World {
   void refresh(System& system);
   int dof_of(int body, int axis) const;
   static void place(BodyMotion& m, const BodyMotion& at);
-  void sweep();
+  void sweep(double h_s);
   void finish(double h);
   void finish(std::size_t system, double h);
   int mover_number(const Mover& m) const;
@@ -183,6 +187,7 @@ class World {
   WarmStart warm_;
   Layers layers_;
   std::vector<Flight> flights_;             // of free bodies
+  std::vector<double> lasts_s_;             // of each: from the middle of the step before to that of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
   Velocities velocity_, drift_, aside_;
   std::vector<double> scratch_;

@@ -116,7 +116,7 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
     }
   }
   weigh_anew(contacts);
-  build_rows(contacts);
+  build_rows(contacts, 1);
   // As velocities over one second: the least change, by inertia, that leaves no overlap.
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0;

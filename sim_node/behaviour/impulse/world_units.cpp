@@ -50,9 +50,8 @@ void World::activate_all() {
 
 void World::copy_state(int unit, UnitState& out) const {
   if (index(unit) < free_.size()) {
-    out.body = free_[index(unit)];
-    out.body.velocity_m_s = velocity_for(out.body, 0);
-    out.body.step_s = 0;
+    const FreeBody& b = free_[index(unit)];
+    out.body = {b.centre_m, b.orientation, velocity_for(b, 0), b.spin_rad_s};
   } else {
     out.joints = systems_[index(unit) - free_.size()].system.state();
   }

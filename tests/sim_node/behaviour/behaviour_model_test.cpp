@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "sim_node/behaviour/simulation.h"
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/collision/detector.h"
 #include "tests/sim_node/small_worlds.h"
@@ -53,18 +54,33 @@ TEST_CASE("Every model of the setting is known, and no other") {
   CHECK_THROWS_WITH(behaviour_model("jelly"), Contains("jelly") && Contains("choose quick, step"));
 }
 
-TEST_CASE("Penalty is refused a detector that sees overlap only, and served by every other") {
+TEST_CASE("Impulses and penalty are refused a detector that sees overlap only, and served by every other") {
   for (const std::string_view name : detector_names()) {
     const DetectorAbilities abilities = make_detector(name)->abilities();
     for (const BehaviourModel& m : behaviour_models()) {
       INFO(name << " " << m.name);
       const std::string why = refusal(m, abilities);
-      CHECK(why.empty() == (abilities.separation || m.name.substr(0, 7) != "penalty"));
+      CHECK(why.empty() == (abilities.separation || m.name == "quick" || m.name == "step"));
       if (!why.empty())
         CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that sees gaps"));
     }
   }
-  CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings("penalty", "ode")), Contains("does not see"));
+  for (const std::string solver : {"impulse", "penalty", "penalty_explicit"})
+    for (const std::string detector : {"ode", "ccd_mpr"})
+      CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not see"));
+}
+
+TEST_CASE("Two groups refuse what one group does: no pairing falls back on another") {
+  Settings s = settings("impulse", GENERATE("ode", "ccd_mpr"));
+  s.groups = "dual";
+  s.visual_thread = "none";
+  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not see"));
+  s.solver = GENERATE("quick", "step", "penalty");
+  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.solver) && Contains("groups = single"));
+  s = settings("impulse", "gaps");
+  s.groups = "dual";
+  s.visual_thread = "none";
+  CHECK_NOTHROW(Simulation(ball_over_box(0.01), s));
 }
 
 TEST_CASE("Explicit penalty is refused where step and mass do not bear its stiffness, with what they bear") {

@@ -53,6 +53,21 @@ TriangleMesh mesh_of(const Soup& s) { return {s.vertices, {}, s.indices}; }
 
 }  // namespace
 
+TEST_CASE("A finder takes only detectors that see gaps: it asks no other one in their place") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  add_ball(w, 1, 0.05, {0, 0, 0.0501});
+  for (const std::string_view name : detector_names()) {
+    INFO(name);
+    Settings s;
+    s.detector = name;
+    if (make_detector(name)->abilities().separation)
+      CHECK_NOTHROW(ContactFinder(w, s));
+    else
+      CHECK_THROWS_WITH(ContactFinder(w, s), Catch::Contains(s.detector) && Catch::Contains("sees no gaps"));
+  }
+}
+
 TEST_CASE(
     "A box above the floor, tilted by a degree, shows all its lower corners when they may land in the step") {
   WorldDef w = empty_world();
