@@ -5,6 +5,7 @@
 //   bin/thermal_table [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -231,6 +232,28 @@ json told_apart(const std::vector<Shown>& shown) {
   return result;
 }
 
+// What a tick of 20 ms costs: a touch rendered with both models of skin, the touched and the finger's.
+json costs(const Material& m) {
+  std::puts("\nA tick of 20 ms, us: median and p99 of 5000\n");
+  json result;
+  for (const std::string model : {"half_space", "bioheat"}) {
+    Hand hand({material(m.conductivity_W_mK, m.density_kg_m3, m.specific_heat_J_kgK, m.degC)},
+              with_model(model.c_str()));
+    std::vector<double> us;
+    for (int i = 0; i < 5000; ++i) {
+      Tick tick = hand.next();
+      tactus::thermal::touch(tick, 0, 1);
+      const auto begin = std::chrono::steady_clock::now();
+      hand.renderer.step(tick);
+      us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    }
+    std::sort(us.begin(), us.end());
+    std::printf("  %-10s %6.1f %6.1f\n", model.c_str(), us[us.size() / 2], us[us.size() * 99 / 100]);
+    result[model] = {{"p50_us", us[us.size() / 2]}, {"p99_us", us[us.size() * 99 / 100]}};
+  }
+  return result;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -247,6 +270,7 @@ int main(int argc, char** argv) try {
   out["display"]["bioheat"] = displayed(ten, "bioheat", "bioheat", &shown);
   out["display"]["half_space_for_bioheat"] = displayed(ten, "half_space", "bioheat", nullptr);
   out["told_apart"] = told_apart(shown);
+  out["tick"] = costs(ten.front());
   for (const Shown& s : shown)
     out["traces"][s.material.name] = {
         {"real", s.real}, {"flux", s.flux}, {"skin", s.skin}, {"passive", s.passive}};
