@@ -70,7 +70,8 @@ int main(int argc, char** argv) try {
     while (const auto m = events.pop()) stream.push(m->message, m->arrival);
     while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
     while (const auto m = answers.pop())
-      if (device) device->receive(m->message, m->arrival);
+      // Not that of a log which is played meanwhile: its plate is not under this finger.
+      if (device && m->message.header.run_id == options.run_id) device->receive(m->message, m->arrival);
     if (scenes.poll(now)) {
       choice = thermal::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
