@@ -20,8 +20,8 @@ struct TemperatureRange {
 // and Greene 1959), in skin at 42.0 to 44.5 degC (Defrin et al. 2006, as tabulated in
 // doi 10.1097/HP.0000000000001447, table 4) and depends on how long it lasts, not on the rate of change (Nielsen
 // and Arendt-Nielsen 1998, same table): hence a limit to time, and none of its own to rate. Cold is summed as
-// plain time below `cold_degC`: cold hurts from 15 degC (ISO 13732-3:2005), and the default keeps a minute of it 5
-// K away. Realtime-safe: yes.
+// plain time below `cold_degC`: touching cold things is slightly painful at 19 degC of the palm (Havenith, van de
+// Linde and Heus 1992) and hurts from 15 degC on (ISO 13732-3:2005). Realtime-safe: yes.
 class Dwell {
  public:
   explicit Dwell(const DwellLimits& limits) : limits_(limits) {}

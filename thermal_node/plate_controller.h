@@ -14,7 +14,7 @@ struct PlateLimits {
   double rate_K_s = 20;
   double plate_min_degC = 10;
   double plate_max_degC = 43;
-  double sink_max_degC = 55;  // design: no burn at a short touch (ISO 13732-1 gives metal 65 degC for 1 s)
+  double sink_max_degC = 55;  // design: far below the solder of the module, and no hand rests on it
 };
 
 struct PlateDrive {
