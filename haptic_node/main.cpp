@@ -42,8 +42,8 @@ int main(int argc, char** argv) try {
   app.add_option("--tool", tool_name, "tool that the hand holds; default: the scene's first");
   app.add_option(
       "--device", device_spec,
-      "virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R]; default: as the "
-      "scene says");
+      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or "
+      "spidar:NAME|FILE.json[,offset=X/Y/Z]; default: as the scene says");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());

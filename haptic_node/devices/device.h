@@ -14,6 +14,8 @@ struct DeviceState {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, world
   std::int32_t buttons = 0;                            // bit 0 first
+  // It does not answer, or nonsense: position and orientation are the last that were known, and no force may be felt.
+  bool lost = false;
 };
 
 class Device {
