@@ -6,8 +6,8 @@
 //   out  TOOL_STATE                    every tick
 //        PRESENTED                     every begin and hit of its tool
 //
-// Losing TOUCH_MODEL fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without hit
-// transients. The loop never waits for another node.
+// Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
+// hit transients. The loop never waits for another node.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -40,10 +40,9 @@ int main(int argc, char** argv) try {
   options.add_to(app, declaration);
   std::string tool_name, device_spec;
   app.add_option("--tool", tool_name, "tool that the hand holds; default: the scene's first");
-  app.add_option(
-      "--device", device_spec,
-      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or "
-      "spidar:NAME|FILE.json[,offset=X/Y/Z]; default: as the scene says");
+  app.add_option("--device", device_spec,
+                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or "
+                 "spidar:NAME|FILE.json[,offset=X/Y/Z]; default: as the scene says");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
@@ -113,10 +112,14 @@ int main(int argc, char** argv) try {
     quality.add(sync::host_now() - now);
     node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
-    if (session->heard() && session->lost())
+    if (session->device_lost())
+      node.set_state(node_health_t::OUTPUT_LOST, "the device does not answer: the force is zero");
+    else if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");
     else if (session->heard())
       node.set_state(node_health_t::RUNNING);
+    else
+      node.set_state(node_health_t::READY, "waits for a touch model");
   }
   return 0;
 } catch (const std::exception& e) {

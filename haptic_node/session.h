@@ -52,6 +52,7 @@ class Session {
 
   bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
   bool lost() const { return renderer_.lost(); }
+  bool device_lost() const { return renderer_.device_lost(); }
 
  private:
   void begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded);
