@@ -3,7 +3,9 @@
 //   in   TOUCH_MODEL                   the surfaces near its tool, newest only
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
+//        DEVICE_STATE                  of a device that another program drives
 //   out  TOOL_STATE                    every tick
+//        DEVICE_FORCE                  to that program, every tick
 //        PRESENTED                     every begin and hit of its tool
 //
 // Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
@@ -40,9 +42,10 @@ int main(int argc, char** argv) try {
   options.add_to(app, declaration);
   std::string tool_name, device_spec;
   app.add_option("--tool", tool_name, "tool that the hand holds; default: the scene's first");
-  app.add_option("--device", device_spec,
-                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or "
-                 "spidar:NAME|FILE.json[,offset=X/Y/Z]; default: as the scene says");
+  app.add_option(
+      "--device", device_spec,
+      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+      "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
@@ -52,6 +55,7 @@ int main(int argc, char** argv) try {
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
+  auto& device_states = node.bus().queue<device_state_t>(channels::kDeviceState, 64);
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
   auto& events = sense.events();
@@ -98,6 +102,8 @@ int main(int argc, char** argv) try {
       if (session) session->push(m->message, m->arrival);
     while (const auto m = events.pop())
       if (session) session->push(m->message, m->arrival);
+    while (const auto m = device_states.pop())
+      if (session) session->push(m->message, m->arrival);
     if (!session) continue;
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
@@ -107,6 +113,7 @@ int main(int argc, char** argv) try {
                                             quality.planes());
     if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
+    if (device_force_t* force = session->tell()) node.bus().publish(channels::kDeviceForce, *force);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);
     quality.add(sync::host_now() - now);

@@ -27,8 +27,8 @@ Eigen::Vector3d triple(std::string_view word, const std::string& text) {
 }
 
 constexpr const char* kForms =
-    "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or "
-    "spidar:NAME|FILE.json[,offset=X/Y/Z]";
+    "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+    "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]";
 
 void set_option(ToolDevice& device, std::string_view option, const std::string& text) {
   const bool playback = device.kind == ToolDevice::Kind::kPlayback;
@@ -60,18 +60,22 @@ ToolDevice parse_tool_device(const std::string& text) {
     out.kind = Kind::kPlayback;
   else if (kind == "spidar")
     out.kind = Kind::kSpidar;
+  else if (kind == "external")
+    out.kind = Kind::kExternal;
   else if (kind != "virtual_hand")
     refuse(text, std::string("unknown; use ") + kForms);
   if (colon == std::string::npos) {
     if (out.kind == Kind::kPlayback) refuse(text, "name the file to play: playback:FILE");
     if (out.kind == Kind::kSpidar) refuse(text, "name its frame: spidar:desktop, or a JSON file");
+    if (out.kind == Kind::kExternal) refuse(text, "give it the name that its driver has: external:NAME");
     return out;
   }
   std::string_view rest = std::string_view(text).substr(colon + 1);
   auto comma = rest.find(',');
   const std::string what(rest.substr(0, comma));
   if (what.empty()) refuse(text, "name a file after the colon");
-  (out.kind == Kind::kSpidar && !what.ends_with(".json") ? out.name : out.file) = what;
+  const bool named = out.kind == Kind::kExternal || (out.kind == Kind::kSpidar && !what.ends_with(".json"));
+  (named ? out.name : out.file) = what;
   while (comma != std::string_view::npos) {
     if (out.kind == Kind::kVirtualHand) refuse(text, "virtual_hand takes no options after its file");
     rest.remove_prefix(comma + 1);

@@ -1,6 +1,6 @@
 // What tool_def_t.device and haptic_node --device say:
-// virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R] or
-// spidar:NAME|FILE.json[,offset=X/Y/Z].
+// virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R],
+// spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z].
 #pragma once
 
 #include <Eigen/Core>
@@ -18,9 +18,9 @@ struct Placement {
 };
 
 struct ToolDevice {
-  enum class Kind { kVirtualHand, kPlayback, kSpidar } kind = Kind::kVirtualHand;
+  enum class Kind { kVirtualHand, kPlayback, kSpidar, kExternal } kind = Kind::kVirtualHand;
   std::string file;  // of the motion or of the string frame; empty: none
-  std::string name;  // of a known string frame; empty: none, or a file
+  std::string name;  // of a known string frame, or of a device that another program drives; empty: none
   Placement placement;
 };
 

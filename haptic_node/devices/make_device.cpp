@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "haptic_node/devices/external.h"
 #include "haptic_node/devices/spidar/frame_file.h"
 #include "haptic_node/devices/spidar/simulated_strings.h"
 #include "haptic_node/devices/spidar/spidar.h"
@@ -69,6 +70,8 @@ DeviceSpec parse_device_spec(const std::string& spec) {
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
                                     const Settings& settings) {
   if (spec.kind == DeviceSpec::Kind::kPlayback) return std::make_unique<Playback>(*spec.motion, spec.placement);
+  if (spec.kind == DeviceSpec::Kind::kExternal)
+    return std::make_unique<External>(spec.name, spec.placement.offset_m, settings.device_stale_after_s);
   auto hand = make_hand(spec, tool, rest_m, settings);
   if (spec.kind == DeviceSpec::Kind::kVirtualHand) return hand;
   const Eigen::Vector3d& origin_m = spec.placement.offset_m;

@@ -21,6 +21,8 @@ TEST_CASE("The device of a tool is parsed whole, without a look at its file") {
   CHECK(strings.file.empty());
   CHECK(strings.placement.offset_m == Eigen::Vector3d(0, 1, 2));
   CHECK(parse_tool_device("spidar:frames/mine.json").file == "frames/mine.json");
+  CHECK(parse_tool_device("external:left arm").kind == ToolDevice::Kind::kExternal);
+  CHECK(parse_tool_device("external:left arm,offset=0/0/1").name == "left arm");
 }
 
 TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
@@ -36,6 +38,7 @@ TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,offset=1/2"), Contains("offset=X/Y/Z"));
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,rate=0"), Contains("above 0"));
   CHECK_THROWS_WITH(parse_tool_device("virtual_hand:x.csv,scale=2"), Contains("no options"));
+  CHECK_THROWS_WITH(parse_tool_device("external"), Contains("give it the name"));
   CHECK_THROWS_WITH(parse_tool_device("spidar"), Contains("name its frame"));
   CHECK_THROWS_WITH(parse_tool_device("spidar:cave,scale=2"), Contains("no option \"scale\"") && Contains("offset"));
 }
