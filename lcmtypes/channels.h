@@ -14,6 +14,7 @@ inline constexpr const char* kToolState = "TOOL_STATE";          // tool_state_t
 inline constexpr const char* kDeviceState = "DEVICE_STATE";      // device_state_t
 inline constexpr const char* kDeviceForce = "DEVICE_FORCE";      // device_force_t
 inline constexpr const char* kThermalState = "THERMAL_STATE";    // thermal_state_t
+inline constexpr const char* kThermalDevice = "THERMAL_DEVICE";  // thermal_device_t
 inline constexpr const char* kPresented = "PRESENTED";           // presented_t
 inline constexpr const char* kNodeHealth = "NODE_HEALTH";        // node_health_t
 inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_t

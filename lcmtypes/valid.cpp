@@ -239,6 +239,11 @@ bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
          between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);
 }
+bool valid(const thermal_device_t& m) {
+  const auto temperature = [](double degC) { return degC >= -273.15 && degC <= 1000; };
+  return sane(m.header) && m.tool >= 0 && temperature(m.plate_degC) && temperature(m.sink_degC) && sane(m.current_A) &&
+         sane(m.voltage_V) && between(m.state, thermal_device_t::OK, thermal_device_t::FAULT);
+}
 bool valid(const thermal_state_t& m) {
   return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&
          sane_not_negative(m.area_m2) && sane(m.heat_flux_W_m2) && sane(m.skin_degC) && sane(m.commanded_degC);

@@ -25,6 +25,7 @@
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/sync_report_t.hpp>
+#include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
@@ -56,6 +57,7 @@ bool valid(const scene_t&);
 bool valid(const sim_command_t&);
 bool valid(const sim_reply_t&);
 bool valid(const sync_report_t&);
+bool valid(const thermal_device_t&);
 bool valid(const thermal_state_t&);
 bool valid(const tool_state_t&);
 bool valid(const touch_model_t&);

@@ -52,6 +52,7 @@ def main():
       <direction>0.4 0.25 -1</direction>
       <cast_shadows>true</cast_shadows>
     </light>
+    <tactus:sim_node groups="dual"/>
     <tactus:camera position="{-far:.3f} {-0.5 * far:.3f} {up:.3f}" look_at="0 0 0" fov="50deg"/>""")
     wall, high = 0.02, 0.16
     colour = "0.45 0.40 0.34 1"

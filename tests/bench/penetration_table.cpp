@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
     for (const Pairing& p : pairings)
       for (const double h : {0.001, 1.0 / 60}) {
         Settings settings;
-        sync::apply_settings(settings, setting_fields(), "sim_node", scene.world.settings, {});
+        sync::apply_settings(settings, setting_fields(), "sim_node", scene.world.settings, {"groups=single"});
         settings.solver = p.solver;
         settings.detector = p.detector;
         settings.step_s = h;

@@ -166,6 +166,11 @@ class Samples {
     m.heat_flux_W_m2 = single(-9000, 9000), m.skin_degC = single(0, 50), m.commanded_degC = single(15, 42);
     m.limited = static_cast<std::int8_t>(whole(0, 1));
   }
+  void fill(thermal_device_t& m) {
+    fill(m.header);
+    m.tool = whole(0, 3), m.plate_degC = single(10, 43), m.sink_degC = single(-10, 60);
+    m.current_A = single(-6, 6), m.voltage_V = single(-4, 4), m.state = static_cast<std::int8_t>(whole(0, 2));
+  }
   void fill(presented_t& m) { fill(m.header), m.modality = name(), fill_list(m.count, m.reports, 0, 30); }
   void fill(node_health_t& m) {
     fill(m.header);

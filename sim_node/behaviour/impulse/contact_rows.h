@@ -101,42 +101,76 @@ class ContactRows {
                                        const Eigen::Vector3d& v, double alone);
 };
 
-// The innermost loop of a step is made of these three.
+// The innermost loop of a step is made of these three: written out, since products of whole matrices are not made
+// inline and wait for what has just been stored. The order of the sums is theirs, so that states stay what they
+// were to the bit.
 
-inline Eigen::Vector3d ContactRows::velocity(const ContactPoint& p, const Velocities& v) const {
+// m * (x, y, z), added to or taken from out.
+template <int kSign>
+inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x, double y, double z) {
+  const double* c = m.data();  // by columns
+  const double r0 = c[0] * x + c[3] * y + c[6] * z, r1 = c[1] * x + c[4] * y + c[7] * z,
+               r2 = c[2] * x + (c[5] * y + c[8] * z);
+  if constexpr (kSign > 0)
+    out[0] += r0, out[1] += r1, out[2] += r2;
+  else
+    out[0] -= r0, out[1] -= r1, out[2] -= r2;
+}
+
+[[gnu::always_inline]] inline Eigen::Vector3d ContactRows::velocity(const ContactPoint& p,
+                                                                    const Velocities& v) const {
   const Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-  Eigen::Vector3d world = b.linear_m_s + b.angular_rad_s.cross(p.arm_b);
+  const Eigen::Vector3d &u = b.linear_m_s, &w = b.angular_rad_s, &r = p.arm_b;
+  double x = u[0] + (w[1] * r[2] - w[2] * r[1]), y = u[1] + (w[2] * r[0] - w[0] * r[2]),
+         z = u[2] + (w[0] * r[1] - w[1] * r[0]);
   if (p.a) {
     const Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    world -= a.linear_m_s + a.angular_rad_s.cross(p.arm_a);
+    const Eigen::Vector3d &t = a.linear_m_s, &s = a.angular_rad_s, &q = p.arm_a;
+    x -= t[0] + (s[1] * q[2] - s[2] * q[1]);
+    y -= t[1] + (s[2] * q[0] - s[0] * q[2]);
+    z -= t[2] + (s[0] * q[1] - s[1] * q[0]);
   }
-  Eigen::Vector3d out = p.axes * world;
+  const double* c = p.axes.data();
+  Eigen::Vector3d out(c[0] * x + c[3] * y + c[6] * z, c[1] * x + c[4] * y + c[7] * z,
+                      c[2] * x + (c[5] * y + c[8] * z));
   if (p.couplings > 0) add_velocity(p, v, out);
   return out;
 }
 
-inline void ContactRows::apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const {
-  const Eigen::Vector3d world = p.axes.transpose() * impulse;
+[[gnu::always_inline]] inline void ContactRows::apply(const ContactPoint& p, const Eigen::Vector3d& impulse,
+                                                      Velocities& v) const {
+  const double* c = p.axes.data();
+  const double n = impulse[0], s = impulse[1], t = impulse[2];
+  const double x = c[0] * n + c[1] * s + c[2] * t, y = c[3] * n + c[4] * s + c[5] * t,
+               z = c[6] * n + c[7] * s + c[8] * t;
   if (p.b) {
     Twist& b = v.twists[static_cast<std::size_t>(p.b)];
     const Inertness& m = inert[static_cast<std::size_t>(p.b)];
-    b.linear_m_s += m.inverse_mass_1_kg * world;
-    b.angular_rad_s += m.inverse_inertia * p.arm_b.cross(world);
+    const double k = m.inverse_mass_1_kg;
+    b.linear_m_s[0] += k * x, b.linear_m_s[1] += k * y, b.linear_m_s[2] += k * z;
+    const Eigen::Vector3d& r = p.arm_b;
+    add_product<1>(b.angular_rad_s, m.inverse_inertia, r[1] * z - r[2] * y, r[2] * x - r[0] * z,
+                   r[0] * y - r[1] * x);
   }
   if (p.a) {
     Twist& a = v.twists[static_cast<std::size_t>(p.a)];
     const Inertness& m = inert[static_cast<std::size_t>(p.a)];
-    a.linear_m_s -= m.inverse_mass_1_kg * world;
-    a.angular_rad_s -= m.inverse_inertia * p.arm_a.cross(world);
+    const double k = m.inverse_mass_1_kg;
+    a.linear_m_s[0] -= k * x, a.linear_m_s[1] -= k * y, a.linear_m_s[2] -= k * z;
+    const Eigen::Vector3d& r = p.arm_a;
+    add_product<-1>(a.angular_rad_s, m.inverse_inertia, r[1] * z - r[2] * y, r[2] * x - r[0] * z,
+                    r[0] * y - r[1] * x);
   }
   if (p.couplings > 0) apply_to_joints(p, impulse, v);
 }
 
-inline Eigen::Vector3d ContactRows::solve(const ContactPoint& p, const Eigen::Vector3d& impulse,
-                                          const Eigen::Vector3d& v) {
+[[gnu::always_inline]] inline Eigen::Vector3d ContactRows::solve(const ContactPoint& p,
+                                                                 const Eigen::Vector3d& impulse,
+                                                                 const Eigen::Vector3d& v) {
   const double alone = v.x() - p.mobility.row(0).dot(impulse);
   if (alone >= 0) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d stuck = impulse - p.inverse_mobility * v;
+  Eigen::Vector3d stuck = impulse;
+  add_product<-1>(stuck, p.inverse_mobility, v.x(), v.y(), v.z());
   const double most = p.friction * stuck.x();
   if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
   return solve_sliding(p, impulse, v, alone);

@@ -223,10 +223,11 @@ void World::sweep(double h) {
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v), by = next - p.impulse;
-    const double change = by.cwiseAbs().maxCoeff() * p.mobility(0, 0);
+    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v);
+    const Eigen::Vector3d by(next[0] - p.impulse[0], next[1] - p.impulse[1], next[2] - p.impulse[2]);
+    const double change = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])}) * p.mobility(0, 0);
     if (change == 0) return 0.0;
-    p.impulse = next;
+    p.impulse[0] = next[0], p.impulse[1] = next[1], p.impulse[2] = next[2];
     rows_.apply(p, by, velocity_);
     if (change >= settled_m_s) {
       ++visits;

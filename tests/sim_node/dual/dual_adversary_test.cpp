@@ -153,3 +153,40 @@ TEST_CASE("A push brings a body into the haptic group, and what is set of it hol
   CHECK(d.groups.step()->end[static_cast<std::size_t>(ball)].velocity_m_s.z() ==
         Approx(before - 0.2).margin(0.04));
 }
+
+TEST_CASE("The visual group in a thread of its own gives and takes bodies in contact, and is told of changes") {
+  WorldDef w = empty_world();
+  add_floor(w, 0.5, 0.3);
+  for (int i = 0; i < 24; ++i)
+    add_ball(w, 0.2, kBall_m, {0.1 * (i % 6), 0.1 * (i / 6), kBall_m + 0.02 * (i % 3)}, 0.4, 0.5);
+  Settings settings = dual_settings();
+  settings.visual_thread = "own";
+  Dual d(w, settings);
+  int here = 0, there = 0;
+  // Ticks as fast as they can be: steps are late as often as not.
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.001 * i;
+    d.tools[0].centre_m = {0.25 + 0.3 * std::sin(3 * t), 0.15 + 0.2 * std::cos(5 * t), 0.03};
+    d.tools[0].velocity_m_s = {0.9 * std::cos(3 * t), -std::sin(5 * t), 0};
+    const int ball = 1 + i % 24;
+    if (i % 50 == 7) d.groups.add_force(ball, {0, 0.5, 3}, d.body(ball).centre_m);
+    if (i % 300 == 11) CHECK(d.groups.set_velocity(ball, {0.1, 0, 0.5}));
+    if (i % 200 == 3)
+      CHECK(d.groups.apply({.kind = impulse::SceneChange::kFriction, .body = ball, .values = {0.3, 0, 0}}));
+    if (i % 500 == 250) {
+      StateArchive saved;
+      d.groups.archive(saved);
+      StateArchive back{std::span<const std::uint8_t>(saved.bytes())};
+      d.groups.archive(back);
+      CHECK(back.at_end());
+    }
+    d.tick();
+    (d.groups.is_haptic(ball) ? here : there) += 1;
+    CHECK(d.groups.ahead() != nullptr);
+  }
+  CHECK(here > 100);
+  CHECK(there > 100);
+  CHECK(d.count(contact_event_t::BEGIN) > 20);
+  for (const BodyMotion& m : d.groups.motions())
+    if (m.moves()) CHECK((m.centre_m.allFinite() && m.centre_m.z() > kBall_m - 1e-5));
+}

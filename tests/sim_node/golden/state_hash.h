@@ -24,6 +24,7 @@ inline std::uint64_t state_hash(const std::filesystem::path& scene, const std::v
   std::vector<std::string> warnings;
   const WorldDef world = load_sdf(scene.string(), warnings);
   Settings settings;
+  settings.visual_thread = "none";  // in a thread of its own, a step may be late
   const auto refused = sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, overrides);
   if (!refused.empty()) throw std::runtime_error(refused.front());
   std::uint64_t hash = sync::kFnv1aBegin;

@@ -37,6 +37,7 @@ Vector3d along(const tool_def_t& tool, double t) {
 
 Settings settings_of(const WorldDef& world) {
   Settings settings;
+  settings.visual_thread = "none";  // the ticks are not paced: a thread of its own would be late
   REQUIRE(sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, {}).empty());
   return settings;
 }
