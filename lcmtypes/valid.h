@@ -10,6 +10,8 @@
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
 #include <tactus/degraded_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 #include <tactus/game_state_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/media_clock_t.hpp>
@@ -40,6 +42,8 @@ bool valid(const contact_events_t&);
 bool valid(const contact_frame_t&);
 bool valid(const degradation_t&);
 bool valid(const degraded_t&);
+bool valid(const device_force_t&);
+bool valid(const device_state_t&);
 bool valid(const game_state_t&);
 bool valid(const log_info_t&);
 bool valid(const media_clock_t&);

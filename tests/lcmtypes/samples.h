@@ -151,6 +151,15 @@ class Samples {
     m.buttons = whole(0, 9);
     fill_list(m.constraint_count, m.constraints, 0, 8);
   }
+  void fill(device_state_t& m) {
+    fill(m.header);
+    m.device = name(), fill(m.pose), fill(m.velocity_m_s);
+    m.buttons = whole(0, 9), m.state = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(device_force_t& m) {
+    fill(m.header);
+    m.device = name(), fill(m.force_N), fill(m.torque_N_m), m.valid_for_ns = whole(1, 1'000'000'000);
+  }
   void fill(thermal_state_t& m) {
     fill(m.header);
     m.tool = whole(0, 3), m.material = whole(-1, 9), m.force_N = single(0, 9), m.area_m2 = single(0, 1);
