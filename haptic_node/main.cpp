@@ -3,11 +3,13 @@
 //   in   TOUCH_MODEL                   the surfaces near its tool, newest only
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
+//        DEVICE_STATE                  of a device that another program drives
 //   out  TOOL_STATE                    every tick
+//        DEVICE_FORCE                  to that program, every tick
 //        PRESENTED                     every begin and hit of its tool
 //
-// Losing TOUCH_MODEL fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without hit
-// transients. The loop never waits for another node.
+// Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
+// hit transients. The loop never waits for another node.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -42,8 +44,8 @@ int main(int argc, char** argv) try {
   app.add_option("--tool", tool_name, "tool that the hand holds; default: the scene's first");
   app.add_option(
       "--device", device_spec,
-      "virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R]; default: as the "
-      "scene says");
+      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+      "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
@@ -53,6 +55,7 @@ int main(int argc, char** argv) try {
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
+  auto& device_states = node.bus().queue<device_state_t>(channels::kDeviceState, 64);
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
   auto& events = sense.events();
@@ -99,6 +102,8 @@ int main(int argc, char** argv) try {
       if (session) session->push(m->message, m->arrival);
     while (const auto m = events.pop())
       if (session) session->push(m->message, m->arrival);
+    while (const auto m = device_states.pop())
+      if (session) session->push(m->message, m->arrival);
     if (!session) continue;
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
@@ -108,15 +113,20 @@ int main(int argc, char** argv) try {
                                             quality.planes());
     if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
+    if (device_force_t* force = session->tell()) node.bus().publish(channels::kDeviceForce, *force);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);
     quality.add(sync::host_now() - now);
     node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
-    if (session->heard() && session->lost())
+    if (session->device_lost())
+      node.set_state(node_health_t::OUTPUT_LOST, "the device does not answer: the force is zero");
+    else if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");
     else if (session->heard())
       node.set_state(node_health_t::RUNNING);
+    else
+      node.set_state(node_health_t::READY, "waits for a touch model");
   }
   return 0;
 } catch (const std::exception& e) {

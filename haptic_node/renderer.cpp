@@ -69,14 +69,19 @@ void Renderer::take_device(const TickInput& in) {
     begun_ = true;
     last_ = in.now - sync::from_seconds(period_s_);
     device_ = device;
+    device_share_ = device.lost ? 0 : 1;
     proxy_.reset(device.position);
   }
+  if (device.lost) device.velocity.setZero();
   moved_ = device.position - device_.position;
   device_ = device;
 }
 
 void Renderer::take_touch(const TickInput& in, double dt) {
-  const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0;
+  // A device that is lost may come back anywhere: it begins anew there, as touch does.
+  const bool away = device_share_ <= 0;
+  device_share_ = std::clamp(device_share_ + (device_.lost ? -1 : 1) * dt / settings_.fade_s, 0.0, 1.0);
+  const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0 || away || device_share_ <= 0;
   if (silent) {
     // Whatever comes after the loss is new.
     surfaces_.clear();
@@ -178,7 +183,7 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
   m.touch_how = static_cast<std::int8_t>(how(in));
-  m.fade = static_cast<float>(fade_.value());
+  m.fade = static_cast<float>(share());
   m.buttons = device_.buttons;
   book_.tell(in.now, m.constraints);
   m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
@@ -195,13 +200,13 @@ TickOutput& Renderer::step(const TickInput& in) {
   take_touch(in, dt);
   take_events(in);
   const Eigen::Vector3d constraint = constraint_force(dt);
-  const bool felt = fade_.value() > 0;
+  const bool felt = share() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = stepped(fade_.value() * (constraint + transient), in.force_step_N);
+  const Eigen::Vector3d wanted = stepped(share() * (constraint + transient), in.force_step_N);
   out_.force_N = safety_.limit(wanted, moved_, dt);
   // The transient takes its part of what the limits left.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
-  const Eigen::Vector3d felt_transient = left * fade_.value() * transient;
+  const Eigen::Vector3d felt_transient = left * share() * transient;
   split(out_.force_N - felt_transient);
   book_.step(in.now, dt, felt_);
   owed_.step(in.now, book_, uncertainty(), out_.reports);

@@ -63,8 +63,12 @@ class Renderer {
 
   // True while the touch model is lost.
   bool lost() const { return fade_.lost(); }
+  // True while the device is.
+  bool device_lost() const { return device_.lost; }
 
  private:
+  // Of the force that is wanted: less while the touch model or the device is lost, or has just come back.
+  double share() const { return fade_.value() * device_share_; }
   void take_device(const TickInput& in);
   void take_touch(const TickInput& in, double dt);
   void take_events(const TickInput& in);
@@ -96,6 +100,7 @@ class Renderer {
   bool begun_ = false;
   sync::HostTime last_{};
   DeviceState device_;
+  double device_share_ = 1;
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
   std::optional<sync::SimTime> model_time_;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted

@@ -41,6 +41,10 @@ class Session {
     if (!over_) events_.push(events, arrival);
   }
 
+  void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
+  // After a step: what a program that drives the device must be told; null: nothing.
+  device_force_t* tell() { return device_->tell(); }
+
   // Once a tick: reads the device, renders, commands the device. planes: so many are considered. The output is
   // valid, and may be stamped, until the next.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {}, std::size_t planes = Surfaces::kMaxPresent);
@@ -52,6 +56,7 @@ class Session {
 
   bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
   bool lost() const { return renderer_.lost(); }
+  bool device_lost() const { return renderer_.device_lost(); }
 
  private:
   void begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded);

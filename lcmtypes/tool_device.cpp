@@ -26,50 +26,66 @@ Eigen::Vector3d triple(std::string_view word, const std::string& text) {
           number(word.substr(last + 1), text)};
 }
 
-void set_option(Placement& placement, std::string_view option, const std::string& text) {
+constexpr const char* kForms =
+    "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+    "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]";
+
+void set_option(ToolDevice& device, std::string_view option, const std::string& text) {
+  const bool playback = device.kind == ToolDevice::Kind::kPlayback;
+  Placement& placement = device.placement;
   const auto equals = option.find('=');
   const std::string_view name = option.substr(0, equals);
   const std::string_view value = equals == std::string_view::npos ? "" : option.substr(equals + 1);
-  if (name == "scale") {
+  if (name == "scale" && playback) {
     placement.scale = number(value, text);
   } else if (name == "offset") {
     placement.offset_m = triple(value, text);
-  } else if (name == "rate") {
+  } else if (name == "rate" && playback) {
     placement.rate = number(value, text);
     if (placement.rate <= 0) refuse(text, "rate must be above 0");
   } else {
-    refuse(text, "there is no option \"" + std::string(name) + "\"; there are scale, offset and rate");
+    refuse(text, "there is no option \"" + std::string(name) + "\"; there " +
+                     (playback ? "are scale, offset and rate" : "is offset"));
   }
 }
 
 }  // namespace
 
 ToolDevice parse_tool_device(const std::string& text) {
+  using Kind = ToolDevice::Kind;
   const auto colon = text.find(':');
   const std::string kind = text.substr(0, colon);
-  if (kind != "virtual_hand" && kind != "playback")
-    refuse(text,
-           "unknown; use virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R]");
   ToolDevice out;
-  out.kind = kind == "playback" ? ToolDevice::Kind::kPlayback : ToolDevice::Kind::kVirtualHand;
+  if (kind == "playback")
+    out.kind = Kind::kPlayback;
+  else if (kind == "spidar")
+    out.kind = Kind::kSpidar;
+  else if (kind == "external")
+    out.kind = Kind::kExternal;
+  else if (kind != "virtual_hand")
+    refuse(text, std::string("unknown; use ") + kForms);
   if (colon == std::string::npos) {
-    if (out.kind == ToolDevice::Kind::kPlayback) refuse(text, "name the file to play: playback:FILE");
+    if (out.kind == Kind::kPlayback) refuse(text, "name the file to play: playback:FILE");
+    if (out.kind == Kind::kSpidar) refuse(text, "name its frame: spidar:desktop, or a JSON file");
+    if (out.kind == Kind::kExternal) refuse(text, "give it the name that its driver has: external:NAME");
     return out;
   }
   std::string_view rest = std::string_view(text).substr(colon + 1);
   auto comma = rest.find(',');
-  out.file = rest.substr(0, comma);
-  if (out.file.empty()) refuse(text, "name a file after the colon");
+  const std::string what(rest.substr(0, comma));
+  if (what.empty()) refuse(text, "name a file after the colon");
+  const bool named = out.kind == Kind::kExternal || (out.kind == Kind::kSpidar && !what.ends_with(".json"));
+  (named ? out.name : out.file) = what;
   while (comma != std::string_view::npos) {
-    if (out.kind == ToolDevice::Kind::kVirtualHand) refuse(text, "virtual_hand takes no options after its file");
+    if (out.kind == Kind::kVirtualHand) refuse(text, "virtual_hand takes no options after its file");
     rest.remove_prefix(comma + 1);
     comma = rest.find(',');
-    set_option(out.placement, rest.substr(0, comma), text);
+    set_option(out, rest.substr(0, comma), text);
   }
   return out;
 }
 
-std::string with_motion_file(const std::string& text, const std::string& file) {
+std::string with_device_file(const std::string& text, const std::string& file) {
   if (file.find(',') != std::string::npos)
     refuse(text, "the path " + file + " has a comma, which begins the options");
   const auto colon = text.find(':'), comma = text.find(',');

@@ -1,5 +1,6 @@
 // What tool_def_t.device and haptic_node --device say:
-// virtual_hand, virtual_hand:FILE or playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R].
+// virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R],
+// spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z].
 #pragma once
 
 #include <Eigen/Core>
@@ -9,16 +10,17 @@
 
 namespace tactus {
 
-// How a recorded motion is played.
+// How a recorded motion is played, or where a frame stands.
 struct Placement {
   double scale = 1;
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  // added after scaling
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  // added after scaling; of the frame's origin in the world
   double rate = 1;                                     // speed of the playback
 };
 
 struct ToolDevice {
-  enum class Kind { kVirtualHand, kPlayback } kind = Kind::kVirtualHand;
-  std::string file;  // of the motion; empty: none
+  enum class Kind { kVirtualHand, kPlayback, kSpidar, kExternal } kind = Kind::kVirtualHand;
+  std::string file;  // of the motion or of the string frame; empty: none
+  std::string name;  // of a known string frame, or of a device that another program drives; empty: none
   Placement placement;
 };
 
@@ -33,7 +35,7 @@ struct BadDevice : std::runtime_error {
 // Looks at the form only, not at the file. Throws BadDevice.
 ToolDevice parse_tool_device(const std::string& text);
 
-// The same device with its motion in another file. Throws BadDevice.
-std::string with_motion_file(const std::string& text, const std::string& file);
+// The same device with its motion or its frame in another file. Throws BadDevice.
+std::string with_device_file(const std::string& text, const std::string& file);
 
 }  // namespace tactus

@@ -190,6 +190,14 @@ bool valid(const tool_state_t& m) {
          sane(m.proxy_velocity_m_s) && sane(m.force_N) && sane(m.torque_N_m) && sane(m.transient_N) &&
          sane(m.energy_J) && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
 }
+bool valid(const device_state_t& m) {
+  return sane(m.header) && name(m.device) && sane(m.pose) && sane(m.velocity_m_s) &&
+         between(m.state, device_state_t::ANSWERS, device_state_t::LOST);
+}
+bool valid(const device_force_t& m) {
+  return sane(m.header) && name(m.device) && sane(m.force_N) && sane(m.torque_N_m) &&
+         between(m.valid_for_ns, 1, kMaxDelay_ns);
+}
 bool valid(const presented_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
   return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.owes, 0, 15) &&
@@ -230,6 +238,11 @@ bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.s
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
          between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);
+}
+bool valid(const thermal_device_t& m) {
+  const auto temperature = [](double degC) { return degC >= -273.15 && degC <= 1000; };
+  return sane(m.header) && m.tool >= 0 && temperature(m.plate_degC) && temperature(m.sink_degC) && sane(m.current_A) &&
+         sane(m.voltage_V) && between(m.state, thermal_device_t::OK, thermal_device_t::FAULT);
 }
 bool valid(const thermal_state_t& m) {
   return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&

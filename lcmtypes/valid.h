@@ -10,6 +10,8 @@
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
 #include <tactus/degraded_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 #include <tactus/game_state_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/media_clock_t.hpp>
@@ -23,6 +25,7 @@
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/sync_report_t.hpp>
+#include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
@@ -39,6 +42,8 @@ bool valid(const contact_events_t&);
 bool valid(const contact_frame_t&);
 bool valid(const degradation_t&);
 bool valid(const degraded_t&);
+bool valid(const device_force_t&);
+bool valid(const device_state_t&);
 bool valid(const game_state_t&);
 bool valid(const log_info_t&);
 bool valid(const media_clock_t&);
@@ -52,6 +57,7 @@ bool valid(const scene_t&);
 bool valid(const sim_command_t&);
 bool valid(const sim_reply_t&);
 bool valid(const sync_report_t&);
+bool valid(const thermal_device_t&);
 bool valid(const thermal_state_t&);
 bool valid(const tool_state_t&);
 bool valid(const touch_model_t&);

@@ -29,6 +29,20 @@ struct Sum {
   std::int32_t body = -1, material = -1;
 };
 
+// Of one body, with all its contacts.
+struct PartSum {
+  std::vector<Interval> touching;
+  double force_N = 0, area_m2 = 0;
+};
+using Parts = std::map<std::pair<std::int32_t, std::int32_t>, PartSum>;
+
+std::vector<ContactPart> finished(Parts& parts) {
+  std::vector<ContactPart> result;
+  for (auto& [key, part] : parts)
+    result.push_back({key.first, key.second, covered(std::move(part.touching)), part.force_N, part.area_m2});
+  return result;
+}
+
 // The side that is not the tool. Without the tool's body id: side a, since tools are the last bodies of a scene.
 template <class Contact>
 std::pair<std::int32_t, std::int32_t> other_side(const Contact& c, int tool_body) {
@@ -45,6 +59,7 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
   const double length_s = to_seconds(t1 - t0);
   std::vector<Interval> touching;
   std::map<std::int64_t, Sum> sums;
+  Parts parts;
 
   const auto add = [&](const contact_t& c, SimTime begin, SimTime end) {
     const auto life = lives_.find(c.contact_id);
@@ -53,12 +68,18 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     begin = std::max(begin, t0);
     end = std::min(end, t1);
     if (c.tool != tool || end <= begin) return;
-    result.force_N += c.normal_force_N * to_seconds(end - begin) / length_s;
-    result.area_m2 += c.area_m2 * to_seconds(end - begin) / length_s;
+    const double force_N = c.normal_force_N * to_seconds(end - begin) / length_s;
+    const double area_m2 = c.area_m2 * to_seconds(end - begin) / length_s;
+    result.force_N += force_N;
+    result.area_m2 += area_m2;
     touching.push_back({begin, end});
     Sum& sum = sums[c.contact_id];
     sum.time += end - begin;
     std::tie(sum.body, sum.material) = other_side(c, tool_body);
+    PartSum& part = parts[{sum.body, sum.material}];
+    part.force_N += force_N;
+    part.area_m2 += area_m2;
+    part.touching.push_back({begin, end});
   };
 
   // From the last snapshot before the interval on; those after it cannot reach into it.
@@ -85,14 +106,19 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     const SimTime begin = std::max(t0, sim_time(life.begin->time_ns)), end = std::min(t1, *life.end);
     if (end <= begin) continue;
     const bool began_here = sim_time(life.begin->time_ns) >= t0;
-    if (began_here) result.force_N += life.begin->effective_mass_kg * life.begin->approach_speed_m_s / length_s;
+    const double force_N = began_here ? life.begin->effective_mass_kg * life.begin->approach_speed_m_s / length_s : 0;
+    result.force_N += force_N;
     touching.push_back({begin, end});
     Sum& sum = sums[id];
     sum.time = end - begin;
     std::tie(sum.body, sum.material) = other_side(*life.begin, tool_body);
+    PartSum& part = parts[{sum.body, sum.material}];
+    part.force_N += force_N;
+    part.touching.push_back({begin, end});
   }
 
   result.contact_time = covered(std::move(touching));
+  result.parts = finished(parts);
   const auto longest = std::max_element(sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.second.time < b.second.time; });
   if (longest != sums.end()) {
     result.body = longest->second.body;

@@ -21,6 +21,14 @@ namespace tactus::sync {
 using Contacts = std::vector<contact_t>;
 
 // What a slow sense integrates: means over a tick, weighted by the time of contact.
+// What the tool had of one body in an interval.
+struct ContactPart {
+  std::int32_t body = -1, material = -1;
+  Nanoseconds contact_time{0};  // how long it touched that at all
+  double force_N = 0;           // means over the whole interval, as below
+  double area_m2 = 0;
+};
+
 struct ContactIntegral {
   Nanoseconds contact_time{0};  // how long the tool touched at all within the interval
   double force_N = 0;           // mean normal force over the whole interval
@@ -28,6 +36,7 @@ struct ContactIntegral {
   std::int32_t material = -1;   // of the other body of the contact that lasted longest; -1: none
   std::int32_t body = -1;
   How how = How::kNone;
+  std::vector<ContactPart> parts;  // all bodies touched, by body and material; they add up to the whole but for the time
 };
 
 class ContactStream {

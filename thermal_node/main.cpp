@@ -2,11 +2,13 @@
 //
 //   in   CONTACT_EVENTS, CONTACTS      what the tool touches, how firmly and for how long
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools and materials
+//        THERMAL_DEVICE                what the display says of itself, if it does
 //   out  THERMAL_STATE                 every tick
+//        THERMAL_DEVICE                every tick, of the simulated display
 //        PRESENTED                     every begin and hit of its tool
 //
-// Losing the contacts returns the command to the temperature of resting skin; the loop never waits for another
-// node.
+// Losing the display's answers, it is taken to be where it was commanded. Losing the contacts returns the command
+// to the temperature of resting skin; the loop never waits for another node.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
@@ -16,8 +18,11 @@
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 #include "thermal_node/choice.h"
+#include "thermal_node/devices/external.h"
+#include "thermal_node/devices/make_device.h"
 #include "thermal_node/quality.h"
 #include "thermal_node/renderer.h"
+#include "thermal_node/thickness.h"
 
 using namespace tactus;
 
@@ -46,12 +51,16 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
+  auto& answers = node.bus().queue<thermal_device_t>(channels::kThermalDevice, 64);
   sync::ContactStream stream(node.bus().clocks());
   thermal::Choice choice;
   thermal::Ticks ticks;
   thermal::Quality quality(choice.settings);
   std::optional<thermal::Renderer> renderer;
+  thermal::Dwell dwell{thermal::DwellLimits{}};  // of the skin, whatever the scene
+  std::unique_ptr<thermal::Device> device;
   std::optional<double> element_degC;  // as commanded last, whatever the scene
+  std::optional<double> plate_degC;    // as measured last
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
@@ -60,6 +69,9 @@ int main(int argc, char** argv) try {
     stream.keep(sense.delay());
     while (const auto m = events.pop()) stream.push(m->message, m->arrival);
     while (const auto m = frames.pop()) stream.push(m->message, m->arrival);
+    while (const auto m = answers.pop())
+      // Not that of a log which is played meanwhile: its plate is not under this finger.
+      if (device && m->message.header.run_id == options.run_id) device->receive(m->message, m->arrival);
     if (scenes.poll(now)) {
       choice = thermal::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
@@ -69,17 +81,31 @@ int main(int argc, char** argv) try {
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz) + thermal::Ticks::kSettle);
       node.set_state(node_health_t::WAITING, choice.problem);
+      if (renderer) dwell = renderer->dwell();
       renderer.reset();
-      if (choice.tool >= 0)
-        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body, element_degC);
+      device =
+          thermal::make_device(choice.settings, choice.tool, plate_degC.value_or(choice.settings.skin_rest_degC));
+      if (choice.tool >= 0) {
+        renderer.emplace(choice.settings, scenes.scene()->materials, choice.tool, choice.tool_body, element_degC,
+                         thermal::thickness_of_bodies(*scenes.scene()));
+        renderer->resume(dwell);
+      }
     }
     if (!renderer) continue;
     const thermal::Tick tick =
         ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
-    thermal_state_t state = renderer->step(
-        tick, {.response_s = sense.output().response_s, .longest_substep_s = quality.longest_substep_s()});
+    const double command_degC = element_degC.value_or(choice.settings.skin_rest_degC);
+    const auto plate = device ? device->step(command_degC, renderer->load_W(), now) : std::nullopt;
+    thermal_state_t state = renderer->step(tick, {.response_s = sense.output().response_s,
+                                                  .longest_substep_s = quality.longest_substep_s(),
+                                                  .plate = plate});
     element_degC = state.commanded_degC;
     node.bus().publish(channels::kThermalState, state);
+    if (plate) plate_degC = plate->plate_degC;
+    if (plate && device->simulated()) {
+      thermal_device_t answer = thermal::to_message(*plate, choice.tool);
+      node.bus().publish(channels::kThermalDevice, answer);
+    }
     for (const presentation_t& report : renderer->reports()) sense.report(report);
     sense.publish(now);
     quality.add(sync::host_now() - now);
@@ -90,7 +116,8 @@ int main(int argc, char** argv) try {
     else if (renderer->input_lost())
       node.set_state(node_health_t::INPUT_LOST, "no contacts: the command returns to resting skin");
     else
-      node.set_state(node_health_t::RUNNING);
+      node.set_state(node_health_t::RUNNING,
+                     device && !plate ? "the display is silent: taken to be as commanded" : "");
   }
   return 0;
 } catch (const std::exception& e) {

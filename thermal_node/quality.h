@@ -6,7 +6,7 @@
 
 #include "sync/quality.h"
 #include "thermal_node/settings.gen.h"
-#include "thermal_node/skin_model.h"
+#include "thermal_node/skin.h"
 
 namespace tactus::thermal {
 
@@ -14,7 +14,7 @@ class Quality {
  public:
   // Each halves the work of a tick of 20 ms. The last is 0.15 K off in the tick in which a touch on copper at room
   // temperature begins, within 1 % of its change from the next on.
-  static constexpr std::array<double, 3> kLongestSubsteps_s{SkinModel::kLongestSubstep_s, 0.010, 0.020};
+  static constexpr std::array<double, 3> kLongestSubsteps_s{Skin::kLongestSubstep_s, 0.010, 0.020};
 
   explicit Quality(const Settings& settings);
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 
 #include "sync/time.h"
 
@@ -14,6 +16,9 @@ struct DeviceState {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, world
   std::int32_t buttons = 0;                            // bit 0 first
+  // It does not answer, or nonsense: position and orientation are the last that were known, and no force may be
+  // felt.
+  bool lost = false;
 };
 
 class Device {
@@ -29,6 +34,11 @@ class Device {
   virtual DeviceState read(sync::HostTime now) = 0;
   // Force on the hand, N, world frame, held until the next write.
   virtual void write(const Eigen::Vector3d& force_N) = 0;
+
+  // What programs on the bus say of devices that they drive; it is for the one of that name.
+  virtual void hear(const device_state_t&, sync::HostTime /*arrival*/) {}
+  // What such a program must be told after each write; null: nothing. Valid until the next call of this object.
+  virtual device_force_t* tell() { return nullptr; }
 };
 
 }  // namespace tactus::haptic

@@ -2,6 +2,10 @@
 
 #include <stdexcept>
 
+#include "haptic_node/devices/external.h"
+#include "haptic_node/devices/spidar/frame_file.h"
+#include "haptic_node/devices/spidar/simulated_strings.h"
+#include "haptic_node/devices/spidar/spidar.h"
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/vectors.h"
 
@@ -43,18 +47,36 @@ std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const tool_def_t& tool
       HandImpedance{s.hand_mass_kg, s.hand_damping_Ns_m, s.hand_stiffness_N_m});
 }
 
+StringFrame frame_of(const DeviceSpec& spec) {
+  if (!spec.file.empty()) return read_frame(spec.file);
+  if (auto frame = known_frame(spec.name)) return *std::move(frame);
+  std::string known;
+  for (const std::string& name : known_frames()) known += (known.empty() ? "" : ", ") + name;
+  throw std::runtime_error("device \"spidar:" + spec.name + "\": there is no such frame; use one of " + known +
+                           " or a JSON file");
+}
+
 }  // namespace
 
 DeviceSpec parse_device_spec(const std::string& spec) {
-  DeviceSpec out{parse_tool_device(spec), {}};
-  if (!out.file.empty()) out.motion = read_motion(out.file);
+  DeviceSpec out{parse_tool_device(spec), {}, {}};
+  if (out.kind == DeviceSpec::Kind::kSpidar)
+    out.frame = frame_of(out);
+  else if (!out.file.empty())
+    out.motion = read_motion(out.file);
   return out;
 }
 
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
                                     const Settings& settings) {
   if (spec.kind == DeviceSpec::Kind::kPlayback) return std::make_unique<Playback>(*spec.motion, spec.placement);
-  return make_hand(spec, tool, rest_m, settings);
+  if (spec.kind == DeviceSpec::Kind::kExternal)
+    return std::make_unique<External>(spec.name, spec.placement.offset_m, settings.device_stale_after_s);
+  auto hand = make_hand(spec, tool, rest_m, settings);
+  if (spec.kind == DeviceSpec::Kind::kVirtualHand) return hand;
+  const Eigen::Vector3d& origin_m = spec.placement.offset_m;
+  return std::make_unique<Spidar>(*spec.frame, origin_m,
+                                  std::make_unique<SimulatedStrings>(*spec.frame, origin_m, std::move(hand)));
 }
 
 }  // namespace tactus::haptic

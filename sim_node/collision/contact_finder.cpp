@@ -1,6 +1,7 @@
 #include "sim_node/collision/contact_finder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "sim_node/collision/gaps/choose.h"
@@ -26,6 +27,12 @@ ManifoldPoint point_of(const PointPair& p) {
   m.depth_m = -p.gap_m;
   m.triangle_a = p.triangle_a, m.triangle_b = p.triangle_b;
   return m;
+}
+
+// Libraries give points without a direction where surfaces just touch.
+bool is_sound(const PointPair& p) {
+  return p.on_a_m.allFinite() && p.on_b_m.allFinite() && std::isfinite(p.gap_m) &&
+         std::abs(p.normal.squaredNorm() - 1) < 1e-6;
 }
 
 }  // namespace
@@ -69,6 +76,7 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
                chosen_takes_[both(kinds_[a], kinds_[b])] && (meshed || !only_triangles_);
   if (found) {
     ask(*chosen_, chosen_number_);
+    std::erase_if(pairs_, [](const PointPair& p) { return !is_sound(p); });
     found = std::none_of(pairs_.begin(), pairs_.end(), [](const PointPair& p) { return p.pierced; });
   }
   if (!found) ask(*gaps_, number_);

@@ -31,7 +31,7 @@ std::string read_device(const LoadContext& context, const sdf::Element& element,
   if (std::filesystem::file_size(file) > kMaxMotionFileBytes || !std::ifstream(file))
     context.refuse(element, "names \"" + device.file + "\", which is not readable or larger than " +
                                 std::to_string(kMaxMotionFileBytes >> 20) + " MiB: give it another motion file");
-  return with_motion_file(text, std::filesystem::absolute(file).lexically_normal().string());
+  return with_device_file(text, std::filesystem::absolute(file).lexically_normal().string());
 } catch (const BadDevice& e) {
   context.refuse(element, std::string("has a bad device: ") + e.what());
 }

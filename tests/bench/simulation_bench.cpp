@@ -12,12 +12,12 @@
 #include <nlohmann/json.hpp>
 
 #include "sim_node/behaviour/behaviour_model.h"
-#include "sim_node/collision/detector.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sync/settings.h"
 #include "tests/bench/offline/offline_world.h"
 #include "tests/bench/offline/senses.h"
 #include "tests/bench/offline/steadiness.h"
+#include "tests/sim_node/penetration_oracle.h"
 #include "tests/sync/memory_sink.h"
 
 using namespace tactus;
@@ -31,42 +31,6 @@ double quantile(std::vector<double> x, double q) {
   std::sort(x.begin(), x.end());
   return x[static_cast<std::size_t>(q * static_cast<double>(x.size() - 1))];
 }
-
-// How deep bodies overlap, by ODE's narrow phase on the true shapes, whatever the detector under test says.
-class Oracle {
- public:
-  explicit Oracle(const sim::WorldDef& world) : world_(world), detector_(sim::make_ode_detector()) {
-    shapes_of_.resize(world.bodies.size());
-    for (const sim::ShapeDef& s : world.shapes) {
-      shapes_of_[static_cast<std::size_t>(s.body)].push_back(static_cast<int>(number_.size()));
-      number_.push_back(detector_->add(s, world));
-    }
-  }
-  // Over the pairs of bodies that are in contact.
-  double deepest_m(std::span<const contact_t> contacts, std::span<const sim::BodyMotion> bodies) {
-    double deepest = 0;
-    for (const contact_t& c : contacts)
-      for (const int a : shapes_of_[static_cast<std::size_t>(c.body_a)])
-        for (const int b : shapes_of_[static_cast<std::size_t>(c.body_b)]) {
-          detector_->query(number(a), pose(a, bodies), number(b), pose(b, bodies), 0, pairs_);
-          for (const sim::PointPair& p : pairs_) deepest = std::max(deepest, -p.gap_m);
-        }
-    return deepest;
-  }
-
- private:
-  int number(int shape) const { return number_[static_cast<std::size_t>(shape)]; }
-  Eigen::Isometry3d pose(int shape, std::span<const sim::BodyMotion> bodies) const {
-    const sim::ShapeDef& s = world_.shapes[static_cast<std::size_t>(shape)];
-    const sim::BodyMotion& m = bodies[static_cast<std::size_t>(s.body)];
-    return Eigen::Translation3d(m.position_m) * m.orientation * s.pose;
-  }
-  const sim::WorldDef& world_;
-  std::unique_ptr<sim::Detector> detector_;
-  std::vector<int> number_;
-  std::vector<std::vector<int>> shapes_of_;  // of each body
-  std::vector<sim::PointPair> pairs_;
-};
 
 // Kinetic energy and that of the weights, in the middle of the step before: velocities are of then.
 double energy_J(const sim::WorldDef& world, std::span<const sim::BodyMotion> bodies, double h) {
@@ -85,7 +49,7 @@ double energy_J(const sim::WorldDef& world, std::span<const sim::BodyMotion> bod
 // Without hands: cost, depth, energy.
 json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, double seconds) {
   OfflineWorld run(world, settings, false, nullptr);
-  Oracle oracle(world);
+  sim::test::PenetrationOracle oracle(world);
   const double h = settings.step_s;
   std::vector<double> us;
   std::vector<contact_t> list;
@@ -97,7 +61,7 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
     const auto bodies = run.simulation().bodies();
     run.simulation().body_contacts(list);
     contacts += static_cast<double>(list.size());
-    if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest_m(list, bodies));
+    if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest(bodies).depth_m);
     const double energy = energy_J(world, bodies, h);
     if (i == 0) first = least = most = energy;
     least = std::min(least, energy), most = std::max(most, energy);

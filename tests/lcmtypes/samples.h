@@ -151,11 +151,25 @@ class Samples {
     m.buttons = whole(0, 9);
     fill_list(m.constraint_count, m.constraints, 0, 8);
   }
+  void fill(device_state_t& m) {
+    fill(m.header);
+    m.device = name(), fill(m.pose), fill(m.velocity_m_s);
+    m.buttons = whole(0, 9), m.state = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(device_force_t& m) {
+    fill(m.header);
+    m.device = name(), fill(m.force_N), fill(m.torque_N_m), m.valid_for_ns = whole(1, 1'000'000'000);
+  }
   void fill(thermal_state_t& m) {
     fill(m.header);
     m.tool = whole(0, 3), m.material = whole(-1, 9), m.force_N = single(0, 9), m.area_m2 = single(0, 1);
     m.heat_flux_W_m2 = single(-9000, 9000), m.skin_degC = single(0, 50), m.commanded_degC = single(15, 42);
     m.limited = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(thermal_device_t& m) {
+    fill(m.header);
+    m.tool = whole(0, 3), m.plate_degC = single(10, 43), m.sink_degC = single(-10, 60);
+    m.current_A = single(-6, 6), m.voltage_V = single(-4, 4), m.state = static_cast<std::int8_t>(whole(0, 2));
   }
   void fill(presented_t& m) { fill(m.header), m.modality = name(), fill_list(m.count, m.reports, 0, 30); }
   void fill(node_health_t& m) {

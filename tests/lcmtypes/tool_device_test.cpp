@@ -15,6 +15,14 @@ TEST_CASE("The device of a tool is parsed whole, without a look at its file") {
   CHECK(device.placement.scale == 0.5);
   CHECK(device.placement.offset_m == Eigen::Vector3d(1, -2, 0.5));
   CHECK(device.placement.rate == 2);
+  const ToolDevice strings = parse_tool_device("spidar:cave,offset=0/1/2");
+  CHECK(strings.kind == ToolDevice::Kind::kSpidar);
+  CHECK(strings.name == "cave");
+  CHECK(strings.file.empty());
+  CHECK(strings.placement.offset_m == Eigen::Vector3d(0, 1, 2));
+  CHECK(parse_tool_device("spidar:frames/mine.json").file == "frames/mine.json");
+  CHECK(parse_tool_device("external:left arm").kind == ToolDevice::Kind::kExternal);
+  CHECK(parse_tool_device("external:left arm,offset=0/0/1").name == "left arm");
 }
 
 TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
@@ -30,10 +38,13 @@ TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,offset=1/2"), Contains("offset=X/Y/Z"));
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,rate=0"), Contains("above 0"));
   CHECK_THROWS_WITH(parse_tool_device("virtual_hand:x.csv,scale=2"), Contains("no options"));
+  CHECK_THROWS_WITH(parse_tool_device("external"), Contains("give it the name"));
+  CHECK_THROWS_WITH(parse_tool_device("spidar"), Contains("name its frame"));
+  CHECK_THROWS_WITH(parse_tool_device("spidar:cave,scale=2"), Contains("no option \"scale\"") && Contains("offset"));
 }
 
 TEST_CASE("The motion file of a device is named anew, its options stay") {
-  CHECK(with_motion_file("playback:x.csv,rate=2,scale=3", "/a/b.csv") == "playback:/a/b.csv,rate=2,scale=3");
-  CHECK(with_motion_file("virtual_hand:x.csv", "/a/b.csv") == "virtual_hand:/a/b.csv");
-  CHECK_THROWS_WITH(with_motion_file("playback:x.csv", "/a,b/x.csv"), Contains("comma"));
+  CHECK(with_device_file("playback:x.csv,rate=2,scale=3", "/a/b.csv") == "playback:/a/b.csv,rate=2,scale=3");
+  CHECK(with_device_file("virtual_hand:x.csv", "/a/b.csv") == "virtual_hand:/a/b.csv");
+  CHECK_THROWS_WITH(with_device_file("playback:x.csv", "/a,b/x.csv"), Contains("comma"));
 }

@@ -16,7 +16,7 @@ MAY_INCLUDE.update({node: {node, "sync", "lcmtypes"} for node in NODES})
 
 # External headers and the places where they may appear.
 QUARANTINE = [
-    (r"lcm/", r"sync/(bus|recorder|log|replay)[a-z_]*\.(h|cpp)", "LCM is used in the bus and recorder files of sync/ only"),
+    (r"lcm/", r"(sync/(bus|recorder|log|replay)[a-z_]*\.(h|cpp)|examples/)", "LCM is used in the bus and recorder files of sync/ only"),
     (r"(ode|ccd|fcl)/", r"sim_node/(collision|behaviour)/", "ODE, libccd and FCL are used in sim_node/collision and behaviour only"),
     (r"(EGL|GL|GLES\d|epoxy|gbm|X11)(/|\.h)", r"visual_node/(egl|gl|scene_view|frame|window)/",
      "EGL and GL are used in the drawing folders of visual_node only"),

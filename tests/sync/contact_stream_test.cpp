@@ -231,6 +231,29 @@ TEST_CASE("The integral over a tick is the time average of force and area while 
   CHECK(stream.integral(sim_time(0), sim_time(20 * kMs), 5, 1).contact_time == Nanoseconds(0));
 }
 
+TEST_CASE("Of two bodies touched at once the integral tells what each had, and both add up to the whole") {
+  ContactStream stream(kRun);
+  contact_t first = contact(1, 3), second = contact(2, 1), same = contact(3, 2);
+  second.body_a = 7, second.material_a = 9;
+  for (std::int64_t step = 0; step <= 20; ++step) {
+    std::vector<contact_t> list{first};
+    if (step >= 10) list = {first, second, same};
+    stream.push(frame(step * kMs, list), at(step * kMs));
+  }
+  const auto tick = stream.integral(sim_time(0), sim_time(20 * kMs), 0, 1);
+  REQUIRE(tick.parts.size() == 2);
+  CHECK(tick.parts[0].body == 0);
+  CHECK(tick.parts[0].material == 3);
+  CHECK(tick.parts[0].contact_time == Nanoseconds(20 * kMs));
+  CHECK(tick.parts[0].force_N == Approx(3 + 2 * 0.5));
+  CHECK(tick.parts[1].body == 7);
+  CHECK(tick.parts[1].material == 9);
+  CHECK(tick.parts[1].contact_time == Nanoseconds(10 * kMs));
+  CHECK(tick.parts[1].force_N == Approx(0.5));
+  CHECK(tick.parts[1].area_m2 == Approx(0.5e-5));
+  CHECK(tick.force_N == Approx(4.5));
+}
+
 TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events alone") {
   ContactStream stream(kRun);
   stream.push(frame(0, {}), at(0));

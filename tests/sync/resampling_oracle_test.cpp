@@ -167,6 +167,15 @@ class Renderer {
       said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns, " << got.force_N << " N, "
             << got.area_m2 << " m2, " << to_string(got.how) << " instead of " << wanted.contact_time.count()
             << ", " << wanted.force_N << ", " << wanted.area_m2 << ", " << to_string(wanted.how) << "; ";
+    double force_N = 0, area_m2 = 0;
+    Nanoseconds longest{0}, together{0};
+    for (const ContactPart& part : got.parts) {
+      force_N += part.force_N, area_m2 += part.area_m2;
+      longest = std::max(longest, part.contact_time), together += part.contact_time;
+    }
+    if (differ(force_N, got.force_N) || differ(area_m2 * 1e5, got.area_m2 * 1e5) || longest > got.contact_time ||
+        together < got.contact_time)
+      said_ << "over " << t0 << " .. " << t1 << " the parts do not add up: " << force_N << " N of " << got.force_N << "; ";
     ++tally_.integrals;
     if (!contacts_.knows_all(t0, t1, kTool)) return;
     ++tally_.true_integrals;

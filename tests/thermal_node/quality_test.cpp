@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "thermal_node/contact_model.h"
+#include "thermal_node/skin_model.h"
 
 using namespace tactus;
 using namespace tactus::thermal;

@@ -141,13 +141,16 @@ TEST_CASE("A device that cannot be is refused with its line, before anything sta
   };
   CHECK(said("playback:short.csv") == "");
   CHECK(said("virtual_hand:short.csv") == "");
+  CHECK(said("spidar:cave,offset=0/0/1") == "");
+  CHECK(said("external:arm") == "");
   for (const char* device :
-       {"evil", "", "playback", "playback:short.csv,rate=0", "playback:short.csv,colour=red"}) {
+       {"evil", "", "playback", "playback:short.csv,rate=0", "playback:short.csv,colour=red", "spidar",
+        "external:"}) {
     INFO(device);
     CHECK_THAT(said(device), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("device"));
   }
   for (const char* device :
-       {"playback:none.csv", "playback:/dev/zero", "virtual_hand:folder", "playback:long.csv"}) {
+       {"playback:none.csv", "playback:/dev/zero", "virtual_hand:folder", "playback:long.csv", "spidar:none.json"}) {
     INFO(device);
     CHECK_THAT(said(device), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("names \""));
   }

@@ -1,0 +1,97 @@
+// A driver for a device that haptic_node does not know: it says where the device is and exerts the force that it
+// is told.
+//
+//   device_driver [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --device external:NAME
+//
+//   out  DEVICE_STATE   a thousand times a second
+//   in   DEVICE_FORCE   let go when it is not renewed
+//
+// It needs LCM and the generated types, nothing of Tactus. The hardware here is a weight of 0.1 kg that a spring
+// and a damper hold 5 mm below where a floor may be; for a real device replace `Hardware`.
+#include <lcm/lcm-cpp.hpp>
+
+#include <chrono>
+#include <iostream>
+#include <random>
+#include <string>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <thread>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, which header_t asks for
+std::int64_t to_ns(Clock::time_point t) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
+}
+
+// What to replace. Along z only, in m, m/s, N.
+struct Hardware {
+  double z = 0.05, velocity = 0, force = 0;
+
+  void read_encoders(double dt) {
+    constexpr double kMass_kg = 0.1, kDamping_Ns_m = 10, kStiffness_N_m = 300, kRest_m = -0.005;
+    velocity += dt / kMass_kg * (force - kDamping_Ns_m * velocity - kStiffness_N_m * (z - kRest_m));
+    z += dt * velocity;
+  }
+  void command_motors(double force_N) { force = force_N; }
+  int buttons() const { return 0; }
+  bool answers() const { return true; }
+};
+
+// The newest force for this device.
+struct Forces {
+  std::string device;
+  tactus::device_force_t newest{};
+  Clock::time_point arrived{};
+
+  void hear(const lcm::ReceiveBuffer*, const std::string&, const tactus::device_force_t* m) {
+    if (m->device != device) return;
+    newest = *m;
+    arrived = Clock::now();
+  }
+  // 0 when it was not renewed: haptic_node is gone, and a device must not go on pushing.
+  double z_N(Clock::time_point now) const {
+    return now - arrived > std::chrono::nanoseconds(newest.valid_for_ns) ? 0 : newest.force_N.z;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
+  Forces forces{argument(1, "arm")};
+  // ttl=0: nothing leaves this machine.
+  lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
+  if (!bus.good()) {
+    std::cerr << "device_driver: cannot open the bus; check that the network lets multicast through\n";
+    return 1;
+  }
+  bus.subscribe("DEVICE_FORCE", &Forces::hear, &forces);
+
+  tactus::device_state_t state{};  // LCM zeroes nothing by itself
+  state.device = forces.device;
+  state.header.sim_time_ns = -1;
+  state.header.run_id = std::stoll(argument(4, "1"));
+  // Another number at every start: a driver that was started again is no driver whose clock fell back.
+  std::random_device random;
+  state.header.incarnation = std::uniform_int_distribution<std::int64_t>(1, INT64_MAX)(random);
+  state.pose.orientation.w = 1;
+
+  Hardware hardware;
+  for (Clock::time_point next = Clock::now();; next += std::chrono::milliseconds(1)) {
+    std::this_thread::sleep_until(next);
+    while (bus.handleTimeout(0) > 0) {
+    }
+    hardware.command_motors(forces.z_N(Clock::now()));
+    hardware.read_encoders(1e-3);
+
+    state.pose.position_m.z = hardware.z;
+    state.velocity_m_s.z = static_cast<float>(hardware.velocity);
+    state.buttons = hardware.buttons();
+    state.state = hardware.answers() ? tactus::device_state_t::ANSWERS : tactus::device_state_t::LOST;
+    state.header.publish_time_ns = to_ns(Clock::now());
+    bus.publish("DEVICE_STATE", &state);
+    ++state.header.seq;
+  }
+}

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""A driver for a device that haptic_node does not know, in Python: it says where the device is and takes the force.
+
+  lcm-gen -p --ppath TYPES lcmtypes/*.lcm             once
+  PYTHONPATH=TYPES driver.py [NAME [GROUP [PORT [RUN]]]]     and beside it: haptic_node --device external:NAME
+
+It sends DEVICE_STATE 250 times a second and hears DEVICE_FORCE, which it lets go when it is not renewed. The hardware here is
+a weight of 0.1 kg that a spring and a damper hold 5 mm below where a floor may be; for a real device replace Hardware.
+"""
+import random
+import select
+import socket
+import struct
+import sys
+import time
+
+from tactus import device_force_t, device_state_t, header_t, pose_t, quat_t, vec3_t, vec3f_t
+
+PERIOD_S = 0.004
+
+
+class Bus:
+    """The little of LCM that a driver needs, so that this runs without its Python module; with it: lcm.LCM(url), and
+    its publish and subscribe. A small message is one datagram: "LC02", a number, the channel, 0, the message."""
+
+    SMALL = 0x4C433032
+
+    def __init__(self, group, port):
+        self.to = (group, port)
+        self.sequence = 0
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)  # nothing leaves this machine
+        self.socket.bind(("", port))
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                               socket.inet_aton(group) + socket.inet_aton("0.0.0.0"))
+
+    def publish(self, channel, data):
+        self.socket.sendto(struct.pack(">II", self.SMALL, self.sequence) + channel.encode() + b"\0" + data, self.to)
+        self.sequence = (self.sequence + 1) & 0xFFFFFFFF
+
+    def heard(self, channel):
+        """The messages on a channel that have arrived, without waiting."""
+        while select.select([self.socket], [], [], 0)[0]:
+            datagram = self.socket.recv(65536)
+            name, found, data = datagram[8:].partition(b"\0")
+            if datagram[:4] == struct.pack(">I", self.SMALL) and found and name == channel.encode():
+                yield data
+
+
+class Hardware:
+    """What to replace. Along z only, in m, m/s, N."""
+    MASS_KG, DAMPING_NS_M, STIFFNESS_N_M, REST_M = 0.1, 10, 300, -0.005
+
+    def __init__(self):
+        self.z, self.velocity = 0.05, 0.0
+
+    def step(self, force_n, dt):
+        for _ in range(4):  # a stiff spring wants small steps
+            pull = self.DAMPING_NS_M * self.velocity + self.STIFFNESS_N_M * (self.z - self.REST_M)
+            self.velocity += dt / 4 / self.MASS_KG * (force_n - pull)
+            self.z += dt / 4 * self.velocity
+
+
+def first_state(name, run):
+    state = device_state_t()
+    state.device = name
+    state.header = header_t()
+    state.header.sim_time_ns = -1
+    state.header.run_id = run
+    state.header.incarnation = random.SystemRandom().randrange(1, 2**63)  # another at every start
+    state.pose = pose_t()
+    state.pose.position_m, state.pose.orientation = vec3_t(), quat_t()
+    state.pose.orientation.w = 1.0
+    state.velocity_m_s = vec3f_t()
+    state.state = device_state_t.ANSWERS
+    return state
+
+
+def main():
+    name, group, port, run = (sys.argv[1:] + ["arm", "239.255.76.67", "7667", "1"][len(sys.argv) - 1:])[:4]
+    bus, hardware, state = Bus(group, int(port)), Hardware(), first_state(name, int(run))
+    force_n, good_until = 0.0, 0.0
+    tick = time.monotonic()
+    while True:
+        tick += PERIOD_S
+        time.sleep(max(0.0, tick - time.monotonic()))
+        for data in bus.heard("DEVICE_FORCE"):
+            try:
+                message = device_force_t.decode(data)
+            except ValueError:  # of another type
+                continue
+            if message.device == name:
+                force_n, good_until = message.force_N.z, time.monotonic() + message.valid_for_ns * 1e-9
+        if time.monotonic() > good_until:
+            force_n = 0.0
+        hardware.step(force_n, PERIOD_S)
+        state.pose.position_m.z, state.velocity_m_s.z = hardware.z, hardware.velocity
+        state.header.publish_time_ns = time.monotonic_ns()
+        bus.publish("DEVICE_STATE", state.encode())
+        state.header.seq += 1
+
+
+if __name__ == "__main__":
+    main()

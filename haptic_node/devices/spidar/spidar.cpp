@@ -1,0 +1,54 @@
+#include "haptic_node/devices/spidar/spidar.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::haptic {
+namespace {
+
+// Half a count on every string moves the pose by so many counts at the worst, within the workspace of every known
+// frame (tests/bench/spidar_table).
+constexpr double kPoseCounts = 1.6;
+
+}  // namespace
+
+Spidar::Spidar(StringFrame frame, const Eigen::Vector3d& origin_m, std::unique_ptr<StringMotors> motors)
+    : frame_(std::move(frame)),
+      origin_m_(origin_m),
+      motors_(std::move(motors)),
+      middle_m_(string_lengths(frame_, {})),
+      velocity_(kPoseCounts * frame_.encoder_step_m) {
+  check_frame(frame_);
+  tensions_.tensions_N.setConstant(frame_.size(), frame_.min_tension_N);
+}
+
+DeviceState Spidar::read(sync::HostTime now) {
+  const Counts counts = motors_->read(now);
+  const PerString lengths_m = middle_m_ + frame_.encoder_step_m * counts.cast<double>();
+  solved_ = solve_pose(frame_, lengths_m, pose_);
+  const bool lost = !solved_.converged || !(solved_.residual_m <= kLostResidual_m);
+  if (lost || lost_) velocity_.clear();
+  lost_ = lost;
+  if (!lost) pose_ = solved_.pose;
+
+  DeviceState state;
+  state.position = origin_m_ + pose_.position_m;
+  state.orientation = pose_.orientation;
+  state.lost = lost;
+  if (!lost) state.velocity = velocity_.add(pose_.position_m, now);
+  return state;
+}
+
+double Spidar::inside() const {
+  const double r = frame_.workspace_radius_m;
+  return std::clamp(1 - (pose_.position_m.norm() - r) / (kEdgeShare * r), 0.0, 1.0);
+}
+
+void Spidar::write(const Wrench& wanted) {
+  const double inside = lost_ ? 0 : this->inside();
+  tensions_ = solve_tensions(frame_, pose_, {inside * wanted.force_N, inside * wanted.torque_N_m});
+  const PerString least = PerString::Constant(frame_.size(), frame_.min_tension_N);
+  motors_->write(least + inside * (tensions_.tensions_N - least));
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,35 @@
+// The velocity of something whose position is known to a step: the longest run of samples that one line passes
+// within the step of gives the slope. First-order adaptive windowing, end-fit (Janabi-Sharifi, Hayward and Chen
+// 2000): smooth when it is slow, prompt when it is fast.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "sync/time.h"
+
+namespace tactus::haptic {
+
+class WindowVelocity {
+ public:
+  // step_m: how far a position may be from the truth.
+  explicit WindowVelocity(double step_m) : step_m_(step_m) {}
+  // m/s, per axis over its own window; 0 until there are two samples. Realtime-safe: yes.
+  Eigen::Vector3d add(const Eigen::Vector3d& position_m, sync::HostTime at);
+  void clear() { count_ = 0; }
+
+ private:
+  struct Sample {
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    sync::HostTime at{};
+  };
+  // design: 20 ms at 1 kHz, about the lag that a hand's servo forgives.
+  static constexpr std::size_t kMost = 20;
+  const Sample& back(std::size_t age) const { return samples_[(newest_ + kMost - age) % kMost]; }
+
+  double step_m_;
+  std::array<Sample, kMost> samples_;
+  std::size_t newest_ = 0, count_ = 0;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,102 @@
+// Devices that programs of their own drive: they come, are felt, are lost and come back; in C++ and in Python.
+#include <signal.h>
+
+#include <cstdlib>
+
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+// lcm-gen's types for Python, made where the test may write.
+std::filesystem::path python_types(const Folder& folder) {
+  const auto types = folder.path() / "types";
+  const std::string command = "lcm-gen -p --ppath " + quoted(types.string()) + " " +
+                              quoted((repository() / "lcmtypes").string()) + "/*.lcm";
+  REQUIRE(std::system(command.c_str()) == 0);
+  return types;
+}
+
+struct WithDriver : Running {
+  // One sense with an external device, and no driver yet.
+  void start_touch() {
+    processes.start("sim_node", {tapping_scene()});
+    processes.start("haptic_node", {"--device", "external:arm"});
+    const bool waits =
+        ear.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST); }, kPatience_s);
+    INFO(processes.said("haptic_node"));
+    REQUIRE(waits);
+  }
+  void start_driver(const std::string& language) {
+    const std::string run = std::to_string(kRunId);
+    if (language == "C++") {
+      processes.spawn("driver", {(programs() / "device_driver").string(), "arm", channels::kGroup, "7667", run});
+    } else {
+      const auto driver = (repository() / "examples/device_driver/driver.py").string();
+      processes.spawn("driver", {"env", "PYTHONPATH=" + python_types(folder).string(), "/usr/bin/python3", driver,
+                                 "arm", channels::kGroup, "7667", run});
+    }
+  }
+  // Its spring holds the driver's weight 5 mm under the floor, with the tool's radius 13 mm: 300 N/m of it against
+  // the coupling, so some 3 N.
+  bool is_felt() {
+    return ear.wait_until([&] { return lives("haptic_node") && ear.force_N() > 1.5; }, kPatience_s);
+  }
+  bool is_lost() {
+    return ear.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST) && ear.force_N() == 0; },
+                          kPatience_s);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A device that a program drives is felt, lost when it is killed or frozen, and felt again") {
+  const std::string language = GENERATE("C++", "Python");
+  CAPTURE(language);
+  WithDriver c;
+  c.start_touch();
+  c.start_driver(language);
+  const bool felt = c.is_felt();
+  INFO(c.processes.said("driver") << c.processes.said("haptic_node"));
+  REQUIRE(felt);
+
+  // The weight rests where its spring and the floor balance: above its rest, which is 5 mm under the floor.
+  const tool_state_t* tool = c.ear.tool_state();
+  REQUIRE(tool);
+  CHECK(tool->device.position_m.z > -0.005);
+
+  c.processes.signal("driver", SIGSTOP);
+  CHECK(c.is_lost());
+  c.processes.signal("driver", SIGCONT);
+  CHECK(c.is_felt());
+
+  c.processes.kill("driver");
+  CHECK(c.is_lost());
+  CHECK(c.processes.running("haptic_node"));
+  c.start_driver(language);
+  CHECK(c.is_felt());
+  CHECK(c.ear.bad("haptic_node") == 0);
+}
+
+TEST_CASE("A simulated string device taps the floor like any other hand") {
+  Running c;
+  c.processes.start("sim_node", {tapping_scene()});
+  c.processes.start("haptic_node", {"--device", "spidar:desktop,offset=0/0/0.03"});
+  const bool felt = c.ear.wait_until([&] { return c.lives("haptic_node") && c.ear.force_N() > 0.5; }, kPatience_s);
+  INFO(c.processes.said("haptic_node"));
+  REQUIRE(felt);
+  CHECK(c.ear.wait_until([&] { return c.ear.hits() >= 3; }, kPatience_s));
+}
+
+TEST_CASE("Two programs that drive one device lose it, until one of them is gone") {
+  WithDriver c;
+  c.start_touch();
+  c.start_driver("C++");
+  REQUIRE(c.is_felt());
+  c.processes.spawn("second", {(programs() / "device_driver").string(), "arm"});
+  CHECK(c.is_lost());
+  c.processes.kill("second");
+  CHECK(c.is_felt());
+}

@@ -1,0 +1,27 @@
+// A display that another program drives: it reads its command from THERMAL_STATE and answers with THERMAL_DEVICE.
+// Pure.
+#pragma once
+
+#include "thermal_node/devices/device.h"
+
+namespace tactus::thermal {
+
+class External final : public Device {
+ public:
+  // Of this tool; other messages are not for it.
+  explicit External(int tool) : tool_(tool) {}
+
+  void receive(const thermal_device_t& message, sync::HostTime arrival) override;
+  std::optional<PlateReading> step(double command_degC, double load_W, sync::HostTime now) override;
+
+ private:
+  int tool_;
+  PlateReading reading_;
+  std::optional<sync::HostTime> arrival_;
+};
+
+// A reading as the message that says it; of the header only that it speaks of no instant.
+thermal_device_t to_message(const PlateReading& reading, int tool);
+PlateReading to_reading(const thermal_device_t& message);
+
+}  // namespace tactus::thermal

@@ -1,0 +1,18 @@
+#include "thermal_node/devices/make_device.h"
+
+#include "thermal_node/devices/external.h"
+#include "thermal_node/devices/simulated_peltier.h"
+
+namespace tactus::thermal {
+
+std::unique_ptr<Device> make_device(const Settings& s, int tool, double plate_degC) {
+  if (s.device == "external") return std::make_unique<External>(tool);
+  if (s.device != "peltier") return nullptr;
+  PeltierPlant plant;
+  plant.room_degC = s.room_degC;
+  PlateLimits limits;
+  limits.rate_K_s = s.slew_max_K_s;
+  return std::make_unique<SimulatedPeltier>(plant, limits, plate_degC);
+}
+
+}  // namespace tactus::thermal

@@ -1,0 +1,14 @@
+// The display that the settings ask for.
+#pragma once
+
+#include <memory>
+
+#include "thermal_node/devices/device.h"
+#include "thermal_node/settings.gen.h"
+
+namespace tactus::thermal {
+
+// Null for device=none. plate_degC: where a simulated plate stands at the beginning.
+std::unique_ptr<Device> make_device(const Settings& settings, int tool, double plate_degC);
+
+}  // namespace tactus::thermal
