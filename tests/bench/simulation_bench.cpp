@@ -52,7 +52,7 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
   sim::test::PenetrationOracle oracle(world);
   const double h = settings.step_s;
   std::vector<double> us;
-  std::vector<contact_t> list;
+  std::vector<contact_t> list, told;
   double contacts = 0, deepest = 0, first = 0, least = 0, most = 0, gained = 0;
   const int steps = static_cast<int>(seconds / h);
   for (int i = 0; i < steps; ++i) {
@@ -61,6 +61,10 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
     const auto bodies = run.simulation().bodies();
     run.simulation().body_contacts(list);
     contacts += static_cast<double>(list.size());
+    if (const sim::Ahead* ahead = run.simulation().ahead()) {
+      if (ahead->fresh) ahead->contacts(told);
+      contacts += static_cast<double>(told.size());
+    }
     if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest(bodies).depth_m);
     const double energy = energy_J(world, bodies, h);
     if (i == 0) first = least = most = energy;
@@ -94,6 +98,15 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
     if (world.bodies[i].name.rfind(model + "::", 0) == 0) return static_cast<int>(i);
   return -1;
+}
+
+// Of bodies that are told of ahead too, in the step in which they are told of: then `told` is theirs anew.
+void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& told) {
+  simulation.body_contacts(out);
+  const sim::Ahead* ahead = simulation.ahead();
+  if (!ahead || !ahead->fresh) return;
+  ahead->contacts(told);
+  out.insert(out.end(), told.begin(), told.end());
 }
 
 using Series = std::map<std::pair<int, int>, std::vector<double>>;  // of a pair of bodies: force of each step
@@ -186,10 +199,10 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
       static_cast<std::size_t>(settings.groups == "dual" ? std::ceil(1 / (settings.visual_rate_Hz * h)) : 0);
   Series series;
   std::vector<std::vector<double>> hands(run.hand_forces_N().size());
-  std::vector<contact_t> list;
+  std::vector<contact_t> list, told;
   for (int i = 0; i < steps; ++i) {
     run.step();
-    run.simulation().body_contacts(list);
+    body_contacts(run.simulation(), list, told);
     for (const contact_t& c : list) {
       auto& s = series[{c.body_a, c.body_b}];
       hold(s, static_cast<std::size_t>(i), held);
