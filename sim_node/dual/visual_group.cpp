@@ -192,7 +192,8 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     found_ = noted;
     found_for_s_ = next_s;
     before_s_ = h;
-    read_motions();
+    // Contacts have last been sought where the step led.
+    for (const int body : world_->active_bodies()) motions_[index(body)] = sought_[index(body)];
     const std::size_t first = out.events.size();
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
     if (noted) {
