@@ -60,7 +60,8 @@ std::map<std::string, Bytes> not_finite() {
 const std::vector<std::string> kAll{channels::kTouchModel,  channels::kContactEvents, channels::kContacts,
                                     channels::kWorldState,  channels::kToolState,     channels::kThermalState,
                                     channels::kPresented,   channels::kNodeHealth,    channels::kSceneManifest,
-                                    channels::kAssetChunk,  channels::kAssetRequest,  channels::kThermalDevice};
+                                    channels::kAssetChunk,  channels::kAssetRequest,  channels::kThermalDevice,
+                                    channels::kDeviceState, channels::kDeviceForce};
 
 // One round of everything that is wrong, on both ports.
 void spoil(Datagrams& wire, std::mt19937& random) {

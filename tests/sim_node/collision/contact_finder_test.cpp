@@ -151,6 +151,54 @@ TEST_CASE("What bounces off the floor is seen by what it then meets above it") {
   CHECK(std::any_of(found.begin(), found.end(), [](const Manifold& m) { return m.body_a == 1 && m.body_b == 2; }));
 }
 
+TEST_CASE("What the floor throws aside by friction is seen by what stands beside it") {
+  WorldDef w = empty_world(0);
+  add_floor(w, 1, 0.5);
+  add_ball(w, 1, 0.02, {0, 0, 0.022}, 1, 0.5);
+  add_ball(w, 1, 0.02, {0.05, 0, 0.02}, 1, 0.5);
+  w.bodies[1].velocity_m_s = {0, 0, -20};
+  const auto found = contacts(w);
+  CHECK(std::any_of(found.begin(), found.end(), [](const Manifold& m) { return m.body_a == 1 && m.body_b == 2; }));
+}
+
+TEST_CASE("The way along a floor makes no blow: what rolls past others is no contact of theirs") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  const double h = 1.0 / 60, speed = 0.2, gap = GENERATE(0.003, 0.005);
+  for (const double y : {0.0, 0.04 + gap}) add_ball(w, 1, 0.02, {0, y, 0.02});
+  for (const std::size_t i : {1u, 2u}) w.bodies[i].velocity_m_s = {speed, 0, 0};
+  std::vector<BodyMotion> rolling = motions(w);
+  for (const std::size_t i : {1u, 2u}) rolling[i].spin_rad_s = {0, speed / 0.02, 0};
+  ContactFinder finder(w, Settings{});
+  std::vector<Manifold> found;
+  finder.find(rolling, moving(w), h, found);
+  // Whatever the way: what gravity may do to a gap, and the tolerance.
+  CHECK(found.size() == (gap < kG * h * h + Settings{}.contact_tolerance_m ? 3u : 2u));
+}
+
+TEST_CASE("Boxes that just touch have contacts with a direction, or none, whichever library looks") {
+  for (const std::string_view name : detector_names()) {
+    if (!make_detector(name)->abilities().separation) continue;
+    Settings s;
+    s.detector = name;
+    for (const double gap : {0.0, 1e-18, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, -1e-16, -1e-12}) {
+      INFO(name << ", gap " << gap);
+      WorldDef w = empty_world();
+      add_box(w, 0, {1, 1, 0.1}, at(0, 0, -0.05));
+      add_box(w, 1, {0.1, 0.1, 0.1}, at(0.013, 0.007, 0.05 + gap));
+      add_box(w, 1, {0.1, 0.1, 0.1}, at(0.013, 0.007, 0.15 + gap));
+      ContactFinder finder(w, s);
+      std::vector<Manifold> found;
+      finder.find(motions(w), moving(w), kStep, found);
+      for (const Manifold& m : found)
+        for (const ManifoldPoint& p : m.used()) {
+          CHECK(p.point_m.allFinite());
+          CHECK(p.normal.norm() == Approx(1));
+        }
+    }
+  }
+}
+
 TEST_CASE("What is found does not depend on which others are there, nor on what was asked before") {
   Random random(17);
   WorldDef w = empty_world();
