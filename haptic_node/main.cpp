@@ -4,8 +4,10 @@
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
 //        DEVICE_STATE                  of a device that another program drives
+//        SETTING                       changes of its settings while it runs
 //   out  TOOL_STATE                    every tick
 //        DEVICE_FORCE                  to that program, every tick
+//        SETTING_REPLY                 to each change of a setting
 //        PRESENTED                     every begin and hit of its tool
 //
 // Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
@@ -22,6 +24,7 @@
 #include "sync/pacing.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
+#include "sync/setting_changes.h"
 
 using namespace tactus;
 
@@ -56,14 +59,21 @@ int main(int argc, char** argv) try {
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
   auto& device_states = node.bus().queue<device_state_t>(channels::kDeviceState, 64);
-  sync::Sense sense(node);
-  auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
-  auto& events = sense.events();
   haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
   haptic::Choice choice;
   haptic::Quality quality(given.settings);
   std::optional<sync::Opening<haptic::Device>> device;
   std::optional<haptic::Session> session;
+  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
+  sync::SettingChanges changes(options.name, options.run_id);
+  const auto change = [&](const std::string& name, const std::string& value) {
+    sync::change_live(choice.settings, given.settings, haptic::setting_fields(), name, value);
+    if (session) session->change(choice.settings);
+    std::cerr << options.name << ": " << name << " is " << value << "; " << haptic::limits_sentence(choice.settings) << "\n";
+  };
+  sync::Sense sense(node);
+  auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
+  auto& events = sense.events();
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
@@ -104,6 +114,8 @@ int main(int argc, char** argv) try {
       if (session) session->push(m->message, m->arrival);
     while (const auto m = device_states.pop())
       if (session) session->push(m->message, m->arrival);
+    while (const auto m = setting_changes.pop()) changes.take(m->message, change);
+    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     if (!session) continue;
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),

@@ -55,6 +55,11 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
   out_.state.constraints.reserve(ContactBook::kMaxTold);
 }
 
+void Renderer::change(const Settings& settings) {
+  settings_ = settings;
+  transients_.change(transient_shape(settings));
+}
+
 sync::Nanoseconds Renderer::uncertainty() const {
   return sync::from_seconds(period_s_ / 2 + settings_.device_uncertainty_s);
 }

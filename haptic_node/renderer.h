@@ -57,6 +57,9 @@ class Renderer {
   // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
   Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
 
+  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not its.
+  void change(const Settings& settings);
+
   // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
   // ticks.
   TickOutput& step(const TickInput& in);

@@ -23,10 +23,16 @@ std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, co
 Session::Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, sync::OwnClock own,
                  Safety& safety)
     : device_(std::move(device)),
+      safety_(safety),
       renderer_(scene, choice.tool, choice.settings, safety),
       touch_(choice.tool, own),
       events_(own) {
   safety.set_limits(safety_limits(choice.settings));
+}
+
+void Session::change(const Settings& settings) {
+  safety_.set_limits(safety_limits(settings));
+  renderer_.change(settings);
 }
 
 // The path of the device begins with the world: at the instant of the first touch model, to which simulated time

@@ -41,6 +41,9 @@ class Session {
     if (!over_) events_.push(events, arrival);
   }
 
+  // Other settings from the next tick on, as Renderer::change; with the limits of safety.
+  void change(const Settings& settings);
+
   void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
   // After a step: what a program that drives the device must be told; null: nothing.
   device_force_t* tell() { return device_->tell(); }
@@ -62,6 +65,7 @@ class Session {
   void begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded);
 
   std::unique_ptr<Device> device_;
+  Safety& safety_;
   Renderer renderer_;
   TouchInput touch_;
   sync::ContactStream events_;

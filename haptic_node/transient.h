@@ -47,6 +47,9 @@ class Transients {
     sounding_.reserve(kMaxSounding);
   }
 
+  // What begins from now on has this shape.
+  void change(const TransientShape& shape) { shape_ = shape; }
+
   // Every hit gets exactly one report, here (no place left) or in a later step.
   void schedule(const Hit& hit, std::vector<presentation_t>& reports);
   // Force on the hand over the tick that begins now, N (its value at mid tick). felt: false when no force reaches

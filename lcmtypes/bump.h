@@ -12,6 +12,9 @@ namespace tactus {
 inline constexpr double kMinBumpSize_m = 1e-4, kMaxBumpSize_m = 100;
 inline constexpr double kMinBumpHeight_m = 1e-7, kMaxBumpHeight_m = 0.1;
 
+// Largest factor of a friction map. Design: from ice (0.02 to 0.05) to rubber (about 1) it is some twenty times.
+inline constexpr double kMaxFrictionFactor = 20;
+
 // Axes of the body frame, 0 .. 2: the one nearest to a normal, and those along which u and v grow.
 struct BumpAxes {
   int across = 2, u = 0, v = 1;

@@ -27,6 +27,8 @@ inline constexpr const char* kDegradation = "DEGRADATION";       // degradation_
 inline constexpr const char* kDegraded = "DEGRADED";             // degraded_t
 inline constexpr const char* kSimCommand = "SIM_COMMAND";        // sim_command_t
 inline constexpr const char* kSimReply = "SIM_REPLY";            // sim_reply_t
+inline constexpr const char* kSetting = "SETTING";               // setting_change_t
+inline constexpr const char* kSettingReply = "SETTING_REPLY";    // setting_reply_t
 inline constexpr const char* kGameState = "GAME_STATE";          // game_state_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 

@@ -38,10 +38,10 @@ bool unit(const V& v) {
 }
 
 // Of a node or a modality: it becomes a key, a file's column and a line on a terminal.
-bool name(const std::string& text) {
-  return !text.empty() && text.size() <= 64 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+bool printable(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
+bool name(const std::string& text) { return !text.empty() && text.size() <= 64 && printable(text); }
 
 bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
 bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
@@ -85,7 +85,7 @@ bool sane(const body_state_t& b) {
 
 bool sane(const touch_plane_t& p) {
   return p.body >= 0 && p.material >= -1 && sane(p.point_m) && unit(p.normal) && sane(p.point_body_m) &&
-         unit(p.normal_body) && sane(p.velocity_m_s) && sane(p.angular_velocity_rad_s) &&
+         unit(p.normal_body) && sane(p.tool_point_m) && sane(p.velocity_m_s) && sane(p.angular_velocity_rad_s) &&
          finite_positive(p.effective_mass_kg) && sane_not_negative(p.stiffness_N_m) &&
          sane_not_negative(p.damping_N_s_m) && sane_not_negative(p.friction_static) &&
          sane_not_negative(p.friction_dynamic) && sane(p.bump_u_body);
@@ -130,13 +130,22 @@ bool sane_bump(const material_def_t& m) {
          within(m.bump_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) &&
          within(m.bump_height_m, kMinBumpHeight_m, kMaxBumpHeight_m);
 }
+bool sane_friction_map(const material_def_t& m) {
+  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
+  if (m.friction_asset == 0)
+    return sane(m.friction_size_u_m) && sane(m.friction_size_v_m) && sane(m.friction_black) && sane(m.friction_white);
+  return within(m.friction_size_u_m, kMinBumpSize_m, kMaxBumpSize_m) &&
+         within(m.friction_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) && within(m.friction_black, 0, kMaxFrictionFactor) &&
+         within(m.friction_white, 0, kMaxFrictionFactor);
+}
 bool sane(const material_def_t& m) {
   // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
          sane_not_negative(m.rayleigh_alpha_1_s) && sane_not_negative(m.rayleigh_beta_s) &&
          sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
          sane_not_negative(m.restitution) && sane_not_negative(m.conductivity_W_mK) &&
-         sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC) && sane_bump(m);
+         sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC) && sane_bump(m) &&
+         sane_friction_map(m);
 }
 bool sane(const shape_def_t& s, int bodies, int materials) {
   return between(s.body, 0, bodies - 1) && between(s.material, -1, materials - 1) && sane(s.pose) &&
@@ -183,15 +192,17 @@ bool valid(const world_state_t& m) {
          sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages) && all_sane(m.bodies);
 }
 bool valid(const touch_model_t& m) {
-  return sane(m.header) && sane(m.clock) && m.tool >= 0 && all_sane(m.planes) && all_sane(m.applied);
+  return sane(m.header) && sane(m.clock) && m.tool >= 0 && page_of(m.page, m.pages) && all_sane(m.planes) &&
+         all_sane(m.applied);
 }
 bool valid(const tool_state_t& m) {
   return sane(m.header) && m.tool >= 0 && sane(m.device) && sane(m.proxy) && sane(m.device_velocity_m_s) &&
-         sane(m.proxy_velocity_m_s) && sane(m.force_N) && sane(m.torque_N_m) && sane(m.transient_N) &&
-         sane(m.energy_J) && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
+         sane(m.proxy_velocity_m_s) && sane(m.device_spin_rad_s) && sane(m.proxy_spin_rad_s) && sane(m.force_N) &&
+         sane(m.torque_N_m) && sane(m.transient_N) && sane(m.energy_J) && sane(m.generated_J) && m.coupling >= 0 &&
+         m.coupling <= 1 && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
 }
 bool valid(const device_state_t& m) {
-  return sane(m.header) && name(m.device) && sane(m.pose) && sane(m.velocity_m_s) &&
+  return sane(m.header) && name(m.device) && sane(m.pose) && sane(m.velocity_m_s) && sane(m.spin_rad_s) &&
          between(m.state, device_state_t::ANSWERS, device_state_t::LOST);
 }
 bool valid(const device_force_t& m) {
@@ -217,6 +228,12 @@ bool valid(const playout_t& m) {
   return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || between(m.lockstep_Hz, 1.0 / 60, 1e4));
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
+bool valid(const setting_change_t& m) {
+  return sane(m.header) && m.id > 0 && name(m.node) && name(m.name) && m.value.size() <= 256 && printable(m.value);
+}
+bool valid(const setting_reply_t& m) {
+  return sane(m.header) && m.id > 0 && between(m.done, 0, 1) && m.text.size() <= 512;
+}
 bool valid(const sim_command_t& m) {
   const auto within = [](const vec3_t& v) {
     return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMostPush;
@@ -294,7 +311,9 @@ bool valid(const scene_t& m) {
   for (const visual_def_t& v : m.visuals)
     if (!sane(v.shape, m.body_count, m.material_count) || !sane(v)) return false;
   for (const tool_def_t& t : m.tools)
-    if (!between(t.body, 0, m.body_count - 1) || !sane_not_negative(t.radius_m) || !finite_positive(t.mass_kg) ||
+    if (!between(t.body, 0, m.body_count - 1) || !between(t.shape, tool_def_t::BALL, tool_def_t::MESH) ||
+        !sane_not_negative(t.radius_m) || !sane_not_negative(t.size_m.x) || !sane_not_negative(t.size_m.y) ||
+        !sane_not_negative(t.size_m.z) || !finite_positive(t.mass_kg) ||
         !between(t.material, -1, m.material_count - 1) || !all_sane(t.waypoints))
       return false;
   return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) && sane(m.camera) &&

@@ -22,6 +22,8 @@
 #include <tactus/presented_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/sync_report_t.hpp>
@@ -54,6 +56,8 @@ bool valid(const playout_request_t&);
 bool valid(const presented_t&);
 bool valid(const scene_manifest_t&);
 bool valid(const scene_t&);
+bool valid(const setting_change_t&);
+bool valid(const setting_reply_t&);
 bool valid(const sim_command_t&);
 bool valid(const sim_reply_t&);
 bool valid(const sync_report_t&);

@@ -27,6 +27,7 @@ struct SettingRow {
   // A limit that protects a person: "max", an upper one, or "min", a lower one. A scene may only tighten it. "":
   // none.
   const char* safety = "";
+  bool live = false;  // may be changed while the node runs
 };
 
 // Checks a value against its row. Throws std::invalid_argument with one sentence that names the setting and its range.
@@ -64,6 +65,32 @@ void set(Settings& settings, std::span<const SettingField<Settings>> table, std:
     return;
   }
   throw std::invalid_argument("there is no setting \"" + std::string(name) + "\"");
+}
+
+// Changes one option of a node that runs. It is asked for over the bus, by anybody: a safety limit may not become looser
+// than its default, nor than `own`, which is what the command line says. Throws std::invalid_argument with one sentence;
+// then nothing has changed.
+template <class Settings>
+void change_live(Settings& settings, const Settings& own, std::span<const SettingField<Settings>> table,
+                 std::string_view name, std::string_view value) {
+  std::string live;
+  for (const auto& entry : table) {
+    if (entry.row.live) live += (live.empty() ? "" : ", ") + std::string(entry.row.name);
+    if (!entry.row.live || name != entry.row.name) continue;
+    Settings changed = settings;
+    set(changed, table, name, value, check_scene_setting);
+    if (const auto limit = std::get_if<double Settings::*>(&entry.field); limit && *entry.row.safety) {
+      const double past = changed.**limit - own.**limit;
+      if (std::string_view(entry.row.safety) == "max" ? past > 0 : past < 0)
+        throw std::invalid_argument("setting " + std::string(name) +
+                                    " protects a person: it may not be looser than the node's own command line says");
+    }
+    settings = std::move(changed);
+    return;
+  }
+  throw std::invalid_argument(
+      live.empty() ? "none of its settings can be changed while it runs"
+                   : "setting \"" + std::string(name) + "\" cannot be changed while it runs; what can is " + live);
 }
 
 // Applies what a scene says of `node` (a list of {node, name, value}), then what the command line says

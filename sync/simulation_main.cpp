@@ -1,14 +1,10 @@
 // simulation: asks the simulation of the running cluster for one thing, and says what became of it.
-#include <sys/random.h>
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
 
-#include "sync/bus.h"
-#include "sync/identity.h"
+#include "sync/asking.h"
 #include "sync/node.h"
-#include "sync/pacing.h"
 #include "sync/printable.h"
 
 using namespace tactus;
@@ -17,14 +13,7 @@ namespace {
 
 constexpr sync::Nanoseconds kPatience{
     3'000'000'000};                                // an answer comes with the next step; a file may take a while
-constexpr sync::Nanoseconds kRepeat{100'000'000};  // a datagram may be lost
 constexpr std::size_t kMostValues = 6;
-
-std::int64_t random_id() {
-  std::uint64_t random = 0;
-  if (getrandom(&random, sizeof random, 0) != sizeof random) throw std::runtime_error("no random numbers");
-  return static_cast<std::int64_t>(random >> 2) + 1;
-}
 
 // "steel_ball.mass": of what, and what of it.
 void split(const std::string& text, sim_command_t& c) {
@@ -74,7 +63,7 @@ sim_command_t command_of(const std::string& verb, const Words& w) {
   sim_command_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid
-  c.id = random_id();
+  c.id = sync::question_id();
   c.name = w.name;
   constexpr const char* kVerbs[] = {"pause", "resume", "step", "reset", "set", "push", "snapshot", "restore"};
   for (std::size_t i = 0; i < std::size(kVerbs); ++i)
@@ -115,22 +104,12 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
-  const sync::HostTime begin = sync::host_now();
-  for (sync::HostTime next = begin; sync::host_now() < begin + kPatience;) {
-    if (sync::host_now() >= next) {
-      bus.publish(channels::kSimCommand, command);
-      next += kRepeat;
-    }
-    bus.wait(kRepeat / 4);
-    bus.drain(sync::host_now());
-    while (const auto m = replies.pop()) {
-      if (m->message.header.run_id != run_id || m->message.id != command.id) continue;
-      if (!m->message.done) throw std::runtime_error(sync::printable(m->message.text));
-      std::cout << sync::printable(m->message.text) << std::endl;
-      return 0;
-    }
-  }
-  throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
+  const auto reply = sync::ask(bus, channels::kSimCommand, command, replies, kPatience);
+  if (!reply)
+    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
+  if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
+  std::cout << sync::printable(reply->text) << std::endl;
+  return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("simulation", e);
 }

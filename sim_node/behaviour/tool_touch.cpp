@@ -68,6 +68,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   for (std::size_t i = world.bodies.size(); i-- > 0;) first_of_[i] = std::min(first_of_[i], first_of_[i + 1]);
   fixed_ = SphereTree(std::move(fixed));
   model_.tool = points ? -1 : tool;
+  model_.pages = 1;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
 }
 

@@ -26,7 +26,7 @@ namespace tactus::sim {
 
 class ToolTouch {
  public:
-  static constexpr std::size_t kMostPlanes = 8;  // of a touch_model_t
+  static constexpr std::size_t kMostPlanes = 7;  // of a page of touch_model_t
   // Speed that a unit impulse along n at the point of a body gives to that point, 1/kg.
   using Mobility = std::function<double(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n)>;
 

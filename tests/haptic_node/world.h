@@ -38,6 +38,7 @@ inline touch_model_t model(double sim_ms, std::vector<touch_plane_t> planes, int
   m.clock.host_ns = kStart + m.header.sim_time_ns;
   m.clock.rate = 1;
   m.tool = tool;
+  m.pages = 1;
   m.plane_count = static_cast<std::int8_t>(planes.size());
   m.planes = std::move(planes);
   return m;

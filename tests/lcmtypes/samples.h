@@ -93,7 +93,7 @@ class Samples {
   void fill(touch_plane_t& p) {
     p.contact_id = whole(0, 1 << 30), p.body = whole(0, 9), p.material = whole(-1, 9);
     fill(p.point_m), fill_unit(p.normal), fill(p.point_body_m), fill_unit(p.normal_body);
-    fill(p.velocity_m_s), fill(p.angular_velocity_rad_s);
+    fill(p.tool_point_m), fill(p.velocity_m_s), fill(p.angular_velocity_rad_s);
     p.effective_mass_kg = single(0.001, 9), p.stiffness_N_m = single(0, 9000), p.damping_N_s_m = single(0, 9);
     p.friction_static = single(0, 1), p.friction_dynamic = single(0, 1);
     p.bump_asset = whole(0, 100), fill(p.bump_u_body);
@@ -140,20 +140,21 @@ class Samples {
   void fill(touch_model_t& m) {
     fill(m.header), fill(m.clock);
     m.tool = whole(0, 3);
-    fill_list(m.plane_count, m.planes, 0, 6), fill_list(m.applied_count, m.applied, 0, 8);
+    m.pages = static_cast<std::int8_t>(whole(1, 9)), m.page = static_cast<std::int8_t>(whole(0, m.pages - 1));
+    fill_list(m.plane_count, m.planes, 0, 6), fill_list(m.applied_count, m.applied, 0, 7);
   }
   void fill(tool_state_t& m) {
     fill(m.header);
     m.tool = whole(0, 3);
     fill(m.device), fill(m.proxy), fill(m.device_velocity_m_s), fill(m.proxy_velocity_m_s);
-    fill(m.force_N), fill(m.torque_N_m), fill(m.transient_N);
-    m.energy_J = single(-9, 9), m.touch_how = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
+    fill(m.device_spin_rad_s), fill(m.proxy_spin_rad_s), fill(m.force_N), fill(m.torque_N_m), fill(m.transient_N);
+    m.energy_J = single(-9, 9), m.generated_J = single(-9, 9), m.coupling = single(0, 1), m.touch_how = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
     m.buttons = whole(0, 9);
     fill_list(m.constraint_count, m.constraints, 0, 8);
   }
   void fill(device_state_t& m) {
     fill(m.header);
-    m.device = name(), fill(m.pose), fill(m.velocity_m_s);
+    m.device = name(), fill(m.pose), fill(m.velocity_m_s), fill(m.spin_rad_s);
     m.buttons = whole(0, 9), m.state = static_cast<std::int8_t>(whole(0, 1));
   }
   void fill(device_force_t& m) {
@@ -231,6 +232,12 @@ class Samples {
   void fill(playout_t& m) { fill_policy(m), m.lockstep_Hz = real(0, 60); }
   void fill(playout_request_t& m) { fill_policy(m); }
   void fill(double& value) { value = real(-9, 9); }
+  void fill(setting_change_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.node = name(), m.name = name(), m.value = name(200);
+  }
+  void fill(setting_reply_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.done = static_cast<std::int8_t>(whole(0, 1)), m.text = name(200);
+  }
   void fill(sim_command_t& m) {
     fill(m.header), m.id = whole(1, 1 << 30), m.kind = static_cast<std::int8_t>(whole(0, 7)), m.steps = whole(0, 9);
     m.name = name(), m.property = name(), fill_list(m.count, m.values, 0, 6);
@@ -279,6 +286,8 @@ class Samples {
     m.temperature_degC = real(-20, 90);
     m.bump_asset = whole(0, 1);
     m.bump_size_u_m = real(0.001, 1), m.bump_size_v_m = real(0.001, 1), m.bump_height_m = real(1e-6, 0.01);
+    m.friction_asset = whole(0, 1), m.friction_size_u_m = real(0.001, 1), m.friction_size_v_m = real(0.001, 1),
+    m.friction_black = real(0, 2), m.friction_white = real(0, 2);
   }
   void fill(shape_def_t& s) {
     s.name = name(), s.body = 0, fill(s.pose), s.kind = static_cast<std::int8_t>(whole(0, 5));
@@ -295,7 +304,8 @@ class Samples {
   }
   void fill(waypoint_t& w) { w.time_s = real(0, 9), fill(w.position_m); }
   void fill(tool_def_t& t) {
-    t.name = name(), t.radius_m = real(0, 1), t.mass_kg = real(0.01, 1), t.material = -1, t.device = name();
+    t.name = name(), t.radius_m = real(0, 1), t.shape = static_cast<std::int8_t>(whole(0, 3)), fill(t.size_m),
+    t.size_m.x = std::abs(t.size_m.x), t.size_m.y = std::abs(t.size_m.y), t.size_m.z = std::abs(t.size_m.z), t.mass_kg = real(0.01, 1), t.material = -1, t.device = name();
     fill_list(t.waypoint_count, t.waypoints, 0, 5);
   }
   void fill(setting_t& s) { s.node = name(), s.name = name(), s.value = name(); }

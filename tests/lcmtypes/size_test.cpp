@@ -19,22 +19,22 @@ std::vector<Item> full(test::Samples& samples, int count) {
 }
 }  // namespace
 
-TEST_CASE("A touch model of 8 planes and 8 books fits a datagram") {
+TEST_CASE("A page of 7 planes and 7 books of a touch model fits a datagram") {
   test::Samples samples(1);
   touch_model_t m{};
   samples.fill(m);
-  m.planes = full<touch_plane_t>(samples, 8);
-  m.applied = full<touch_applied_t>(samples, 8);
-  m.plane_count = m.applied_count = 8;
+  m.planes = full<touch_plane_t>(samples, 7);
+  m.applied = full<touch_applied_t>(samples, 7);
+  m.plane_count = m.applied_count = 7;
   CHECK(sync::encode(m).size() <= kMost);
 }
 
-TEST_CASE("A tool state with 8 constraints fits a datagram") {
+TEST_CASE("A tool state with 12 constraints fits a datagram") {
   test::Samples samples(1);
   tool_state_t m{};
   samples.fill(m);
-  m.constraints = full<tool_constraint_t>(samples, 8);
-  m.constraint_count = 8;
+  m.constraints = full<tool_constraint_t>(samples, 12);
+  m.constraint_count = 12;
   CHECK(sync::encode(m).size() <= kMost);
 }
 

@@ -79,6 +79,8 @@ def scene_arguments(root, program):
         return ["off"]
     if name_of(program) == "simulation":
         return ["pause"]
+    if name_of(program) == "set":
+        return ["haptic_node", "force_limit=5"]
     if name_of(program) == "sim_node":
         return [os.path.join(root, "sim_node", "scenes", "dark_room.sdf")]
     return []

@@ -51,11 +51,21 @@ class GenerateSettings(unittest.TestCase):
     def test_a_limit_that_protects_a_person_is_marked(self):
         rows = "heat,degC,42,34,43,Heat,design,max\ncold,degC,15,10,30,Cold,design,min\nrate,Hz,50,1,100,Rate,design\n"
         text = self.generate(rows, more_columns=",safety")[2]
-        self.assertIn('"Heat", "design", "max"}', text)
-        self.assertIn('"Rate", "design", ""}', text)
+        self.assertIn('"Heat", "design", "max", false}', text)
+        self.assertIn('"Rate", "design", "", false}', text)
         text = self.generate(rows, "markdown", ",safety")[2]
         self.assertIn("| `heat` | degC | 42 | 34 .. 43; in a scene 34 .. 42 | Heat | design |", text)
         self.assertIn("| `cold` | degC | 15 | 10 .. 30; in a scene 15 .. 30 | Cold | design |", text)
+
+    def test_what_may_change_while_the_node_runs_is_marked(self):
+        rows = "gain,1,1,0,2,Gain,design,,yes\nheat,degC,42,34,43,Heat,design,max,yes\nrate,Hz,50,1,100,Rate,design\n"
+        text = self.generate(rows, more_columns=",safety,live")[2]
+        self.assertIn('"Gain", "design", "", true}', text)
+        self.assertIn('"Rate", "design", "", false}', text)
+        text = self.generate(rows, "markdown", ",safety,live")[2]
+        self.assertIn("| `gain` | 1 | 1 | 0 .. 2; live | Gain | design |", text)
+        self.assertIn("34 .. 43; in a scene 34 .. 42; live", text)
+        self.assertNotEqual(0, self.generate("gain,1,1,0,2,Gain,design,,maybe\n", more_columns=",safety,live")[0])
 
     def test_a_mark_that_means_nothing_is_refused(self):
         for row in ("rate,Hz,50,1,100,Rate,design,up", "loud,bool,false,,,Loud,design,max", "name,text,,,,Name,design,min"):

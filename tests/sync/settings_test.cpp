@@ -19,13 +19,13 @@ struct Example {
   double hottest_degC = 42, coldest_degC = 15;
 };
 const std::vector<SettingField<Example>> kTable{
-    {{"delay", "s", "0.02", 0, 1, "Delay", "design"}, &Example::delay_s},
+    {{"delay", "s", "0.02", 0, 1, "Delay", "design", "", true}, &Example::delay_s},
     {{"voices", "count", "8", 1, 64, "Voices", "design"}, &Example::voices},
     {{"loud", "bool", "false", 0, 0, "Loud", "design"}, &Example::loud},
     {{"mode", "fast|slow", "fast", 0, 0, "Mode", "design"}, &Example::mode},
     {{"note", "text", "", 0, 0, "Note", "design"}, &Example::note},
-    {{"hottest", "degC", "42", 34, 43, "Hottest", "design", "max"}, &Example::hottest_degC},
-    {{"coldest", "degC", "15", 10, 30, "Coldest", "design", "min"}, &Example::coldest_degC}};
+    {{"hottest", "degC", "42", 34, 43, "Hottest", "design", "max", true}, &Example::hottest_degC},
+    {{"coldest", "degC", "15", 10, 30, "Coldest", "design", "min", true}, &Example::coldest_degC}};
 
 struct Entry {
   std::string node, name, value;
@@ -154,4 +154,29 @@ TEST_CASE("A scene may tighten a safety limit, and only the command line may loo
     CHECK(e.hottest_degC == 42.5);
     CHECK(e.coldest_degC == 12);
   }
+}
+
+TEST_CASE("What is live can be changed while the node runs, all else cannot, and a refused change changes nothing") {
+  const Example own;
+  Example s;
+  change_live(s, own, std::span(kTable), "delay", "50ms");
+  CHECK(s.delay_s == Approx(0.05));
+  CHECK_THROWS_WITH(change_live(s, own, std::span(kTable), "voices", "9"), Catch::Contains("delay, hottest, coldest"));
+  CHECK_THROWS_AS(change_live(s, own, std::span(kTable), "delay", "2s"), std::invalid_argument);
+  CHECK_THROWS_AS(change_live(s, own, std::span(kTable), "nothing", "1"), std::invalid_argument);
+  CHECK((s.voices == 8 && s.delay_s == Approx(0.05)));
+}
+
+TEST_CASE("A live change cannot loosen a safety limit beyond its default or beyond the command line, but can go back") {
+  Example own;
+  own.hottest_degC = 40;  // the command line tightened one
+  own.coldest_degC = 12;  // and loosened the other
+  Example s = own;
+  CHECK_THROWS_WITH(change_live(s, own, std::span(kTable), "hottest", "41"), Catch::Contains("command line"));
+  change_live(s, own, std::span(kTable), "hottest", "37");
+  change_live(s, own, std::span(kTable), "hottest", "40");
+  CHECK(s.hottest_degC == 40);
+  CHECK_THROWS_AS(change_live(s, own, std::span(kTable), "coldest", "13"), std::invalid_argument);
+  change_live(s, own, std::span(kTable), "coldest", "20");
+  CHECK(s.coldest_degC == 20);
 }
