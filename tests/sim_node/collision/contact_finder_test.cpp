@@ -176,29 +176,6 @@ TEST_CASE("The way along a floor makes no blow: what rolls past others is no con
   CHECK(found.size() == (gap < kG * h * h + Settings{}.contact_tolerance_m ? 3u : 2u));
 }
 
-TEST_CASE("Boxes that just touch have contacts with a direction, or none, whichever library looks") {
-  for (const std::string_view name : detector_names()) {
-    if (!make_detector(name)->abilities().separation) continue;
-    Settings s;
-    s.detector = name;
-    for (const double gap : {0.0, 1e-18, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, -1e-16, -1e-12}) {
-      INFO(name << ", gap " << gap);
-      WorldDef w = empty_world();
-      add_box(w, 0, {1, 1, 0.1}, at(0, 0, -0.05));
-      add_box(w, 1, {0.1, 0.1, 0.1}, at(0.013, 0.007, 0.05 + gap));
-      add_box(w, 1, {0.1, 0.1, 0.1}, at(0.013, 0.007, 0.15 + gap));
-      ContactFinder finder(w, s);
-      std::vector<Manifold> found;
-      finder.find(motions(w), moving(w), kStep, found);
-      for (const Manifold& m : found)
-        for (const ManifoldPoint& p : m.used()) {
-          CHECK(p.point_m.allFinite());
-          CHECK(p.normal.norm() == Approx(1));
-        }
-    }
-  }
-}
-
 TEST_CASE("What is found does not depend on which others are there, nor on what was asked before") {
   Random random(17);
   WorldDef w = empty_world();
