@@ -88,7 +88,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   CHECK(c.buttons == 5);
   const auto before = c.rates(1);
 
-  const Pixels turned = c.seen({0, 0, 0}, 0.2), aside = c.seen({0, 0.15, 0}, 0);
+  const Pixels turned = c.seen({0, 0, 0}, 0.2), aside = c.seen({0, -0.15, 0}, 0);
   CHECK(apart(at_rest, turned) > 3);
   CHECK(apart(at_rest, aside) > 3);
   CHECK(apart(turned, aside) > 3);
@@ -96,7 +96,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   c.check_rates_hold(before, 2);
 
   // The device says no more: the view stays, touch by the other hand goes on.
-  c.seen({0, 0.15, 0}, 0);
+  c.seen({0, -0.15, 0}, 0);
   CHECK(c.ear.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kPatience_s));
   c.ear.listen(0.5);
   CHECK(apart(c.picture(), aside) < 0.5);

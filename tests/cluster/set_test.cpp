@@ -59,7 +59,7 @@ TEST_CASE(
   CHECK(tightened_N > 0.4);  // it is a limit, not an end of touch
   c.ask({"haptic_node", "force_limit=8N"});
   CHECK(c.largest_N(2) > 0.8 * before_N);
-  CHECK(c.lives("haptic_node"));
+  CHECK(c.ear.wait_until([&] { return c.lives("haptic_node"); }, kPatience_s));
 }
 
 TEST_CASE("What a running node may not or cannot do is refused in a sentence, and changes nothing") {
@@ -72,5 +72,5 @@ TEST_CASE("What a running node may not or cannot do is refused in a sentence, an
   CHECK_THAT(c.ask({"nose_node", "force_limit=1N"}, 1), Catch::Contains("nose_node"));
   CHECK_THAT(c.ask({"haptic_node", "force_limit"}, 1), Catch::Contains("NAME=VALUE"));
   CHECK(c.largest_N(2) > 1);
-  CHECK(c.all_live(kNodes));
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }

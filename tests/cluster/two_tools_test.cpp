@@ -37,7 +37,7 @@ struct Figures {
   double peak_N() const { return *std::max_element(force_N.begin(), force_N.end()); }
 };
 
-Figures figures(const RunLog& log, const Span& span) {
+Figures of_span(const RunLog& log, const Span& span) {
   Figures f;
   std::vector<std::int64_t> steps, ticks;
   std::vector<std::vector<double>> force(static_cast<std::size_t>(kPeriod_s * 1000));
@@ -47,8 +47,8 @@ Figures figures(const RunLog& log, const Span& span) {
   log.each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
     if (m.tool != kLeft) return;
     ticks.push_back(m.header.publish_time_ns);
-    if (m.header.sim_time_ns < 0) return;
-    const auto ms = static_cast<std::size_t>(m.header.sim_time_ns / 1'000'000) % force.size();
+    // Of the host's time, which the path of a virtual hand keeps.
+    const auto ms = static_cast<std::size_t>(m.header.publish_time_ns / 1'000'000) % force.size();
     force[ms].push_back(std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
   });
   std::vector<double> ages, felt;
@@ -78,6 +78,26 @@ Figures figures(const RunLog& log, const Span& span) {
   f.age_p50_ms = quantile(ages, 0.5), f.age_p90_ms = quantile(ages, 0.9);
   f.felt_p50_ms = quantile(felt, 0.5);
   for (const auto& samples : force) f.force_N.push_back(quantile(samples, 0.5));
+  return f;
+}
+
+// The median of each figure over three spans: a machine that stands still for a moment, which happens beside other
+// work, does so in one of them.
+Figures figures(const RunLog& log, const std::vector<Span>& spans) {
+  std::vector<Figures> each;
+  for (const Span& span : spans) each.push_back(of_span(log, span));
+  const auto middle = [&](const auto& get) {
+    std::vector<double> x;
+    for (const Figures& f : each) x.push_back(get(f));
+    return quantile(x, 0.5);
+  };
+  Figures f;
+  for (const auto figure : {&Figures::sim_Hz, &Figures::hand_Hz, &Figures::sim_step_p50_ms,
+                            &Figures::sim_step_p99_ms, &Figures::hand_step_p50_ms, &Figures::hand_step_p99_ms,
+                            &Figures::age_p50_ms, &Figures::age_p90_ms, &Figures::felt_p50_ms})
+    f.*figure = middle([&](const Figures& g) { return g.*figure; });
+  for (std::size_t ms = 0; ms < each.front().force_N.size(); ++ms)
+    f.force_N.push_back(middle([&](const Figures& g) { return g.force_N[ms]; }));
   return f;
 }
 
@@ -146,7 +166,8 @@ int begins(const RunLog& log, int tool) {
   return static_cast<int>(ids.size());
 }
 
-double largest_N(const RunLog& log, int tool, const Span& span) {
+double largest_N(const RunLog& log, int tool, const std::vector<Span>& spans) {
+  const Span span{spans.front().from_ns, spans.back().to_ns};
   double most = 0;
   log.each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
     if (m.tool == tool) most = std::max<double>(most, std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
@@ -166,11 +187,16 @@ struct ThreeHands : RunScript {
     INFO(processes.said("run"));
     REQUIRE(up());
   }
-  // While nothing is changed.
-  Span watch(double seconds) {
-    const std::int64_t from = sync::to_ns(sync::host_now());
-    sleep_s(seconds);
-    return {from, sync::to_ns(sync::host_now())};
+  // Three spans in which nothing is changed, once what was changed has settled.
+  std::vector<Span> watch() {
+    sleep_s(0.5);
+    std::vector<Span> spans;
+    for (int i = 0; i < 3; ++i) {
+      const std::int64_t from = sync::to_ns(sync::host_now());
+      sleep_s(1.5);
+      spans.push_back({from, sync::to_ns(sync::host_now())});
+    }
+    return spans;
   }
 };
 
@@ -180,29 +206,30 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
   ThreeHands c;
   c.begin();
   c.output_of({"sv", "down", c.service("haptic_node_third")});
-  sleep_s(2);
-  const Span two = c.watch(3);
+  sleep_s(1.5);
+  const auto two = c.watch();
   c.output_of({"sv", "down", c.service("haptic_node_right")});
-  const Span alone = c.watch(3);
+  const auto alone = c.watch();
   c.output_of({"sv", "up", c.service("haptic_node_third")});
-  const Span joined = c.watch(3);
+  const auto joined = c.watch();
   c.output_of({"sv", "kill", c.service("haptic_node_third")});  // comes back by itself
-  const Span again = c.watch(3);
+  const auto again = c.watch();
   c.processes.signal("run", SIGINT);
   c.finish(60);
 
   const RunLog log(c.out());
   const Figures before = figures(log, two);
-  const std::vector<std::pair<const char*, Span>> after{{"alone", alone}, {"joined", joined}, {"again", again}};
+  const std::vector<std::pair<const char*, std::vector<Span>>> after{
+      {"alone", alone}, {"joined", joined}, {"again", again}};
   std::string table = "two hands: " + words(before);
-  for (const auto& [name, span] : after) table += std::string(name) + ": " + words(figures(log, span));
+  for (const auto& [name, spans] : after) table += std::string(name) + ": " + words(figures(log, spans));
   if (std::getenv("TACTUS_PRINT")) std::cout << table;
   INFO(table);
   REQUIRE(before.sim_Hz > 900);
   REQUIRE(before.peak_N() > 0.5);
-  for (const auto& [name, span] : after) {
+  for (const auto& [name, spans] : after) {
     INFO(name);
-    check_unchanged(before, figures(log, span));
+    check_unchanged(before, figures(log, spans));
   }
 
   // The right one pressed when it went.
