@@ -34,6 +34,9 @@ class Impacts {
   Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
           const Settings& settings, double rate_Hz, std::int64_t generation);
 
+  // T_world_listener from the next strike on; at first the scene's.
+  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+
   // Bodies or materials that the scene does not have sound as small wooden ones.
   Strike strike(const contact_event_t& event, sync::HostTime scheduled) const;
 

@@ -1,6 +1,6 @@
 // audio_node: sounds the hits of the scene through a sound card, each on its sample: when PLAYOUT says, else at a delay of its own.
 //
-//   in   CONTACT_EVENTS; CONTACTS (its clock only); SCENE
+//   in   CONTACT_EVENTS; CONTACTS (its clock only); SCENE; TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
 // Losing CONTACT_EVENTS lets what sounds die away; losing the sound card is reported, and the card is tried again.
@@ -12,8 +12,10 @@
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
+#include "lcmtypes/pointing.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
+#include "sync/pose_history.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 
@@ -67,6 +69,10 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
+  // Past the profile, which makes events late or rare: where the ear is, is none.
+  auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
+  sync::PoseHistory head(node.bus().clocks());
+  int head_tool = -1;  // of the scene; -1: the ear stays
   sync::ContactStream contacts(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
@@ -95,6 +101,7 @@ int main(int argc, char** argv) try {
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
+      head_tool = head_of(*scene.scene());
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
@@ -103,12 +110,17 @@ int main(int argc, char** argv) try {
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
+    while (const auto m = tools.pop())
+      if (m->message.tool == head_tool) head.push(m->message, m->arrival);
 
     if (const auto map = contacts.map(now); map && impacts) {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
         const sync::HostTime scheduled =
             sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
+        // One that is lost hears from where it was.
+        if (const auto ear = head.at(scheduled); head_tool >= 0 && ear.how != sync::How::kNone)
+          impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
         output.submit(impacts->strike(event, scheduled));
       }
     }

@@ -13,12 +13,14 @@
 // Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
 // hit transients. The loop never waits for another node.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
 
 #include "haptic_node/quality.h"
 #include "haptic_node/session.h"
+#include "lcmtypes/pointing.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/pacing.h"
@@ -64,12 +66,15 @@ int main(int argc, char** argv) try {
   haptic::Quality quality(given.settings);
   std::optional<sync::Opening<haptic::Device>> device;
   std::optional<haptic::Session> session;
+  bool points = false;    // its tool is a wand or the head: there is no touch to wait for
+  bool no_touch = false;  // so are all tools of the scene: no touch model says that the world has begun
   auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
   sync::SettingChanges changes(options.name, options.run_id);
   const auto change = [&](const std::string& name, const std::string& value) {
     sync::change_live(choice.settings, given.settings, haptic::setting_fields(), name, value);
     if (session) session->change(choice.settings);
-    std::cerr << options.name << ": " << name << " is " << value << "; " << haptic::limits_sentence(choice.settings) << "\n";
+    std::cerr << options.name << ": " << name << " is " << value << "; "
+              << haptic::limits_sentence(choice.settings) << "\n";
   };
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
@@ -92,6 +97,10 @@ int main(int argc, char** argv) try {
       std::cerr << options.name << ": "
                 << (choice.tool >= 0 ? haptic::limits_sentence(choice.settings) : choice.problem) << "\n";
       node.set_tool(choice.tool);
+      points = choice.tool >= 0 &&
+               only_points(scenes.scene()->tools[static_cast<std::size_t>(choice.tool)], scenes.scene()->lights);
+      no_touch = std::all_of(scenes.scene()->tools.begin(), scenes.scene()->tools.end(),
+                             [&](const tool_def_t& t) { return only_points(t, scenes.scene()->lights); });
       sense.set_scene(*scenes.scene(), choice.tool);
       sense.set_output_latency(sync::from_seconds(1 / choice.settings.rate_Hz));
       node.set_rate(choice.settings.rate_Hz);
@@ -121,7 +130,7 @@ int main(int argc, char** argv) try {
                                             {.delay = sense.delay(),
                                              .touch_delay = sense.profile_delay(),
                                              .force_step_N = sense.output().force_step_N,
-                                             .touch_arrival = touch.count().newest_arrival},
+                                             .touch_arrival = no_touch ? now : touch.count().newest_arrival},
                                             quality.planes());
     if (session->over()) continue;
     node.bus().publish(channels::kToolState, out.state);
@@ -133,6 +142,8 @@ int main(int argc, char** argv) try {
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->device_lost())
       node.set_state(node_health_t::OUTPUT_LOST, "the device does not answer: the force is zero");
+    else if (points)
+      node.set_state(node_health_t::RUNNING, "points, and does not touch");
     else if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");
     else if (session->heard())

@@ -1,20 +1,49 @@
-// A tool that bears the name of a spot light points: the light shines at where the tool is, and the tool neither
-// touches nor feels.
+// Tools that only point, and what they steer. One that bears the name of a spot light is a wand: the light shines
+// at where it is. One named "head" is the view: eye and ear go where it goes. Neither touches nor feels.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <tactus/light_def_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
 #include <vector>
 
+#include "lcmtypes/vectors.h"
+
 namespace tactus {
 
-// Index of the light that the tool steers; -1: none, it is a tool that touches.
+// Index of the light that the tool steers; -1: none.
 inline int steered_light(const tool_def_t& tool, const std::vector<light_def_t>& lights) {
   const auto light = std::find_if(lights.begin(), lights.end(), [&](const light_def_t& l) {
     return l.kind == light_def_t::SPOT && l.name == tool.name;
   });
   return light == lights.end() ? -1 : static_cast<int>(light - lights.begin());
+}
+
+inline bool steers_view(const tool_def_t& tool) { return tool.name == "head"; }
+
+inline bool only_points(const tool_def_t& tool, const std::vector<light_def_t>& lights) {
+  return steers_view(tool) || steered_light(tool, lights) >= 0;
+}
+
+// Index of the tool that steers the view of a scene; -1: none.
+inline int head_of(const scene_t& scene) {
+  const auto tool = std::find_if(scene.tools.begin(), scene.tools.end(), steers_view);
+  return tool == scene.tools.end() ? -1 : static_cast<int>(tool - scene.tools.begin());
+}
+
+// T_world_view of a head whose device is at a pose in the world. It is where the device is; it looks where the
+// scene's camera looks, turned by as much as the device: a mouse, which does not turn, looks at what the scene
+// shows, and with a camera that looks along +x, level, the device's own orientation is that of the view.
+inline Eigen::Isometry3d view_of(const scene_t& scene, const Eigen::Vector3d& position_m,
+                                 const Eigen::Quaterniond& orientation) {
+  return Eigen::Translation3d(position_m) * (orientation * to_eigen(scene.camera.orientation));
+}
+
+// T_world_listener of such a view: the ear keeps its place beside the eye.
+inline Eigen::Isometry3d listener_of(const scene_t& scene, const Eigen::Isometry3d& view) {
+  return view * to_eigen(scene.camera).inverse() * to_eigen(scene.listener);
 }
 
 }  // namespace tactus

@@ -1,7 +1,7 @@
 // visual_node: draws the scene, its tools and a flash for every contact, at 60 Hz.
 //
 //   in   WORLD_STATE, CONTACT_EVENTS   where the bodies are, what began and what hit
-//        TOOL_STATE                    where device and proxy of each tool are
+//        TOOL_STATE                    where device and proxy of each tool are; of a head, where the eye is
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
 //   out  PRESENTED                     every begin and hit
 //        MEDIA_CLOCK                   which frame of the video was out when
@@ -94,7 +94,7 @@ int main(int argc, char** argv) try {
   };
   const auto draw = [&](sync::HostTime now, std::int64_t tick) {
     const sync::OutputDef output = sense.output();
-    frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival);
+    frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival, sense.profile_delay());
     stage.draw_scene(frame.list, output);
     // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
     const sync::HostTime latched = node.poll();

@@ -7,6 +7,7 @@ import pathlib
 import time
 import xml.etree.ElementTree
 
+import hands
 from refusal import Refusal
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -26,7 +27,8 @@ class Plan:
     out: pathlib.Path
     out_is_ours: bool  # nobody named it: another name does as well
     without: list
-    device: str  # "": the scene's
+    devices: dict  # of --device, by tool; "": the first tool's
+    hands: dict  # {process: tool} of the tools after the first
     degrade: pathlib.Path  # profile of what is wrong on purpose, or None
     playout: list  # options of sync_node: when each sense presents
     window: bool
@@ -39,7 +41,7 @@ class Plan:
 
     def nodes(self):
         """Names of the processes of this run; the order is that of starting."""
-        return [n for n in ("recorder", "sync_node", *SENSES, "sim_node") if n not in self.without]
+        return [n for n in ("recorder", "sync_node", SENSES[0], *self.hands, *SENSES[1:], "sim_node") if n not in self.without]
 
 
 class Parser(argparse.ArgumentParser):
@@ -54,7 +56,7 @@ def parse(words, here):
     parser.add_argument("--seconds", default="20")
     parser.add_argument("--out")
     parser.add_argument("--without", action="append", default=[])
-    parser.add_argument("--device", default="")
+    parser.add_argument("--device", action="append", default=[])
     parser.add_argument("--degrade")
     for option in PLAYOUT:
         parser.add_argument(f"--{option}")
@@ -70,17 +72,24 @@ def parse(words, here):
             raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
     a = parser.parse_args(words)
     here = pathlib.Path(here)
+    scene = scene_file(here, a.scene)
+    tools = hands.tools(scene)
+    others = hands.processes(tools)
     for node in a.without:
         if node == "recorder":
             raise Refusal("--without recorder: it cannot be left out, all results are made from what it records")
-        if node not in REMOVABLE:
-            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join(REMOVABLE)}")
-    plan = Plan(scene=scene_file(here, a.scene), seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
-                out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without, device=device(a.device, a.without),
+        if node not in (*REMOVABLE, *others):
+            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *others))}")
+    if hands.FIRST in a.without:  # the sense of touch, all of it
+        others = {}
+    others = {process: tool for process, tool in others.items() if process not in a.without}
+    plan = Plan(scene=scene, seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
+                out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
+                devices=devices(a.device, a.without, tools), hands=others,
                 degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
-                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set))
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, others))
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
                       "--window away and look at video.mp4")
@@ -162,26 +171,31 @@ def out_folder(here, text):
     return path.absolute()
 
 
-def device(spec, without):
-    """The node itself checks what the device is."""
-    if spec and "haptic_node" in without:
+def devices(words, without, tools):
+    """The nodes themselves check what the devices are."""
+    if words and hands.FIRST in without:
         raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
-    return spec
+    return hands.devices(words, tools)
 
 
-def settings(words):
-    """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check)."""
-    found = {}
+def settings(words, others):
+    """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check). What is said of
+    haptic_node holds for every hand; what is said of one by its own name comes last there, and so wins."""
+    found, own = {}, {}
     for word in words:
         left, equals, value = word.partition("=")
         node, _, name = left.rpartition(".")
         if not (equals and node and name):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
-        if node not in ("sim_node", *SENSES):
-            raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join(SENSES)}")
-        with open(REPOSITORY / node / "settings.csv", newline="", encoding="utf-8") as file:
+        if node not in ("sim_node", *SENSES, *others):
+            raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
+        folder = hands.FIRST if node in others else node
+        with open(REPOSITORY / folder / "settings.csv", newline="", encoding="utf-8") as file:
             names = [row["name"] for row in csv.DictReader(file)]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
-        found.setdefault(node, []).append(f"{name}={value}")
-    return found
+        if node in others:
+            own.setdefault(node, []).append(f"{name}={value}")
+        for process in (node, *others) if node == hands.FIRST else (node,) if node not in others else ():
+            found.setdefault(process, []).append(f"{name}={value}")
+    return {process: found.get(process, []) + own.get(process, []) for process in {**found, **own}}

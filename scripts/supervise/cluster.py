@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 
+import hands
 import services
 from arguments import REPOSITORY, SENSES
 from refusal import Interrupted, Refusal
@@ -32,18 +33,25 @@ def commands(plan, run_id, git):
               "--out", str(plan.out)]
     own = {
         "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git],
-        "haptic_node": ["--device", plan.device] if plan.device else [],
+        "haptic_node": device_words(plan, ""),
         # A run makes no noise unless it is asked to; with --listen the node finds the card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
     }
     own["sync_node"] = list(plan.playout)
+    for name, tool in plan.hands.items():
+        own[name] = ["--name", name, "--tool", tool, *device_words(plan, tool)]
     if plan.degrade:
-        for name in (*SENSES, "sync_node"):
+        for name in (*SENSES, *plan.hands, "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
-    return {name: [str(BIN / name), *own.get(name, []), *common,
+    program = lambda name: hands.FIRST if name in plan.hands else name
+    return {name: [str(BIN / program(name)), *own.get(name, []), *common,
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
+
+
+def device_words(plan, tool):
+    return ["--device", plan.devices[tool]] if tool in plan.devices else []
 
 
 def names_sound_card(plan):
@@ -130,7 +138,7 @@ class Cluster:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
         self.write_address()
-        for group in (("recorder", "sync_node"), SENSES, ("sim_node",)):
+        for group in (("recorder", "sync_node"), (*SENSES, *self.plan.hands), ("sim_node",)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
@@ -181,6 +189,7 @@ class Cluster:
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
+            names = (*names, *self.plan.hands) if names == SENSES else names
             services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == ("sim_node",):
                 time.sleep(PRESENT_THE_LAST_S)

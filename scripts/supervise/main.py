@@ -14,6 +14,7 @@ import time
 import arguments
 import cluster
 import equipment
+import hands
 import network
 import priority
 import services
@@ -130,7 +131,7 @@ def run(plan):
     stop = Stop()
     git = git_commit()
     run_id = time.time_ns()
-    for name in [*plan.nodes(), "watch", "summarise", "export_csv", "export_events"]:
+    for name in [*(n for n in plan.nodes() if n not in plan.hands), "watch", "summarise", "export_csv", "export_events"]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
@@ -175,7 +176,7 @@ def run(plan):
 
 def names_its_speaker(sentence):
     speaker = sentence.split(":")[0]
-    return speaker.endswith("_node") or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
+    return speaker.endswith("_node") or speaker.startswith(f"{hands.FIRST}_") or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
 
 
 def main(words):

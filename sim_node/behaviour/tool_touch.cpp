@@ -42,7 +42,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     own_compliance = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
-  const bool points = steered_light(def, world.lights) >= 0;
+  const bool points = only_points(def, world.lights);
   for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;

@@ -105,6 +105,22 @@ TEST_CASE("A source is heard where it is") {
   SECTION("and nearness does not make it infinite") { CHECK(stereo_gain(listener, {0, 0, 0}, 0.3).left < 4); }
 }
 
+TEST_CASE("A blow is heard from where the ear is when it comes, and before anybody moves it from where the scene has it") {
+  Impacts all = impacts();
+  const contact_event_t ahead = hit(0, 2, 1, 0.1f);  // at (1, 0, 0), which the scene's listener looks at
+  const Strike before = all.strike(ahead, {});
+  CHECK(before.sides[0].left == Approx(before.sides[0].right));
+  Eigen::Isometry3d ear = Eigen::Isometry3d::Identity();
+  ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y: it is to the right
+  all.hear_from(ear);
+  const Strike turned = all.strike(ahead, {});
+  CHECK(turned.sides[0].left == Approx(0).margin(1e-6));
+  CHECK(turned.sides[0].right == Approx(std::hypot(before.sides[0].left, before.sides[0].right)));
+  ear.translation().x() = -1;  // twice as far
+  all.hear_from(ear);
+  CHECK(all.strike(ahead, {}).sides[0].right == Approx(turned.sides[0].right / 2));
+}
+
 TEST_CASE("Bodies sound by their shape, size, mass and material") {
   const Impacts all = impacts();
   SECTION("a steel bar by bending, first at 288 Hz less the correction of its thickness") {

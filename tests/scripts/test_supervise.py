@@ -96,7 +96,7 @@ class Arguments(unittest.TestCase):
     def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
         plan = arguments.parse(["--degrade", __file__], os.getcwd())
         with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
-        self.assertEqual({*arguments.SENSES, "sync_node"}, set(with_it))
+        self.assertEqual({*arguments.SENSES, *plan.hands, "sync_node"}, set(with_it))
 
     def test_a_profile_in_an_encoding_that_nobody_knows_is_refused_in_a_sentence(self):
         for encoding in ("foo", "UTF-32"):
@@ -107,6 +107,56 @@ class Arguments(unittest.TestCase):
                 with self.assertRaises(Refusal) as caught:
                     arguments.strangers(plan)
                 self.assertIn("save it as UTF-8", str(caught.exception))
+
+
+class Hands(Folders):
+    """Every tool of a scene has a process of its own."""
+
+    def of(self, *tools, words=()):
+        scene = self.folder / "scene.sdf"
+        scene.write_text('<sdf version="1.9"><world name="w"><tactus:audio_node gain="1"/><model name="m"><tactus:tool name="no"/></model>'
+                         + "".join(f'<tactus:tool name="{t}"/>' for t in tools) + "</world></sdf>", encoding="utf-8")
+        plan = arguments.parse([str(scene), *words], os.getcwd())
+        return plan, cluster.commands(plan, 1, "")
+
+    @staticmethod
+    def after(words, option):
+        return [value for before, value in zip(words, words[1:]) if before == option]
+
+    def test_the_first_is_haptic_node_and_the_others_bear_the_names_of_their_tools(self):
+        plan, commands = self.of("left", "right hand", "right/hand")
+        self.assertEqual({"haptic_node_right_hand": "right hand", "haptic_node_right_hand_3": "right/hand"}, plan.hands)
+        self.assertEqual(["recorder", "sync_node", "haptic_node", *plan.hands, "audio_node", "visual_node", "thermal_node", "sim_node"],
+                         plan.nodes())
+        words = commands["haptic_node_right_hand"]
+        self.assertEqual("haptic_node", os.path.basename(words[0]))
+        self.assertEqual(["haptic_node_right_hand"], self.after(words, "--name"))
+        self.assertEqual(["right hand"], self.after(words, "--tool"))
+        self.assertNotIn("--name", commands["haptic_node"])
+
+    def test_a_scene_with_one_tool_or_none_or_that_is_no_xml_has_the_first_alone(self):
+        for tools in ((), ("hand",), ("<",)):
+            self.assertEqual({}, self.of(*tools)[0].hands)
+
+    def test_a_device_goes_to_the_tool_that_is_named_else_to_the_first(self):
+        _, commands = self.of("a", "b", words=["--device", "b=playback:x.csv,rate=2", "--device", "playback:y.csv,scale=2"])
+        self.assertEqual(["playback:y.csv,scale=2"], self.after(commands["haptic_node"], "--device"))
+        self.assertEqual(["playback:x.csv,rate=2"], self.after(commands["haptic_node_b"], "--device"))
+        _, commands = self.of("a", "b", words=["--device", "a=virtual_hand"])
+        self.assertEqual(["virtual_hand"], self.after(commands["haptic_node"], "--device"))
+        self.assertEqual([], self.after(commands["haptic_node_b"], "--device"))
+
+    def test_a_setting_of_haptic_node_is_one_of_every_hand_but_its_own_comes_last(self):
+        _, commands = self.of("a", "b", "c", words=["--set", "haptic_node_b.force_limit=2", "--set", "haptic_node.force_limit=3"])
+        self.assertEqual(["force_limit=3"], self.after(commands["haptic_node"], "--set"))
+        self.assertEqual(["force_limit=3", "force_limit=2"], self.after(commands["haptic_node_b"], "--set"))
+        self.assertEqual(["force_limit=3"], self.after(commands["haptic_node_c"], "--set"))
+
+    def test_one_or_all_may_be_left_out(self):
+        self.assertEqual({"haptic_node_c": "c"}, self.of("a", "b", "c", words=["--without", "haptic_node_b"])[0].hands)
+        plan, _ = self.of("a", "b", words=["--without", "haptic_node"])
+        self.assertFalse([n for n in plan.nodes() if n.startswith("haptic")])
+        self.assertIn("haptic_node_lamp", refusal_of("--without", "haptic_node_nose"))
 
 
 class Checks(Folders):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "visual_node/frame/marker.h"
 #include "visual_node/frame/text.h"
@@ -34,12 +35,13 @@ const char* word(const Frame& frame) {
 }  // namespace
 
 FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late)
-    : settings_(settings), contacts_(own), bodies_(own), flashes_(settings), ledger_(settings, late) {}
+    : settings_(settings), contacts_(own), bodies_(own), head_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                                      const HeightMaps& height_maps) {
   settings_ = settings;
   scene_ = scene;
+  head_tool_ = head_of(scene);
   view_.emplace(scene, meshes, settings, height_maps);
   flashes_ = Flashes(settings);
   ledger_.set(settings);
@@ -47,7 +49,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
 }
 
 Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay,
-                           sync::HostTime newest_arrival) {
+                           sync::HostTime newest_arrival, sync::Nanoseconds view_delay) {
   tick_ = now;
   bodies_.keep(delay);
   const sync::HostTime t = now + render_time_.expected();
@@ -58,7 +60,7 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
   if (view_)
-    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now));
+    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now), view_at(t - view_delay, frame));
   else
     frame.list.lighting.background = kNoScene;
   return frame;
@@ -142,6 +144,18 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
     poses[i].proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
   }
   return poses;
+}
+
+// Nothing: the scene's own. A head that is lost stays where it was; either is said in the note of the frame.
+std::optional<Eigen::Isometry3d> FrameComposer::view_at(sync::HostTime t, Frame& frame) const {
+  if (head_tool_ < 0) return {};
+  const auto head = head_.at(t);
+  if (head.how == sync::How::kNone || head.how == sync::How::kStale)
+    frame.note += std::string(frame.note.empty() ? "" : "; ") + (head.how == sync::How::kNone
+                                                                     ? "no head yet: the view is the scene's"
+                                                                     : "the head is lost: the view stays");
+  if (head.how == sync::How::kNone) return {};
+  return view_of(*scene_, head.value.position, head.value.orientation);
 }
 
 std::vector<presentation_t> FrameComposer::presented(sync::HostTime fence) {

@@ -13,6 +13,7 @@
 
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
+#include "sync/pose_history.h"
 #include "visual_node/frame/event_ledger.h"
 #include "visual_node/frame/render_time.h"
 #include "visual_node/scene_view/flashes.h"
@@ -40,15 +41,21 @@ class FrameComposer {
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
-  void push(const tool_state_t& m, sync::HostTime arrival) { tools_[m.tool] = {m, arrival}; }
+  void push(const tool_state_t& m, sync::HostTime arrival) {
+    tools_[m.tool] = {m, arrival};
+    if (m.tool == head_tool_) head_.push(m, arrival);
+  }
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
   const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                         const HeightMaps& height_maps = {});
 
   // The frame that begins now, number `number` of all. delay: what it shows happened so long before it is seen;
   // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.
+  // view_delay: of that, what a profile adds. The eye is where it is when the frame is presented: no policy moves
+  // it.
   Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
-              sync::HostTime newest_arrival = sync::HostTime{});
+              sync::HostTime newest_arrival = sync::HostTime{},
+              sync::Nanoseconds view_delay = sync::Nanoseconds(0));
   // The surfaces of that frame are drawn, now: adds what lies over them, with the events that arrived until now.
   // held: each picture stays for so long because a profile wants few; it shows the events up to its instant. 0: a
   // picture in every tick.
@@ -67,11 +74,14 @@ class FrameComposer {
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
   std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
+  std::optional<Eigen::Isometry3d> view_at(sync::HostTime t, Frame& frame) const;
 
   Settings settings_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;
   std::map<int, ToolArrival> tools_;
+  sync::PoseHistory head_;
+  int head_tool_ = -1;  // of the scene, which the view follows; -1: none
   std::optional<scene_t> scene_;
   std::optional<SceneView> view_;
   Flashes flashes_;

@@ -27,11 +27,15 @@ Eigen::Matrix4f perspective(double horizontal_fov_rad, double aspect, double nea
 Camera make_camera(const Eigen::Isometry3d& pose, double horizontal_fov_rad, int width, int height, double near_m,
                    double far_m) {
   Camera c;
-  c.view = eye_from_camera() * pose.inverse().matrix().cast<float>();
   c.projection = perspective(horizontal_fov_rad, static_cast<double>(width) / height, near_m, far_m);
-  c.eye = pose.translation().cast<float>();
   c.focal_px = static_cast<float>(0.5 * width / std::tan(horizontal_fov_rad / 2));
-  return c;
+  return moved(c, pose);
+}
+
+Camera moved(Camera camera, const Eigen::Isometry3d& pose) {
+  camera.view = eye_from_camera() * pose.inverse().matrix().cast<float>();
+  camera.eye = pose.translation().cast<float>();
+  return camera;
 }
 
 Eigen::Matrix4f look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction) {

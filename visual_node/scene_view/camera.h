@@ -24,6 +24,9 @@ Eigen::Matrix4f perspective(double horizontal_fov_rad, double aspect, double nea
 Camera make_camera(const Eigen::Isometry3d& pose, double horizontal_fov_rad, int width, int height, double near_m,
                    double far_m);
 
+// The same lens elsewhere.
+Camera moved(Camera camera, const Eigen::Isometry3d& pose);
+
 // T_eye_world of a lamp at `position` that shines along `direction`; its roll is arbitrary.
 Eigen::Matrix4f look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction);
 

@@ -96,8 +96,10 @@ void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool) {
       std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.body == tool.body; });
   const int light = steered_light(tool, scene.lights);
   // One that only points is seen when somebody holds it.
-  if (!has_visual && light < 0 && tool.body < static_cast<int>(scene.bodies.size())) parts_.push_back(ball);
-  tools_.push_back({tool.body, ball, light, light >= 0 ? scene.lights[static_cast<std::size_t>(light)] : light_def_t{}});
+  if (!has_visual && !only_points(tool, scene.lights) && tool.body < static_cast<int>(scene.bodies.size()))
+    parts_.push_back(ball);
+  tools_.push_back({tool.body, ball, light, steers_view(tool),
+                    light >= 0 ? scene.lights[static_cast<std::size_t>(light)] : light_def_t{}});
 }
 
 bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, Part& part) {
@@ -175,13 +177,14 @@ SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& bo
   return p;
 }
 
-DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools) const {
+DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
+                         const std::optional<Eigen::Isometry3d>& view) const {
   DrawList list;
-  list.camera = camera_;
+  list.camera = view ? moved(camera_, *view) : camera_;
   list.lighting = lighting_;
   std::vector<Placed> opaque, translucent;
   const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {
-    (part.look.diffuse.w() < 1 ? translucent : opaque).push_back(place(part, pose, camera_));
+    (part.look.diffuse.w() < 1 ? translucent : opaque).push_back(place(part, pose, list.camera));
   };
   const auto tool_of = [&](int body) {
     for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
@@ -196,7 +199,7 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
       add(part, bodies[static_cast<std::size_t>(part.body)]);
   }
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
-    if (tools[i].known) add(tools_[i].ghost, tools[i].device);
+    if (tools[i].known && !tools_[i].unseen) add(tools_[i].ghost, tools[i].device);
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
     if (tools[i].known && tools_[i].light >= 0)
       aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation());

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <map>
+#include <optional>
 #include <span>
 #include <tactus/mesh_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -41,7 +42,9 @@ class SceneView {
   int height() const { return height_; }
 
   // One pose T_world_body per body and one entry per tool; a tool that is known is drawn where its proxy is.
-  DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools) const;
+  // view: T_world_view; nothing: as the scene's camera has it.
+  DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
+                const std::optional<Eigen::Isometry3d>& view = {}) const;
 
  private:
   // The order is that of geometries_; levels are how finely round shapes are divided.
@@ -83,7 +86,8 @@ class SceneView {
   struct Tool {
     int body;
     Part ghost;
-    int light = -1;  // that it steers
+    int light = -1;       // that it steers
+    bool unseen = false;  // nobody sees his own head
     light_def_t lamp{};
   };
   std::vector<Tool> tools_;

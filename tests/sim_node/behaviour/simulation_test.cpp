@@ -226,6 +226,11 @@ TEST_CASE("A tool that bears the name of a spot light points through everything 
   }
   CHECK(s.bodies().back().position_m.z() == Approx(0.05 - 0.298));  // as told the step before
   w.lights[0].kind = light_def_t::POINT;
+  WorldDef with_head = w;
+  with_head.tools[0].name = "head";
+  Simulation sees(with_head, {});
+  sees.start(11);
+  CHECK(sees.touch_models()[0].tool == -1);
   Simulation touches(w, {});
   touches.start(11);
   CHECK(touches.touch_models()[0].tool == 0);

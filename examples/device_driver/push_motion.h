@@ -1,0 +1,76 @@
+// What a 3D mouse is pushed and twisted becomes where a tool is: pushing moves it, twisting turns it. Pure.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace tactus::examples {
+
+class PushMotion {
+ public:
+  // design: spacenavd reads some 350 at full push by default: 0.3 m/s, an unhurried hand, and a quarter turn a
+  // second.
+  static constexpr double kSpeed_m_s = 0.3 / 350, kTurn_rad_s = 1.57 / 350;
+  // The daemon tells of motion some 60 times a second and once when it ends: what is older is over (design: three
+  // of them).
+  static constexpr double kHolds_s = 0.05;
+
+  // It stays within so many metres of its origin along each axis.
+  explicit PushMotion(double half_m) : half_m_(half_m) {}
+
+  // As libspnav has it: x to the right, y up, z towards the person; twists about them. Ours: x away, y to the
+  // left, z up.
+  void push(int x, int y, int z, int rx, int ry, int rz) {
+    push_ = {-double(z), -double(x), double(y)};
+    twist_ = {-double(rz), -double(rx), double(ry)};
+    holds_s_ = kHolds_s;
+  }
+  void press(int button, bool down) {
+    if (button < 0 || button > 30) return;
+    buttons_ = down ? buttons_ | 1 << button : buttons_ & ~(1 << button);
+  }
+  // dt > 0, s.
+  void step(double dt) {
+    const double on = holds_s_ > 0 ? 1 : 0;
+    holds_s_ -= dt;
+    double angle = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double to = std::clamp(position_[i] + on * push_[i] * kSpeed_m_s * dt, -half_m_, half_m_);
+      velocity_[i] = (to - position_[i]) / dt;
+      position_[i] = to;
+      spin_[i] = on * twist_[i] * kTurn_rad_s;
+      angle += spin_[i] * spin_[i];
+    }
+    turn(std::sqrt(angle) * dt, dt);
+  }
+
+  const std::array<double, 3>& position_m() const { return position_; }
+  const std::array<double, 3>& velocity_m_s() const { return velocity_; }
+  const std::array<double, 3>& spin_rad_s() const { return spin_; }
+  const std::array<double, 4>& orientation() const { return orientation_; }  // unit quaternion, scalar first
+  std::int32_t buttons() const { return buttons_; }
+
+ private:
+  // By the spin, about the axes of the world.
+  void turn(double angle, double dt) {
+    if (angle == 0) return;
+    const double s = std::sin(angle / 2) * dt / angle, w = std::cos(angle / 2);
+    const double x = spin_[0] * s, y = spin_[1] * s, z = spin_[2] * s;
+    const auto [a, b, c, d] = orientation_;
+    std::array<double, 4> q{w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c,
+                            w * c - x * d + y * a + z * b, w * d + x * c - y * b + z * a};
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (double& part : q) part /= norm;
+    orientation_ = q;
+  }
+
+  double half_m_;
+  std::array<double, 3> push_{}, twist_{}, position_{}, velocity_{}, spin_{};
+  std::array<double, 4> orientation_{1, 0, 0, 0};
+  double holds_s_ = 0;
+  std::int32_t buttons_ = 0;
+};
+
+}  // namespace tactus::examples

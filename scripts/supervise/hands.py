@@ -1,0 +1,47 @@
+"""The hands of a scene: one haptic_node for each of its tools, so that one can go and come without the others."""
+import re
+import xml.parsers.expat
+
+FIRST = "haptic_node"  # holds the first tool, or none when the scene has none
+LONGEST_NAME = 40      # of a process: its folder and its log bear it too
+
+
+def tools(scene):
+    """Names of the tools of a scene, in its order; none where it cannot be read: sim_node says what is wrong with it."""
+    found, path = [], []
+
+    def begin(name, attributes):
+        path.append(name)
+        if path[1:] == ["world", "tactus:tool"]:
+            found.append(attributes.get("name", ""))
+
+    # Prefixes as they are written: a prefix that nobody declared is none of our business.
+    parser = xml.parsers.expat.ParserCreate()
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = lambda name: path.pop()
+    try:
+        parser.Parse(scene.read_bytes(), True)
+    except (xml.parsers.expat.ExpatError, OSError, LookupError, ValueError):
+        return []
+    return found
+
+
+def processes(names):
+    """{process: tool} of the tools after the first: haptic_node_TOOL, in letters that a folder and a shell bear."""
+    hands = {}
+    for number, tool in enumerate(names[1:], 2):
+        process = f"{FIRST}_{re.sub(r'[^A-Za-z0-9_-]', '_', tool)}"[:LONGEST_NAME]
+        hands[process if process not in hands else f"{process[:LONGEST_NAME - 4]}_{number}"] = tool
+    return hands
+
+
+def devices(words, names):
+    """{tool or "": spec} of --device words: SPEC is the first tool's, TOOL=SPEC that of the tool of this name."""
+    chosen = {}
+    for word in words:
+        tool, equals, spec = word.partition("=")
+        if equals and tool in names:
+            chosen["" if tool == names[0] else tool] = spec
+        else:
+            chosen[""] = word
+    return chosen

@@ -1,0 +1,184 @@
+// Touch and warmth made worse on purpose, one way at a time: the hand feels it, and no other sense notices.
+#include <cmath>
+#include <set>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+
+#include "tests/cluster/profiles.h"
+#include "tests/cluster/run_log.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+constexpr std::size_t kPeriod_ms = 500;          // of the taps in tapping.sdf, whose path keeps the host's time
+using Trace = std::vector<std::vector<double>>;  // by ms of the period
+
+std::size_t phase_ms(const header_t& h) {
+  return static_cast<std::size_t>(h.publish_time_ns / 1'000'000) % kPeriod_ms;
+}
+
+// What the hand felt for a while, and how the others fared.
+struct Felt {
+  Trace force = Trace(kPeriod_ms), warmed_by = Trace(kPeriod_ms);  // N: on the hand; what warmth was told of it
+  std::set<int> steps_cN;                                          // forces that were held for 5 ticks and more
+  std::vector<std::int64_t> ticks, world;                          // when TOOL_STATE and TOUCH_MODEL were sent
+  double behind_degC = 0;  // largest difference between the model's skin and what the display is told
+  std::map<std::string, double> wait_ms;  // of the other senses, median
+
+  double peak_N() const {
+    double most = 0;
+    for (const auto& f : force) most = std::max(most, f.empty() ? 0 : median(f));
+    return most;
+  }
+};
+
+struct Degraded : Running {
+  sync::Queue<tool_state_t>& tools = ear.bus().queue<tool_state_t>(channels::kToolState, 8192);
+  sync::Queue<touch_model_t>& models = ear.bus().queue<touch_model_t>(channels::kTouchModel, 8192);
+  sync::Queue<thermal_state_t>& skins = ear.bus().queue<thermal_state_t>(channels::kThermalState, 8192);
+
+  Felt feel(double seconds) {
+    while (tools.pop()) {
+    }
+    while (models.pop()) {
+    }
+    while (skins.pop()) {
+    }
+    Felt f;
+    const EventsHeard before = heard_of(ear);
+    int held = 0, last_cN = 0;
+    for (double waited = 0; waited < seconds; waited += 0.5) {
+      ear.listen(0.5);
+      while (auto m = tools.pop()) {
+        const tool_state_t& t = m->message;
+        const double N = std::hypot(t.force_N.x, t.force_N.y, t.force_N.z);
+        f.force[phase_ms(t.header)].push_back(N);
+        f.ticks.push_back(t.header.publish_time_ns);
+        const int cN = static_cast<int>(std::lround(100 * N));
+        held = cN == last_cN ? held + 1 : 0;
+        last_cN = cN;
+        if (held == 5 && cN > 0) f.steps_cN.insert(cN);
+      }
+      while (auto m = models.pop())
+        if (m->message.page == 0) f.world.push_back(m->message.header.publish_time_ns);
+      while (auto m = skins.pop()) {
+        f.warmed_by[phase_ms(m->message.header)].push_back(m->message.force_N);
+        f.behind_degC =
+            std::max<double>(f.behind_degC, std::abs(m->message.skin_degC - m->message.commanded_degC));
+      }
+    }
+    for (const char* sense : {"audio", "visual", "thermal"})
+      if (const auto waits = waits_ms(ear, sense, before); !waits.empty()) f.wait_ms[sense] = median(waits);
+    return f;
+  }
+};
+
+// Mean difference of the forces over a period, N.
+double error_N(const Felt& clean, const Felt& f) {
+  double sum = 0;
+  int n = 0;
+  for (std::size_t ms = 0; ms < kPeriod_ms; ++ms)
+    if (!clean.force[ms].empty() && !f.force[ms].empty()) {
+      sum += std::abs(median(clean.force[ms]) - median(f.force[ms]));
+      ++n;
+    }
+  REQUIRE(n > 400);
+  return sum / n;
+}
+
+// By how much what warmth was told of follows the force on the hand, ms: the shift in which the two agree best.
+double lag_ms(const Felt& f) {
+  double best = -1;
+  std::size_t at = 0;
+  for (std::size_t shift = 0; shift < kPeriod_ms; shift += 10) {
+    double sum = 0;
+    for (std::size_t ms = 0; ms < kPeriod_ms; ++ms)
+      for (const double w : f.warmed_by[(ms + shift) % kPeriod_ms])
+        if (!f.force[ms].empty()) sum += w * median(f.force[ms]);
+    if (sum > best) best = sum, at = shift;
+  }
+  return static_cast<double>(at);
+}
+
+// The servo loop and the world, and how long the other senses take from their earliest chance to the output: wide
+// medians, for other work comes and goes.
+void check_others(Degraded& c, const std::map<std::string, double>& rates, const Felt& clean, const Felt& f,
+                  const std::string& degraded) {
+  c.check_rates_hold(rates, 1);
+  CHECK(quantile(steps_ms(f.ticks), 0.5) == Approx(1).margin(0.05));
+  CHECK(quantile(steps_ms(f.world), 0.5) == Approx(1).margin(0.05));
+  CHECK(quantile(steps_ms(f.ticks), 0.9) < 1.5 * std::max(1.0, quantile(steps_ms(clean.ticks), 0.9)));
+  CHECK(quantile(steps_ms(f.world), 0.9) < 1.5 * std::max(1.0, quantile(steps_ms(clean.world), 0.9)));
+  for (const auto& [sense, wait] : clean.wait_ms) {
+    if (sense == degraded) continue;
+    INFO(sense);
+    REQUIRE(f.wait_ms.contains(sense));
+    // Vision, at no priority, has a few frames more or less beside other work.
+    const double tolerance_ms = sense == "visual" ? 60 : 20;
+    CHECK(f.wait_ms.at(sense) == Approx(wait).margin(tolerance_ms));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it") {
+  Degraded c;
+  c.start();
+  c.feel(2);  // delays of presentation settle
+  const Felt clean = c.feel(4), again = c.feel(4);
+  const auto rates = c.rates(2);
+  const double peak_N = clean.peak_N(), noise_N = error_N(clean, again);
+  REQUIRE(peak_N > 1);
+  REQUIRE(noise_N < 0.01 * peak_N);
+  // The same taps differ by so little that a hundredth of the peak is an effect.
+  const double effect_N = std::max(10 * noise_N, 0.004 * peak_N);
+  for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"95% burst=200\"", "freeze=\"zero\"",
+                                 "off=\"true\"", "force_step=\"1N\""}) {
+    put_in_force(c, "<degrade modality=\"haptic\" " + rule + "/>");
+    c.feel(1);
+    const Felt f = c.feel(4);
+    INFO(rule << ": force off by " << error_N(clean, f) << " N in the mean, peak " << f.peak_N() << " N of "
+              << peak_N << " N; two clean spans differ by " << noise_N << " N; " << f.steps_cN.size()
+              << " forces held");
+    CHECK(error_N(clean, f) > effect_N);
+    if (rule == "off=\"true\"" || rule == "freeze=\"zero\"") CHECK(f.peak_N() == 0);
+    if (rule == "force_step=\"1N\"") {
+      CHECK(!f.steps_cN.empty());
+      for (const int cN : f.steps_cN) CHECK(cN % 100 == 0);
+    }
+    check_others(c, rates, clean, f, "haptic");
+  }
+  put_in_force(c, "");
+  c.feel(1);
+  CHECK(error_N(clean, c.feel(4)) < 0.05 * peak_N);
+}
+
+TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice") {
+  Degraded c;
+  c.start();
+  c.feel(2);
+  const Felt clean = c.feel(4);
+  const auto rates = c.rates(2);
+  REQUIRE(clean.peak_N() > 1);
+  const double lag = lag_ms(clean);
+  for (const std::string rule : {"delay=\"150ms\"", "response=\"1s\"", "off=\"true\""}) {
+    put_in_force(c, "<degrade modality=\"thermal\" " + rule + "/>");
+    c.feel(2);
+    const Felt f = c.feel(4);
+    INFO(rule << ": warmth follows force by " << lag_ms(f) << " ms, clean by " << lag << " ms; the display is "
+              << f.behind_degC << " K behind, clean " << clean.behind_degC << " K");
+    if (rule.starts_with("delay"))
+      CHECK(std::remainder(lag_ms(f) - lag - 150, kPeriod_ms) == Approx(0).margin(40));
+    if (rule.starts_with("response")) CHECK(f.behind_degC > clean.behind_degC + 0.05);
+    double told_N = 0;
+    for (const auto& by : f.warmed_by)
+      for (const double N : by) told_N = std::max(told_N, N);
+    CHECK((told_N == 0) == (rule == "off=\"true\""));
+    check_others(c, rates, clean, f, "thermal");
+    CHECK(error_N(clean, f) < 0.05 * clean.peak_N());
+  }
+  put_in_force(c, "");
+  CHECK(c.all_live(kNodes));
+}

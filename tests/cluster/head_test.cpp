@@ -1,0 +1,119 @@
+// A head that a program moves: the picture follows it, and nothing else does.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+#include <tactus/device_state_t.hpp>
+
+#include "lcmtypes/vectors.h"
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+using Pixels = std::vector<unsigned char>;
+
+// Mean difference of two pictures, of 255.
+double apart(const Pixels& a, const Pixels& b) {
+  REQUIRE(a.size() == b.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+struct WithHead : Running {
+  std::filesystem::path snapshot = folder.path() / "now.png";
+  int buttons = 0;  // of the head, as TOOL_STATE has them
+  sync::Bus tracker{sync::Identity::fresh("tracker", kRunId), {}};
+
+  void start_all() {
+    const std::string scene = repository() / "tests/cluster/head.sdf";
+    processes.start("sync_node");
+    for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
+    start_head();
+    processes.start("visual_node", {"--no-video", "--snapshot", snapshot, "--snapshot-every", "0.1"});
+    processes.start("sim_node", {scene});
+    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
+    UNSCOPED_INFO(words());
+    REQUIRE(alive);
+  }
+  void start_head() {
+    processes.spawn("haptic_node_head", {programs() / "haptic_node", "--run-id", std::to_string(kRunId), "--out",
+                                         folder.path(), "--name", "haptic_node_head", "--tool", "head"});
+  }
+  // The head is there, 250 times a second, for so long. Yaw about z.
+  void hold(const Eigen::Vector3d& moved_m, double yaw_rad, double seconds) {
+    const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
+    while (sync::host_now() < end) {
+      device_state_t m{};
+      m.header.sim_time_ns = -1;
+      m.device = "head";
+      m.pose.position_m = to_vec3(moved_m);
+      m.pose.orientation = to_quat(Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
+      m.buttons = 5;
+      m.state = device_state_t::ANSWERS;
+      tracker.publish(channels::kDeviceState, m);
+      ear.listen(0.004);
+      if (ear.tool_state() && ear.tool_state()->tool == 1) buttons = ear.tool_state()->buttons;
+    }
+  }
+  // What is seen after a second of it.
+  Pixels seen(const Eigen::Vector3d& moved_m, double yaw_rad) {
+    hold(moved_m, yaw_rad, 1.5);
+    return picture();
+  }
+  Pixels picture() {
+    const auto raw = folder.path() / "now.raw";
+    const std::string command =
+        "ffmpeg -v error -y -i " + quoted(snapshot) + " -f rawvideo -pix_fmt gray " + quoted(raw);
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::ifstream file(raw, std::ios::binary);
+    return Pixels(std::istreambuf_iterator<char>(file), {});
+  }
+  std::string note(const std::string& node) const { return ear.health(node) ? ear.health(node)->note : "silent"; }
+};
+
+}  // namespace
+
+TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays when it is lost") {
+  WithHead c;
+  c.start_all();
+  const Pixels at_rest = c.seen({0, 0, 0}, 0);
+  REQUIRE(at_rest.size() == 320 * 240);
+  CHECK(*std::max_element(at_rest.begin(), at_rest.end()) > 40);  // something is lit
+  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);
+  CHECK(c.lives("haptic_node_head"));
+  CHECK(c.buttons == 5);
+  const auto before = c.rates(1);
+
+  const Pixels turned = c.seen({0, 0, 0}, 0.2), aside = c.seen({0, -0.15, 0}, 0);
+  CHECK(apart(at_rest, turned) > 3);
+  CHECK(apart(at_rest, aside) > 3);
+  CHECK(apart(turned, aside) > 3);
+  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);  // and back
+  c.check_rates_hold(before, 2);
+
+  // The device says no more: the view stays, touch by the other hand goes on.
+  c.seen({0, -0.15, 0}, 0);
+  CHECK(c.ear.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kPatience_s));
+  c.ear.listen(0.5);
+  CHECK(apart(c.picture(), aside) < 0.5);
+  // Its process is gone.
+  c.processes.kill("haptic_node_head");
+  const bool said = c.ear.wait_until(
+      [&] { return c.note("visual_node").find("the head is lost: the view stays") != std::string::npos; },
+      kPatience_s);
+  INFO(c.note("visual_node"));
+  CHECK(said);
+  CHECK(apart(c.picture(), aside) < 0.5);
+  CHECK(c.all_live(kNodes));
+  const std::int64_t hits = c.ear.hits();
+  CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
+
+  c.start_head();
+  CHECK(c.ear.wait_until([&] { return c.ear.health("haptic_node_head") != nullptr; }, kPatience_s));
+  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);
+  CHECK(c.note("visual_node").find("head") == std::string::npos);
+}
