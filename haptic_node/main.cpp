@@ -77,7 +77,7 @@ int main(int argc, char** argv) try {
               << haptic::limits_sentence(choice.settings) << "\n";
   };
   sync::Sense sense(node);
-  auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 256);
+  auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
   auto& events = sense.events();
   node.set_state(node_health_t::WAITING, "waits for the scene");
 

@@ -58,6 +58,9 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
     in.touch_arrival = touch_.arrival();
     if (in.touch_arrival && degraded.touch_arrival)
       in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
+    // Pages of which none makes a whole are no touch model.
+    if (in.touch_arrival && touch_.unfinished_since())
+      in.touch_arrival = std::min(*in.touch_arrival, *touch_.unfinished_since());
     in.map = touch_.map(now);
   }
   in.device = device_->read(now);

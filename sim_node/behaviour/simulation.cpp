@@ -10,7 +10,7 @@ namespace tactus::sim {
 
 namespace {
 
-constexpr std::size_t kMostBooks = 7;  // of a page of touch_model_t
+constexpr std::size_t kMostBooks = 14;  // of a touch model; design: more than a message tells the simulation of
 // A force may act so far outside the sphere around a body, m: the rounding of the wire and a step's motion.
 constexpr double kBeyond_m = 0.02;
 

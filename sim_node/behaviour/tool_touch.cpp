@@ -240,7 +240,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.gap_m < b.gap_m; });
   model_.planes.clear();
   for (const Near& n : near_) {
-    if (n.seen != now || model_.planes.size() >= kMostPlanes) continue;
+    if (n.seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
     touch_plane_t p{};

@@ -26,7 +26,6 @@ namespace tactus::sim {
 
 class ToolTouch {
  public:
-  static constexpr std::size_t kMostPlanes = 7;  // of a page of touch_model_t
   // Speed that a unit impulse along n at the point of a body gives to that point, 1/kg.
   using Mobility = std::function<double(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n)>;
 
@@ -40,7 +39,7 @@ class ToolTouch {
   // The same while the world stands still: the planes near where the hand is now. Nothing begins, hits or ends.
   void feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news);
 
-  // The planes, nearest first; header and clock are the publisher's. Tool -1: it only points, and there is none to send.
+  // The planes, nearest first, whole; pages, header and clock are the publisher's. Tool -1: it only points, and there is none to send.
   const touch_model_t& model() const { return model_; }
   // Where the tool is: its proxy, as last heard of.
   const Eigen::Vector3d& proxy() const { return proxy_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim_node/publish/paging.h"
+#include "sim_node/publish/touch_pages.h"
 
 namespace tactus::sim {
 
@@ -60,7 +61,7 @@ void Publisher::publish(const StepView& view, const sync::TimeMap& map) {
     if (m.tool < 0) continue;
     m.header.sim_time_ns = sync::to_ns(view.time);
     m.clock = clock;
-    bus_.publish(channels::kTouchModel, m);
+    each_touch_page(m, touch_page_, [&](touch_model_t& page) { bus_.publish(channels::kTouchModel, page); });
   }
   publish_events(view, clock);
   publish_tool_contacts(view, clock);

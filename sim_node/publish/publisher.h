@@ -17,7 +17,7 @@ namespace tactus::sim {
 // What a step has to say.
 struct StepView {
   sync::SimTime time{};
-  std::vector<touch_model_t>* touch_models = nullptr;          // one per tool; stamped here
+  std::vector<touch_model_t>* touch_models = nullptr;          // one per tool, whole; stamped and cut into pages here
   const std::vector<contact_event_t>* events = nullptr;        // that became known in this step
   const std::vector<contact_t>* tool_contacts = nullptr;
   StateSource state;
@@ -45,6 +45,7 @@ class Publisher {
   // The world's time, and a step for every tick in which it stands still; before the first of either.
   sync::SimTime pace_{-std::chrono::hours(1)};
   int game_ticks_ = 0;  // since it was told last
+  touch_model_t touch_page_{};
   YoungEvents young_;
   Snapshots snapshots_;
 };
