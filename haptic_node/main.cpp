@@ -3,6 +3,7 @@
 //   in   TOUCH_MODEL                   the surfaces near its tool, newest only
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
+//                                     and the pictures of their relief and friction
 //        DEVICE_STATE                  of a device that another program drives
 //        SETTING                       changes of its settings while it runs
 //   out  TOOL_STATE                    every tick
@@ -65,6 +66,9 @@ int main(int argc, char** argv) try {
   haptic::Choice choice;
   haptic::Quality quality(given.settings);
   std::optional<sync::Opening<haptic::Device>> device;
+  // Read in a thread of its own; what is not there yet is smooth.
+  std::optional<sync::Opening<haptic::SurfaceMaps>> opening_maps;
+  std::shared_ptr<const haptic::SurfaceMaps> maps;
   std::optional<haptic::Session> session;
   bool points = false;    // its tool is a wand or the head: there is no touch to wait for
   bool no_touch = false;  // so are all tools of the scene: no touch model says that the world has begun
@@ -89,6 +93,11 @@ int main(int argc, char** argv) try {
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       if (session) session->let_go();
       device.reset();
+      maps.reset();
+      opening_maps.emplace([scene = *scenes.scene(), pictures = haptic::pictures_of(scenes)] {
+        sync::leave_realtime();
+        return std::make_unique<haptic::SurfaceMaps>(haptic::read_maps(scene, pictures));
+      });
       if (choice.tool >= 0)  // its file is read in a thread of its own, at no priority
         device.emplace([scene = *scenes.scene(), choice, given = device_given] {
           sync::leave_realtime();
@@ -107,9 +116,16 @@ int main(int argc, char** argv) try {
       quality = haptic::Quality(choice.settings);
       node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for its device" : choice.problem);
     }
+    if (opening_maps && opening_maps->done()) {
+      maps = opening_maps->take();
+      opening_maps.reset();
+      if (!maps->trouble.empty()) std::cerr << options.name << ": " << maps->trouble << "\n";
+      if (session && !session->over()) session->set_maps(maps);
+    }
     if (device && device->done()) {
       try {
         session.emplace(*scenes.scene(), choice, device->take(), node.bus().clocks(), safety);
+        if (maps) session->set_maps(maps);
         node.set_state(node_health_t::READY, "waits for a touch model");
       } catch (const std::exception& e) {
         std::cerr << options.name << ": " << e.what() << "\n";
@@ -147,7 +163,7 @@ int main(int argc, char** argv) try {
     else if (session->heard() && session->lost())
       node.set_state(node_health_t::INPUT_LOST, "no touch model: the force is zero");
     else if (session->heard())
-      node.set_state(node_health_t::RUNNING);
+      node.set_state(node_health_t::RUNNING, maps ? maps->trouble : "reads the maps of its surfaces");
     else
       node.set_state(node_health_t::READY, "waits for a touch model");
   }

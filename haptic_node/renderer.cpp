@@ -22,6 +22,7 @@ SurfaceLimits surface_limits(const Settings& s) {
 CouplingLimits coupling_limits(const Settings& s) {
   return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
 }
+ReliefDef reliefs_of(const Settings& s) { return relief_def(s.bump, s.bump_steepest, s.recovery_time_s); }
 TransientShape transient_shape(const Settings& s) {
   return {s.transient_gain,
           s.transient_limit_N,
@@ -43,6 +44,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       period_s_(1 / settings.rate_Hz),
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
       surfaces_(radius_m_, surface_limits(settings)),
+      reliefs_(reliefs_of(settings)),
       handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
       transients_(transient_shape(settings)),
       safety_(safety),
@@ -58,6 +60,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
 void Renderer::change(const Settings& settings) {
   settings_ = settings;
   transients_.change(transient_shape(settings));
+  reliefs_.change(reliefs_of(settings));
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -110,9 +113,11 @@ Eigen::Vector3d Renderer::constraint_force(double dt) {
     s.coupling_stiffness_N_m += follow * (g.stiffness_N_m - s.coupling_stiffness_N_m);
     s.coupling_damping_N_s_m = g.damping_N_s_m;
   }
+  reliefs_.look(surfaces_.list(), proxy_.position(), radius_m_, dt);
   proxy_.step(surfaces_.list(), device_.position, dt);
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
+  reliefs_.lean(surfaces_.list(), forces_);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& f : forces_) sum += f;
   return handover_.step(surfaces_.list(), sum, dt);

@@ -17,6 +17,7 @@
 #include "haptic_node/handover.h"
 #include "haptic_node/owed_begins.h"
 #include "haptic_node/proxy.h"
+#include "haptic_node/reliefs.h"
 #include "haptic_node/safety.h"
 #include "haptic_node/settings.gen.h"
 #include "haptic_node/surfaces.h"
@@ -60,6 +61,9 @@ class Renderer {
   // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not its.
   void change(const Settings& settings);
 
+  // What lies on the surfaces of its scene, from the next tick on; null: nothing.
+  void set_maps(std::shared_ptr<const SurfaceMaps> maps) { reliefs_.set_maps(std::move(maps)); }
+
   // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
   // ticks.
   TickOutput& step(const TickInput& in);
@@ -91,6 +95,7 @@ class Renderer {
   double period_s_, step_s_;
 
   Surfaces surfaces_;
+  Reliefs reliefs_;
   Proxy proxy_;
   Handover handover_;
   LoopDelay loop_delay_;

@@ -44,6 +44,9 @@ class Session {
   // Other settings from the next tick on, as Renderer::change; with the limits of safety.
   void change(const Settings& settings);
 
+  // Of this scene, when they have been read; until then its surfaces are smooth.
+  void set_maps(std::shared_ptr<const SurfaceMaps> maps) { renderer_.set_maps(std::move(maps)); }
+
   void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
   // After a step: what a program that drives the device must be told; null: nothing.
   device_force_t* tell() { return device_->tell(); }

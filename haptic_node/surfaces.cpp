@@ -38,12 +38,14 @@ const Surface* Surfaces::find(std::int64_t contact_id, std::size_t expected) con
 }
 
 Surfaces::Told Surfaces::predict(const Surface& s) const {
-  if (!now_) return {s.told_point_, s.told_normal_};
+  if (!now_) return {s.told_point_, s.told_normal_, Eigen::Quaterniond::Identity()};
   const double age = std::clamp(sync::to_seconds(*now_ - s.at_), 0.0, limits_.extrapolate_at_most_s);
   const double spin = s.angular_velocity.norm();
-  Told told{s.told_point_ + age * s.velocity, s.told_normal_};
-  if (spin > 0)
-    told.normal = (Eigen::AngleAxisd(spin * age, s.angular_velocity / spin) * told.normal).normalized();
+  Told told{s.told_point_ + age * s.velocity, s.told_normal_, Eigen::Quaterniond::Identity()};
+  if (spin > 0) {
+    told.turned = Eigen::AngleAxisd(spin * age, s.angular_velocity / spin);
+    told.normal = (told.turned * told.normal).normalized();
+  }
   return told;
 }
 
@@ -69,6 +71,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kLargestSpin_rad_s);
   s.told_point_ = to_eigen(plane.point_m);
   s.told_normal_ = to_eigen(plane.normal).normalized();
+  s.mapped.take(plane, s.told_normal_);
   s.at_ = at;
   s.leaves_in_s_ = -1;
   s.taken_ = true;
@@ -156,6 +159,7 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
   // While it turns it pivots about the place under the proxy, whose height is what it should be.
   s.offset_m = s.normal.dot(proxy) - (true_height(told, proxy) + s.lag_m_);
   s.point = told.point;
+  if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());
 }
 
 void Surfaces::step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "haptic_node/closest_point.h"
+#include "haptic_node/mapped_place.h"
 #include "sync/time.h"
 
 namespace tactus::haptic {
@@ -39,6 +40,7 @@ struct Surface {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
   // How deep the device was pressed under it in the last tick, m; set by whoever solves for the proxy.
   double depth_m = 0;
+  MappedPlace mapped;  // in the maps of its material
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
@@ -85,6 +87,7 @@ class Surfaces {
  private:
   struct Told {
     Eigen::Vector3d point, normal;
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // since it was told
   };
   Told predict(const Surface& s) const;
   double true_height(const Told& told, const Eigen::Vector3d& proxy) const;

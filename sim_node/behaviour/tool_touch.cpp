@@ -51,7 +51,11 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     const Vector3d centre = s.pose * surface.centre();
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
-                         s.material >= 0 ? world.materials[static_cast<std::size_t>(s.material)].bump_asset : 0});
+                         0});
+    if (s.material < 0) continue;
+    const material_def_t& m = world.materials[static_cast<std::size_t>(s.material)];
+    surfaces_.back().bump_asset = m.bump_asset;
+    surfaces_.back().mapped = m.bump_asset != 0 || m.friction_asset != 0;
   }
   std::vector<SphereTree::Sphere> fixed;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -261,7 +265,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.friction_static = static_cast<float>(s.friction_static);
     p.friction_dynamic = static_cast<float>(s.friction_dynamic);
     p.bump_asset = s.bump_asset;
-    if (p.bump_asset != 0) p.bump_u_body = to_vec3f(Vector3d::Unit(bump_axes(normal_body).u));
+    if (s.mapped) p.bump_u_body = to_vec3f(body.orientation * Vector3d::Unit(bump_axes(normal_body).u));
     model_.planes.push_back(p);
   }
   model_.plane_count = static_cast<std::int8_t>(model_.planes.size());

@@ -73,6 +73,7 @@ class ToolTouch {
     double friction_static = 0.5, friction_dynamic = 0.5;  // of the pair
     double compliance_1_Pa = 0;                            // of the pair
     std::int64_t bump_asset = 0;                           // of its material
+    bool mapped = false;                                   // that has a map of relief or friction
   };
   // A surface near the tool, followed from step to step.
   struct Near {

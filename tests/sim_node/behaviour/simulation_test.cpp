@@ -104,7 +104,7 @@ TEST_CASE("A corner has both its planes, each with a name that stays") {
   CHECK(names.size() == 2);
 }
 
-TEST_CASE("A plane names the relief of its surface and the axis of the body along which it is laid out") {
+TEST_CASE("A plane names the relief of its surface and the axis of the body along which it is laid out, in the world") {
   WorldDef w = empty_world(0);
   material_def_t planks{};
   planks.youngs_modulus_Pa = 1e10, planks.poissons_ratio = 0.3, planks.friction_static = planks.friction_dynamic = 0.5;
@@ -126,7 +126,13 @@ TEST_CASE("A plane names the relief of its surface and the axis of the body alon
   };
   CHECK((to_eigen(plane().normal_body) - sign * Vector3d::Unit(across)).norm() < 1e-6);
   CHECK(plane().bump_asset == 77);
-  CHECK(to_eigen(plane().bump_u_body) == Vector3d::Unit((across + 1) % 3));
+  const Vector3d u = pose.linear() * Vector3d::Unit((across + 1) % 3);
+  CHECK((to_eigen(plane().bump_u_body) - u).norm() < 1e-6);
+  SECTION("also for a map of friction alone") {
+    w.materials[1].bump_asset = 0, w.materials[1].friction_asset = 78;
+    CHECK(plane().bump_asset == 0);
+    CHECK((to_eigen(plane().bump_u_body) - u).norm() < 1e-6);
+  }
   SECTION("and a smooth one names none") {
     w.shapes[shape].material = 0;
     CHECK(plane().bump_asset == 0);

@@ -1,0 +1,53 @@
+// Relief and friction maps under the hand. The seed's two methods (section 1.9), at any number of contacts:
+//
+//   height   the surface stands as high as the map says at the place that is touched; the force keeps its
+//   direction normal   the surface stays flat; the force turns to the map's normal and keeps its size (force
+//   shading:
+//            Morgenbesser and Srinivasan 1996), so its part along the surface is that of the slope
+//
+// The normal is the picture's (lcmtypes/relief.h). It is continuous over the map, so the force is. Neither method
+// stores energy as a true relief does: who presses harder downhill than uphill is given the difference; the limits
+// of energy and power hold. Pure.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "haptic_node/surface_maps.h"
+#include "haptic_node/surfaces.h"
+
+namespace tactus::haptic {
+
+struct ReliefDef {
+  bool height = false, normal = true;
+  double steepest = 1;             // slopes are felt up to this, so the force leans by at most atan of it
+  double recovery_time_s = 0.015;  // in which a method, a map that has come, or another side of a body sets in
+};
+// of the setting `bump`: none, height, normal or both.
+ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s);
+
+class Reliefs {
+ public:
+  explicit Reliefs(const ReliefDef& def) : def_(def), height_share_(def.height), normal_share_(def.normal) {}
+
+  // From now on. Null: none. They set in smoothly.
+  void set_maps(std::shared_ptr<const SurfaceMaps> maps);
+  void change(const ReliefDef& def) { def_ = def; }
+
+  // Before the proxy moves: raises each surface and sets its friction as its maps say where the tool, of that
+  // radius, touches it. Realtime-safe: yes.
+  void look(std::span<Surface> surfaces, const Eigen::Vector3d& proxy, double tool_radius_m, double dt);
+  // Turns the part of each force that is along its surface's normal. Realtime-safe: yes.
+  void lean(std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces_N) const;
+
+ private:
+  void look(Surface& s, const Relief& relief, const Eigen::Vector3d& place_body, double dt) const;
+  Eigen::Vector2d slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const;
+
+  ReliefDef def_;
+  std::shared_ptr<const SurfaceMaps> maps_;
+  double height_share_, normal_share_;  // of each method, follows what is wanted
+};
+
+}  // namespace tactus::haptic
