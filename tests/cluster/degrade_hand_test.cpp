@@ -24,7 +24,7 @@ struct Felt {
   Trace force = Trace(kPeriod_ms), warmed_by = Trace(kPeriod_ms);  // N: on the hand; what warmth was told of it
   std::set<int> steps_cN;                                          // forces that were held for 5 ticks and more
   std::vector<std::int64_t> ticks, world;                          // when TOOL_STATE and TOUCH_MODEL were sent
-  double behind_degC = 0;  // largest difference between the model's skin and what the display is told
+  Trace told = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: what the display is told
   std::map<std::string, double> wait_ms;  // of the other senses, median
 
   double peak_N() const {
@@ -33,6 +33,17 @@ struct Felt {
     return most;
   }
 };
+
+// How far the display goes up and down with each tap, K.
+double ripple_K(const Felt& f) {
+  double least = 100, most = -100;
+  for (const auto& told : f.told) {
+    if (told.empty()) continue;
+    least = std::min(least, median(told));
+    most = std::max(most, median(told));
+  }
+  return most - least;
+}
 
 struct Degraded : Running {
   sync::Queue<tool_state_t>& tools = ear.bus().queue<tool_state_t>(channels::kToolState, 8192);
@@ -65,8 +76,7 @@ struct Degraded : Running {
         if (m->message.page == 0) f.world.push_back(m->message.header.publish_time_ns);
       while (auto m = skins.pop()) {
         f.warmed_by[phase_ms(m->message.header)].push_back(m->message.force_N);
-        f.behind_degC =
-            std::max<double>(f.behind_degC, std::abs(m->message.skin_degC - m->message.commanded_degC));
+        f.told[phase_ms(m->message.header) / 20].push_back(m->message.commanded_degC);
       }
     }
     for (const char* sense : {"audio", "visual", "thermal"})
@@ -102,11 +112,23 @@ double lag_ms(const Felt& f) {
   return static_cast<double>(at);
 }
 
+// In the best of three spans, as Running::check_rates_hold; that vision is faster when other work on the machine
+// has ended is no fault.
+void check_not_slower(Degraded& c, std::map<std::string, double> left) {
+  std::map<std::string, double> now;
+  for (int span = 0; span < 3 && !left.empty(); ++span) {
+    now = c.rates(1);
+    std::erase_if(left, [&](const auto& b) { return now[b.first] > b.second / 2; });
+  }
+  for (const auto& [node, rate] : left)
+    FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
+}
+
 // The servo loop and the world, and how long the other senses take from their earliest chance to the output: wide
 // medians, for other work comes and goes.
 void check_others(Degraded& c, const std::map<std::string, double>& rates, const Felt& clean, const Felt& f,
                   const std::string& degraded) {
-  c.check_rates_hold(rates, 1);
+  check_not_slower(c, rates);
   CHECK(quantile(steps_ms(f.ticks), 0.5) == Approx(1).margin(0.05));
   CHECK(quantile(steps_ms(f.world), 0.5) == Approx(1).margin(0.05));
   CHECK(quantile(steps_ms(f.ticks), 0.9) < 1.5 * std::max(1.0, quantile(steps_ms(clean.ticks), 0.9)));
@@ -126,14 +148,16 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
 TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it") {
   Degraded c;
   c.start();
+  // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
+  ask_for(c, {"asap"});
   c.feel(2);  // delays of presentation settle
-  const Felt clean = c.feel(4), again = c.feel(4);
+  const Felt clean = c.feel(5), again = c.feel(5);
   const auto rates = c.rates(2);
   const double peak_N = clean.peak_N(), noise_N = error_N(clean, again);
   REQUIRE(peak_N > 1);
   REQUIRE(noise_N < 0.01 * peak_N);
-  // The same taps differ by so little that a hundredth of the peak is an effect.
-  const double effect_N = std::max(10 * noise_N, 0.004 * peak_N);
+  // The same taps differ by a few mN, beside heavy work by some 20.
+  const double effect_N = std::max(1.5 * noise_N, 0.004 * peak_N);
   for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"95% burst=200\"", "freeze=\"zero\"",
                                  "off=\"true\"", "force_step=\"1N\""}) {
     put_in_force(c, "<degrade modality=\"haptic\" " + rule + "/>");
@@ -158,6 +182,8 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
 TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice") {
   Degraded c;
   c.start();
+  // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
+  ask_for(c, {"asap"});
   c.feel(2);
   const Felt clean = c.feel(4);
   const auto rates = c.rates(2);
@@ -167,11 +193,12 @@ TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on
     put_in_force(c, "<degrade modality=\"thermal\" " + rule + "/>");
     c.feel(2);
     const Felt f = c.feel(4);
-    INFO(rule << ": warmth follows force by " << lag_ms(f) << " ms, clean by " << lag << " ms; the display is "
-              << f.behind_degC << " K behind, clean " << clean.behind_degC << " K");
+    INFO(rule << ": warmth follows force by " << lag_ms(f) << " ms, clean by " << lag << " ms; the display goes "
+              << ripple_K(f) << " K up and down, clean " << ripple_K(clean) << " K");
     if (rule.starts_with("delay"))
       CHECK(std::remainder(lag_ms(f) - lag - 150, kPeriod_ms) == Approx(0).margin(40));
-    if (rule.starts_with("response")) CHECK(f.behind_degC > clean.behind_degC + 0.05);
+    // A lag of 1 s leaves 1 / sqrt(1 + (2 pi 2 Hz 1 s)^2), a thirteenth, of what goes up and down twice a second.
+    if (rule.starts_with("response")) CHECK(ripple_K(f) < 0.4 * ripple_K(clean));
     double told_N = 0;
     for (const auto& by : f.warmed_by)
       for (const double N : by) told_N = std::max(told_N, N);
