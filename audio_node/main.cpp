@@ -1,17 +1,20 @@
-// audio_node: sounds the hits of the scene through a sound card, each on its sample: when PLAYOUT says, else at a delay of its own.
+// audio_node: sounds the hits and scrapes of the scene through a sound card, each on its sample: when PLAYOUT
+// says, else at a delay of its own.
 //
-//   in   CONTACT_EVENTS; CONTACTS (its clock only); SCENE
+//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); SCENE
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
 // Losing CONTACT_EVENTS lets what sounds die away; losing the sound card is reported, and the card is tried again.
 // The loop never waits for another node, the card's callback never for the loop.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
+#include "audio_node/sliding.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
 #include "sync/scene_exchange.h"
@@ -35,6 +38,7 @@ const sync::Declaration kAudio{.node = "audio_node",
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
+constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
@@ -68,8 +72,12 @@ int main(int argc, char** argv) try {
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   sync::ContactStream contacts(node.bus().clocks());
+  audio::HeardReliefs reliefs;  // outlives the output, whose callback reads them
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
+  std::unique_ptr<audio::Sliding> sliding;
+  std::optional<sync::Opening<audio::HeightMaps>> maps;
+  sync::HostTime slid_at{};
   std::int64_t scenes = 0;
 
   // What a scene has wrong keeps its default and is said once.
@@ -98,6 +106,12 @@ int main(int argc, char** argv) try {
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
+      sliding.reset();
+      maps.emplace([bytes = audio::pictures_of(scene)] { return audio::read_maps(bytes); });
+    }
+    if (maps && maps->done()) {
+      sliding = std::make_unique<audio::Sliding>(*scene.scene(), *maps->take(), reliefs, output.settings());
+      maps.reset();
     }
     const bool plays = (impacts || now - started > kOpenAnyway) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
@@ -111,6 +125,12 @@ int main(int argc, char** argv) try {
             sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
         output.submit(impacts->strike(event, scheduled));
       }
+    }
+    if (const auto map = contacts.map(now); map && sliding) {
+      const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
+      const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
+      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at))) output.submit(scrape);
+      slid_at = now;
     }
     while (const auto report = output.next_report()) {
       sense.report(*report);
