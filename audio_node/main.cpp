@@ -1,17 +1,20 @@
-// audio_node: sounds the hits of the scene through a sound card, each on its sample: when PLAYOUT says, else at a delay of its own.
+// audio_node: sounds the hits and scrapes of the scene through a sound card, each on its sample: when PLAYOUT
+// says, else at a delay of its own.
 //
-//   in   CONTACT_EVENTS; CONTACTS (its clock only); SCENE; TOOL_STATE of a head, where the ear is
+//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); SCENE; TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
 // Losing CONTACT_EVENTS lets what sounds die away; losing the sound card is reported, and the card is tried again.
 // The loop never waits for another node, the card's callback never for the loop.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
+#include "audio_node/sliding.h"
 #include "lcmtypes/pointing.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
@@ -37,6 +40,7 @@ const sync::Declaration kAudio{.node = "audio_node",
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
+constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
@@ -74,8 +78,12 @@ int main(int argc, char** argv) try {
   sync::PoseHistory head(node.bus().clocks());
   int head_tool = -1;  // of the scene; -1: the ear stays
   sync::ContactStream contacts(node.bus().clocks());
+  audio::HeardReliefs reliefs;  // outlives the output, whose callback reads them
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
+  std::unique_ptr<audio::Sliding> sliding;
+  std::optional<sync::Opening<audio::HeightMaps>> maps;
+  sync::HostTime slid_at{};
   std::int64_t scenes = 0;
 
   // What a scene has wrong keeps its default and is said once.
@@ -105,6 +113,12 @@ int main(int argc, char** argv) try {
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
+      sliding.reset();
+      maps.emplace([bytes = audio::pictures_of(scene)] { return audio::read_maps(bytes); });
+    }
+    if (maps && maps->done()) {
+      sliding = std::make_unique<audio::Sliding>(*scene.scene(), *maps->take(), reliefs, output.settings());
+      maps.reset();
     }
     const bool plays = (impacts || now - started > kOpenAnyway) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
@@ -123,6 +137,12 @@ int main(int argc, char** argv) try {
           impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
         output.submit(impacts->strike(event, scheduled));
       }
+    }
+    if (const auto map = contacts.map(now); map && sliding) {
+      const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
+      const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
+      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at))) output.submit(scrape);
+      slid_at = now;
     }
     while (const auto report = output.next_report()) {
       sense.report(*report);

@@ -28,6 +28,10 @@ class Output {
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
   void submit(const Strike& strike);
+  // What is not taken at once is not heard: the next one is.
+  void submit(const Scrape& scrape) {
+    if (stream_) crossing_->scrapes.push(scrape);
+  }
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 

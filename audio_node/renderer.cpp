@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -50,6 +51,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       rate_Hz_(def.rate_Hz),
       late_(def.late),
       voices_(kQualities[0].voices, def.rate_Hz),
+      scrapes_(def.rate_Hz),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
@@ -119,8 +121,22 @@ void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(stereo, stereo + 2 * frames, 0.f);
   voices_.render(stereo, frames);
+  take_scrapes(leaving.first_sample);
+  scrapes_.render(stereo, frames, leaving.first_sample);
   for (int n = 0; n < 2 * frames; ++n) stereo[n] *= open_[static_cast<std::size_t>(n / 2)];
   limiter_.process(stereo, frames);
+}
+
+// They cross in the order in which they are to be heard; one that is early waits.
+void Renderer::take_scrapes(sync::HostTime until) {
+  for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
+    if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
+    if (s.at > until) {
+      next_scrape_ = s;
+      return;
+    }
+    scrapes_.take(s);
+  }
 }
 
 void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <span>
 #include <tactus/presentation_t.hpp>
 
 #include "audio_node/dropout.h"
 #include "audio_node/limiter.h"
 #include "audio_node/scheduler.h"
+#include "audio_node/scrapes.h"
 #include "audio_node/spsc.h"
 #include "audio_node/voices.h"
 #include "sync/late.h"
@@ -38,6 +40,7 @@ struct Orders {
 struct Crossing {
   Spsc<Strike> strikes{512};
   Spsc<Orders> orders{16};
+  Spsc<Scrape> scrapes{1024};
   Spsc<presentation_t> reports{4096};
   std::atomic<int> quality{0};  // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
@@ -74,6 +77,7 @@ class Renderer {
   void take_orders();
   void adapt(int frames, sync::Nanoseconds used);
   void render_some(float* stereo, int frames, const BlockTime& time);
+  void take_scrapes(sync::HostTime until);
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
@@ -83,6 +87,8 @@ class Renderer {
   sync::LatePolicy late_;
   Scheduler scheduler_{512};
   Voices voices_;
+  Scrapes scrapes_;
+  std::optional<Scrape> next_scrape_;  // taken, but not yet to be heard
   Dropout dropout_;
   std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the samples that are being rendered
   Limiter limiter_;

@@ -19,7 +19,7 @@ struct MappedPlace {
   double friction_static = 0, friction_dynamic = 0;    // of the pair, without a map
 
   // What is felt of the maps, from tick to tick; set by Reliefs.
-  bool known = false;
+  bool known = false, jumped = false;
   BumpAxes axes;
   Eigen::Vector2d at{0, 0};  // in repetitions of the relief
   double height_m = 0;

@@ -38,15 +38,21 @@ class Reliefs {
   // Before the proxy moves: raises each surface and sets its friction as its maps say where the tool, of that
   // radius, touches it. Realtime-safe: yes.
   void look(std::span<Surface> surfaces, const Eigen::Vector3d& proxy, double tool_radius_m, double dt);
-  // Turns the part of each force that is along its surface's normal. Realtime-safe: yes.
-  void lean(std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces_N) const;
+  // When it has: turns the part of each force that is along its surface's normal, as the map says where the tool
+  // is now. Realtime-safe: yes.
+  void lean(std::span<Surface> surfaces, const Eigen::Vector3d& proxy, double tool_radius_m,
+            std::span<Eigen::Vector3d> forces_N) const;
 
  private:
-  void look(Surface& s, const Relief& relief, const Eigen::Vector3d& place_body, double dt) const;
+  // Where it is touched, in the frame of its body, m.
+  static Eigen::Vector3d place(const Surface& s, const Eigen::Vector3d& proxy, double tool_radius_m);
+  void raise(Surface& s, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
+  void tilt(MappedPlace& m, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
   Eigen::Vector2d slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const;
 
   ReliefDef def_;
   std::shared_ptr<const SurfaceMaps> maps_;
+  double kept_ = 0;                     // of what is left of a jump, from tick to tick
   double height_share_, normal_share_;  // of each method, follows what is wanted
 };
 

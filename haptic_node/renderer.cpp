@@ -117,7 +117,7 @@ Eigen::Vector3d Renderer::constraint_force(double dt) {
   proxy_.step(surfaces_.list(), device_.position, dt);
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
-  reliefs_.lean(surfaces_.list(), forces_);
+  reliefs_.lean(surfaces_.list(), proxy_.position(), radius_m_, forces_);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& f : forces_) sum += f;
   return handover_.step(surfaces_.list(), sum, dt);

@@ -26,6 +26,11 @@ dMass mass_of(const BodyDef& body) {
   return mass;
 }
 
+// From the world to the frame of a body.
+Eigen::Isometry3d to_body(const BodyMotion& m) {
+  return (Eigen::Translation3d(m.position_m) * m.orientation).inverse();
+}
+
 }  // namespace
 
 dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s) {
@@ -84,6 +89,7 @@ void Solver::start(const WorldDef& world) {
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
   engine_->feedback.resize(kMostPoints);
   engine_->joined.reserve(kMostPoints);
+  friction_maps_ = std::make_unique<const FrictionMaps>(world);
   for (const ShapeDef& s : world.shapes) {
     friction_.push_back(s.friction);
     restitution_.push_back(s.restitution);
@@ -166,6 +172,7 @@ void Solver::back_off(Manifold& c, bool is_new) {
 
 void Solver::join(Manifold& c) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
+  if (friction_maps_->concern(c.shape_a, c.shape_b)) friction_maps_->look(to_body(motions_[a]), to_body(motions_[b]), c);
   const auto sa = static_cast<std::size_t>(c.shape_a), sb = static_cast<std::size_t>(c.shape_b);
   const bool first_is_b = engine_->bodies[a] == nullptr;
   const dBodyID first = engine_->bodies[first_is_b ? b : a], second = first_is_b ? nullptr : engine_->bodies[b];
@@ -173,13 +180,14 @@ void Solver::join(Manifold& c) {
   dSurfaceParameters& s = contact.surface;
   s.mode = dContactApprox1 | dContactFDir1 | dContactSoftERP | dContactSoftCFM | dContactBounce;
   // A pair takes the geometric mean of friction and the smaller restitution, as scene.lcm says.
-  s.mu = std::sqrt(friction_[sa] * friction_[sb]);
+  const double friction = std::sqrt(friction_[sa] * friction_[sb]);
   s.bounce = std::min(restitution_[sa], restitution_[sb]);
   s.bounce_vel = settings_.bounce_speed_m_s;
   s.soft_erp = settings_.contact_erp;
   s.soft_cfm = settings_.contact_cfm;
   for (ManifoldPoint& p : c.used()) {
     if (engine_->joined.size() >= kMostPoints) return;
+    s.mu = friction * p.friction;
     // ODE bounds friction by a pyramid; turned so that one of its sides faces the motion to be, it is as wide as the
     // cone. At 45 degrees it would be 41 % too wide.
     Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + fall_m_s_[b] - motions_[a].velocity_at(p.point_m) - fall_m_s_[a];

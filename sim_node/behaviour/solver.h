@@ -11,6 +11,7 @@
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/step_report.h"
+#include "sim_node/collision/friction_maps.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
@@ -86,6 +87,7 @@ class Solver {
   std::unique_ptr<Engine> engine_;          // null when impulses do
   Settings settings_;
   std::vector<double> friction_, restitution_;  // per shape
+  std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
   std::vector<bool> falls_;                     // per body: gravity acts on it
   std::vector<Inert> inert_;

@@ -39,6 +39,7 @@ bool is_sound(const PointPair& p) {
 
 ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees)
     : near_(world, settings.contact_tolerance_m, *(trees = trees ? trees : std::make_shared<MeshTrees>())),
+      friction_(world),
       number_(world.shapes.size(), -1),
       chosen_number_(world.shapes.size(), -1) {
   const MeshContactOptions options = layer_options(settings);
@@ -87,6 +88,9 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
   m.shape_a = pair.shape_a, m.shape_b = pair.shape_b;
   m.body_a = body_of_[a], m.body_b = body_of_[b];
   gaps::choose_points(points_, m);
+  if (friction_.concern(m.shape_a, m.shape_b))
+    friction_.look(friction_.to_body(m.shape_a, near_.pose(m.shape_a)),
+                   friction_.to_body(m.shape_b, near_.pose(m.shape_b)), m);
 }
 
 void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,

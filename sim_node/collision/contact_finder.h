@@ -9,6 +9,7 @@
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/collision/detector.h"
+#include "sim_node/collision/friction_maps.h"
 #include "sim_node/collision/manifold.h"
 #include "sim_node/collision/near_pairs.h"
 #include "sim_node/settings.gen.h"
@@ -39,6 +40,7 @@ class ContactFinder {
   void look(const NearPair& pair, std::vector<Manifold>& out);
 
   NearPairs near_;
+  FrictionMaps friction_;
   std::vector<int> body_of_;                 // per shape
   std::vector<ShapeKind> kinds_;             // per shape
   std::unique_ptr<Detector> gaps_, chosen_;  // chosen_: null when it is gaps

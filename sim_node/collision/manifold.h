@@ -13,6 +13,7 @@ struct ManifoldPoint {
   double depth_m = 0;                                 // positive inside; negative: a gap
   int triangle_a = -1, triangle_b = -1;               // of a mesh; -1: none
   double normal_force_N = 0;                          // once solved, mean over the step
+  double friction = 1;                                // factor on that of the pair, by the maps of its surfaces
 };
 
 // What a step did at a pair of shapes: how they met in it, if they did.

@@ -13,7 +13,7 @@ namespace tactus::sim {
 namespace {
 
 // Hash of the height map in a file, which becomes one of the world's images unless its bytes are among them already.
-std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const std::string& uri) {
+std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const std::string& what, const std::string& uri) {
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
     sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
@@ -24,7 +24,7 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
     if (std::none_of(images.begin(), images.end(), same)) images.push_back(std::move(image));
     return hash;
   } catch (const std::exception& e) {
-    context.refuse(element, "names bump \"" + uri + "\", which cannot be read: " + e.what());
+    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }
 }
 
@@ -39,7 +39,22 @@ void read_bump(LoadContext& context, const sdf::Element& element, Attributes& at
   const std::vector<double> size_m = attributes.required_quantities("bump_size", 2, "m", kMinBumpSize_m, kMaxBumpSize_m);
   material.bump_size_u_m = size_m[0], material.bump_size_v_m = size_m[1];
   material.bump_height_m = attributes.required_quantity("bump_height", "m", kMinBumpHeight_m, kMaxBumpHeight_m);
-  material.bump_asset = image_hash(context, element, uri);
+  material.bump_asset = image_hash(context, element, "bump", uri);
+}
+
+// A picture, the extent of one repetition of it and the factors of black and white: all three or none.
+void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("friction_map")) {
+    for (const char* lonely : {"friction_size", "friction_factors"})
+      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without friction_map: name the picture too");
+    return;
+  }
+  const std::string uri = attributes.required_text("friction_map");
+  const std::vector<double> size_m = attributes.required_quantities("friction_size", 2, "m", kMinBumpSize_m, kMaxBumpSize_m);
+  const std::vector<double> factors = attributes.required_quantities("friction_factors", 2, "1", 0, kMaxFrictionFactor);
+  material.friction_size_u_m = size_m[0], material.friction_size_v_m = size_m[1];
+  material.friction_black = factors[0], material.friction_white = factors[1];
+  material.friction_asset = image_hash(context, element, "friction_map", uri);
 }
 
 void read_material(LoadContext& context, const sdf::Element& element) {
@@ -60,6 +75,7 @@ void read_material(LoadContext& context, const sdf::Element& element) {
       context.refuse(element, std::string("is new and lacks \"") + figure.attribute + "\": give it, or a base to take it from");
   }
   read_bump(context, element, attributes, material);
+  read_friction_map(context, element, attributes, material);
   attributes.done();
   const auto [at, is_new] = context.material_of.try_emplace(name, static_cast<int>(context.world.materials.size()));
   if (is_new)

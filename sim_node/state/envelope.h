@@ -18,7 +18,7 @@
 namespace tactus::sim {
 
 // To be raised with every change of what a state holds: one of another version is refused.
-inline constexpr std::uint64_t kStateVersion = 1;
+inline constexpr std::uint64_t kStateVersion = 2;
 
 std::vector<std::uint8_t> wrap_state(std::span<const std::uint8_t> state, std::uint64_t fingerprint);
 // The state within. Throws BadState with one sentence when the bytes are damaged, of another version or another

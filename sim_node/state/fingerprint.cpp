@@ -55,6 +55,10 @@ std::uint64_t fingerprint(const WorldDef& world, const Settings& settings) {
   for (const material_def_t& m : world.materials)
     w(m.name, double{m.friction_static}, double{m.friction_dynamic}, double{m.youngs_modulus_Pa},
       double{m.poissons_ratio});
+  for (const material_def_t& m : world.materials)
+    if (m.friction_asset != 0)
+      w(m.name, std::int64_t{m.friction_asset}, double{m.friction_size_u_m}, double{m.friction_size_v_m}, double{m.friction_black},
+        double{m.friction_white});
   for (const tool_def_t& t : world.tools) w(t.name, t.radius_m, t.mass_kg, int{t.material});
   for (const auto& [a, b] : world.no_collision) w(a, b);
   for (const auto& field : setting_fields())

@@ -149,7 +149,7 @@ void World::build_rows(std::span<const Manifold> contacts, double h) {
       p.axes.row(0) = at.normal;
       p.axes.row(1) = at.normal.unitOrthogonal();
       p.axes.row(2) = at.normal.cross(Eigen::Vector3d(p.axes.row(1)));
-      p.friction = std::sqrt(sa.friction * sb.friction);
+      p.friction = std::sqrt(sa.friction * sb.friction) * at.friction;
       p.mover_a = g.mover_a + 1, p.mover_b = g.mover_b + 1;
       p.gap_m = -at.depth_m - law_.shell_m;
       p.first_coupling = static_cast<int>(rows_.couplings.size());

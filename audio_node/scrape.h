@@ -1,0 +1,25 @@
+// What crosses into the audio callback of a surface that slides over another: where on it, how fast and how hard.
+#pragma once
+
+#include <cstdint>
+
+#include "lcmtypes/relief.h"
+#include "sync/time.h"
+
+namespace tactus::audio {
+
+// At one instant. Given anew every tick; in between the place goes on with its velocity.
+struct Scrape {
+  std::int64_t id = 0;              // of the contact
+  sync::HostTime at{};              // when that is to be heard
+  const Relief* relief = nullptr;   // outlives the callback; null: only the roughness that every surface has
+  double u = 0, v = 0;              // place in repetitions of the relief
+  double u_per_s = 0, v_per_s = 0;  // and its velocity
+  double along_u = 0, along_v = 0;  // direction of the sliding, unit
+  double travelled_m = 0;           // along the way, m
+  double speed_m_s = 0;
+  float level = 0;            // full scale per unit of slope
+  float left = 0, right = 0;  // loudspeaker gains
+};
+
+}  // namespace tactus::audio

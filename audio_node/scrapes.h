@@ -1,0 +1,42 @@
+// The surfaces that scrape just now. A tip that slides over a profile is pushed up and down by its slope: the
+// sound is the slope of the relief under the contact, at the speed with which it passes, and stronger with the
+// root of the power that friction takes (van den Doel, Kry and Pai 2001, "FoleyAutomatic", section 4.2). Pure.
+#pragma once
+
+#include <array>
+
+#include "audio_node/scrape.h"
+
+namespace tactus::audio {
+
+class Scrapes {
+ public:
+  static constexpr int kMost = 16;  // at a time; more are not heard
+
+  explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
+
+  // One that is to be heard from its instant on. Realtime-safe: yes.
+  void take(const Scrape& scrape);
+  // Adds `frames` frames, left and right interleaved, the first of which is heard at `first`. Realtime-safe: yes.
+  void render(float* mix, int frames, sync::HostTime first);
+  int active() const;
+
+ private:
+  struct Voice {
+    Scrape now;
+    bool on = false;
+    double u = 0, v = 0, travelled_m = 0;  // of the sample that comes next
+    float level = 0;                       // goes to that of `now`
+    sync::HostTime heard{};                // of the newest
+    float last = 0;
+  };
+  void render(Voice& voice, float* mix, int frames, sync::HostTime first) const;
+
+  double rate_Hz_;
+  std::array<Voice, kMost> voices_;
+};
+
+// Slope of the roughness that every surface has, after so much way: the same in every run, mean square 1.
+double roughness(double travelled_m);
+
+}  // namespace tactus::audio
