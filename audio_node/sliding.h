@@ -42,6 +42,9 @@ class Sliding {
   // callback.
   Sliding(const scene_t& scene, const HeightMaps& maps, HeardReliefs& reliefs, const Settings& settings);
 
+  // T_world_listener from the next contacts on; at first the scene's.
+  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+
   // What of the contacts of an instant is to be heard at `at`. dt_s: since the instant before.
   const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::HostTime at, double dt_s);
 

@@ -22,7 +22,8 @@ bool Handover::changed(std::span<const Surface> surfaces) {
 
 Eigen::Vector3d Handover::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
   const bool was_pressed = !last_set_.empty() && !last_.isZero(0);
-  const bool other = changed(surfaces);
+  const bool other = changed(surfaces) || renewed_;
+  renewed_ = false;
   if (last_set_.empty() || !was_pressed || force_N.isZero(0)) {
     remainder_.setZero();
   } else {

@@ -22,6 +22,8 @@ class Handover {
 
   // One tick: the force of the surfaces as they bind now, N; returns the force to render, N. Realtime-safe: yes.
   Eigen::Vector3d step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt);
+  // The next step is one in which other surfaces bind, whatever binds: the rendering has changed.
+  void renew() { renewed_ = true; }
 
  private:
   bool changed(std::span<const Surface> surfaces);
@@ -31,6 +33,7 @@ class Handover {
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();       // rendered, N
   Eigen::Vector3d remainder_ = Eigen::Vector3d::Zero();  // of the old set's force that is still to go, N
   double left_s_ = 0;                                    // until it is gone
+  bool renewed_ = false;
 };
 
 }  // namespace tactus::haptic

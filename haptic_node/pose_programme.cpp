@@ -175,6 +175,41 @@ void BindingSet::drop(std::size_t k) {
   }
 }
 
+bool spread(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
+            std::span<double> shares) {
+  constexpr int kTurns = 8;
+  constexpr double kRounding = 1e-11, kExact = 1e-6;
+  const std::size_t n = std::min({region.size(), weights.size(), shares.size(), kMaxHalfSpaces});
+  std::array<double, kMaxHalfSpaces> weight{}, found{};
+  std::copy_n(weights.begin(), n, weight.begin());
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+    for (std::size_t i = 0; i < n; ++i)
+      if (weight[i] > 0) gram += weight[i] * region[i].normal * region[i].normal.transpose();
+    const double size = gram.trace();
+    if (!(size > 0)) return false;
+    gram.diagonal().array() += kRounding * size;
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> solver(gram);
+    Vector6 lambda = solver.solve(sum);
+    double worst = 0;
+    std::size_t negative = n;
+    Vector6 rest = sum;
+    for (std::size_t i = 0; i < n; ++i) {
+      found[i] = weight[i] > 0 ? weight[i] * region[i].normal.dot(lambda) : 0;
+      rest -= found[i] * region[i].normal;
+      if (found[i] < worst) worst = found[i], negative = i;
+    }
+    if (negative < n) {
+      weight[negative] = 0;
+      continue;
+    }
+    if (!(rest.norm() <= kExact * sum.norm())) return false;
+    std::copy_n(found.begin(), n, shares.begin());
+    return true;
+  }
+  return false;
+}
+
 ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& goal) {
   Problem p;
   p.size = std::min(region.size(), kMaxHalfSpaces);

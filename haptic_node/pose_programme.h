@@ -1,11 +1,12 @@
-// The pose of a rigid tool that is closest to a goal where each of its points that may meet a surface stays on its side:
-// the quadratic programme behind the proxy with six degrees of freedom (Gauss' least constraint: Ortega, Redon and
-// Coquillart 2007). Minimise |q - goal|^2 so that normal_i . q >= offset_i, where q is a small motion: three metres of
-// translation, three of rotation times a lever.
+// The pose of a rigid tool that is closest to a goal where each of its points that may meet a surface stays on its
+// side: the quadratic programme behind the proxy with six degrees of freedom (Gauss' least constraint: Ortega,
+// Redon and Coquillart 2007). Minimise |q - goal|^2 so that normal_i . q >= offset_i, where q is a small motion:
+// three metres of translation, three of rotation times a lever.
 //
-// By the dual active set method (Goldfarb and Idnani 1983), which for this metric is short: from the goal, the half space
-// that is violated most is taken in, and those whose multiplier would turn negative on the way are let go. Each turn
-// takes the pose farther from the goal, so no set comes back: exact, at most six bind, no state from tick to tick.
+// By the dual active set method (Goldfarb and Idnani 1983), which for this metric is short: from the goal, the
+// half space that is violated most is taken in, and those whose multiplier would turn negative on the way are let
+// go. Each turn takes the pose farther from the goal, so no set comes back: exact, at most six bind, no state from
+// tick to tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,10 +52,17 @@ struct ClosestPose {
   // pose = goal + sum of multiplier_i normal_i, all >= 0.
   std::array<double, kMaxHalfSpaces> multiplier{};
   BindingSet binding;
-  // False: the half spaces have no pose in common. Then the squares of the violations of `pose` are least (nearly), the
-  // multipliers are 0 and nothing binds.
+  // False: the half spaces have no pose in common. Then the squares of the violations of `pose` are least
+  // (nearly), the multipliers are 0 and nothing binds.
   bool feasible = true;
 };
+
+// Shares of a sum over normals, sum = sum of share_i normal_i, the least by share_i^2 / weight_i that are not
+// negative (nearly): where more bind than are needed, as at the four feet of a table, what carries how much is not
+// said by the programme. Those of weight 0 get none. False: it could not be done, and `shares` is as it was.
+// Realtime-safe: yes.
+bool spread(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
+            std::span<double> shares);
 
 // At most kMaxHalfSpaces; more are ignored. Realtime-safe: yes.
 ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& goal);

@@ -48,9 +48,8 @@ Eigen::Vector2d Reliefs::slope(const Relief& relief, const MappedPlace& before, 
   return size > def_.steepest ? Eigen::Vector2d(sum * (def_.steepest / size)) : sum;
 }
 
-Vector3d Reliefs::place(const Surface& s, const Vector3d& proxy, double tool_radius_m) {
-  const Vector3d touched = proxy - tool_radius_m * s.normal;
-  return s.mapped.point_body + s.mapped.turn.transpose() * (touched - s.point);
+Vector3d Reliefs::place(const Surface& s, const ToolPlace& tool) {
+  return s.mapped.point_body + s.mapped.turn.transpose() * (tool.touched(s) - s.point);
 }
 
 void Reliefs::raise(Surface& s, const Relief& relief, const Vector3d& place_body, double kept) const {
@@ -79,7 +78,7 @@ void Reliefs::tilt(MappedPlace& m, const Relief& relief, const Vector3d& place_b
   m.known = true;
 }
 
-void Reliefs::look(std::span<Surface> surfaces, const Vector3d& proxy, double tool_radius_m, double dt) {
+void Reliefs::look(std::span<Surface> surfaces, const ToolPlace& tool, double dt) {
   const double most = dt / def_.recovery_time_s;
   height_share_ = towards(height_share_, def_.height ? 1 : 0, most);
   normal_share_ = towards(normal_share_, def_.normal ? 1 : 0, most);
@@ -88,7 +87,7 @@ void Reliefs::look(std::span<Surface> surfaces, const Vector3d& proxy, double to
   for (Surface& s : surfaces) {
     const MaterialMaps* maps = maps_ ? maps_->of(s.mapped.material) : nullptr;
     if (!maps) continue;
-    const Vector3d at = place(s, proxy, tool_radius_m);
+    const Vector3d at = place(s, tool);
     if (maps->friction) {
       const double factor = pair_factor(maps->friction->factor(s.mapped.normal_body, at));
       s.friction_static = factor * s.mapped.friction_static;
@@ -98,13 +97,12 @@ void Reliefs::look(std::span<Surface> surfaces, const Vector3d& proxy, double to
   }
 }
 
-void Reliefs::lean(std::span<Surface> surfaces, const Vector3d& proxy, double tool_radius_m,
-                   std::span<Vector3d> forces_N) const {
+void Reliefs::lean(std::span<Surface> surfaces, const ToolPlace& tool, std::span<Vector3d> forces_N) const {
   for (std::size_t i = 0; i < surfaces.size() && i < forces_N.size(); ++i) {
     Surface& s = surfaces[i];
     const MaterialMaps* maps = maps_ ? maps_->of(s.mapped.material) : nullptr;
     if (!maps || !maps->relief) continue;
-    tilt(s.mapped, *maps->relief, place(s, proxy, tool_radius_m), kept_);
+    tilt(s.mapped, *maps->relief, place(s, tool), kept_);
     if (s.mapped.lean.isZero(0)) continue;
     const double pressed_N = forces_N[i].dot(s.normal);
     forces_N[i] += pressed_N * ((s.normal + s.mapped.lean).normalized() - s.normal);

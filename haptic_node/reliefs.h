@@ -35,17 +35,16 @@ class Reliefs {
   void set_maps(std::shared_ptr<const SurfaceMaps> maps);
   void change(const ReliefDef& def) { def_ = def; }
 
-  // Before the proxy moves: raises each surface and sets its friction as its maps say where the tool, of that
-  // radius, touches it. Realtime-safe: yes.
-  void look(std::span<Surface> surfaces, const Eigen::Vector3d& proxy, double tool_radius_m, double dt);
+  // Before the proxy moves: raises each surface and sets its friction as its maps say where the tool
+  // touches it. Realtime-safe: yes.
+  void look(std::span<Surface> surfaces, const ToolPlace& tool, double dt);
   // When it has: turns the part of each force that is along its surface's normal, as the map says where the tool
   // is now. Realtime-safe: yes.
-  void lean(std::span<Surface> surfaces, const Eigen::Vector3d& proxy, double tool_radius_m,
-            std::span<Eigen::Vector3d> forces_N) const;
+  void lean(std::span<Surface> surfaces, const ToolPlace& tool, std::span<Eigen::Vector3d> forces_N) const;
 
  private:
   // Where it is touched, in the frame of its body, m.
-  static Eigen::Vector3d place(const Surface& s, const Eigen::Vector3d& proxy, double tool_radius_m);
+  static Eigen::Vector3d place(const Surface& s, const ToolPlace& tool);
   void raise(Surface& s, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
   void tilt(MappedPlace& m, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
   Eigen::Vector2d slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const;

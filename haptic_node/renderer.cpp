@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_node/turns.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
@@ -38,14 +39,16 @@ TransientShape transient_shape(const Settings& s) {
 Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety)
     : tool_(tool),
       tool_body_(scene.tools[static_cast<std::size_t>(tool)].body),
-      radius_m_(scene.tools[static_cast<std::size_t>(tool)].radius_m),
       settings_(settings),
       coupling_(coupling_limits(settings)),
       period_s_(1 / settings.rate_Hz),
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
-      surfaces_(radius_m_, surface_limits(settings)),
+      surfaces_(skin_m(scene.tools[static_cast<std::size_t>(tool)]), surface_limits(settings)),
       reliefs_(reliefs_of(settings)),
+      rendering_(scene.tools[static_cast<std::size_t>(tool)], settings),
       handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
+      torque_handover_(settings.recovery_time_s,
+                       settings.recovery_speed_m_s * settings.stiffness_limit_N_m * rendering_.lever_m()),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
@@ -61,6 +64,10 @@ void Renderer::change(const Settings& settings) {
   settings_ = settings;
   transients_.change(transient_shape(settings));
   reliefs_.change(reliefs_of(settings));
+  if (rendering_.change(settings)) {
+    handover_.renew();
+    torque_handover_.renew();
+  }
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -69,19 +76,25 @@ sync::Nanoseconds Renderer::uncertainty() const {
 
 void Renderer::take_device(const TickInput& in) {
   DeviceState device = in.device;
-  if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite()) {
+  if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
+      !device.spin.allFinite()) {
     device = device_;
     device.velocity.setZero();
+    device.spin.setZero();
   }
   if (!begun_) {
     begun_ = true;
     last_ = in.now - sync::from_seconds(period_s_);
     device_ = device;
     device_share_ = device.lost ? 0 : 1;
-    proxy_.reset(device.position);
+    rendering_.reset(device);
   }
-  if (device.lost) device.velocity.setZero();
+  if (device.lost) {
+    device.velocity.setZero();
+    device.spin.setZero();
+  }
   moved_ = device.position - device_.position;
+  turned_ = turn_between(device_.orientation, device.orientation);
   device_ = device;
 }
 
@@ -93,17 +106,19 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   if (silent) {
     // Whatever comes after the loss is new.
     surfaces_.clear();
-    proxy_.reset(device_.position);
+    rendering_.reset(device_);
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   loop_delay_.pass(age_s, dt);
   if (in.fresh) loop_delay_.observe(age_s);
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
-  surfaces_.step(in.fresh, sim_now, proxy_.position(), dt, in.planes);
+  if (in.fresh) rendering_.renew(device_);
+  surfaces_.turn(rendering_.turned(device_));
+  surfaces_.step(in.fresh, sim_now, rendering_.position(), dt, in.planes);
 }
 
-Eigen::Vector3d Renderer::constraint_force(double dt) {
+Wrench Renderer::constraint_wrench(double dt) {
   const double delay_s = loop_delay_.value_s(step_s_, period_s_);
   const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
   for (Surface& s : surfaces_.list()) {
@@ -113,14 +128,13 @@ Eigen::Vector3d Renderer::constraint_force(double dt) {
     s.coupling_stiffness_N_m += follow * (g.stiffness_N_m - s.coupling_stiffness_N_m);
     s.coupling_damping_N_s_m = g.damping_N_s_m;
   }
-  reliefs_.look(surfaces_.list(), proxy_.position(), radius_m_, dt);
-  proxy_.step(surfaces_.list(), device_.position, dt);
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
-  coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
-  reliefs_.lean(surfaces_.list(), proxy_.position(), radius_m_, forces_);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& f : forces_) sum += f;
-  return handover_.step(surfaces_.list(), sum, dt);
+  reliefs_.look(surfaces_.list(), rendering_.place(), dt);
+  rendering_.step(surfaces_.list(), device_, dt, forces_);
+  reliefs_.lean(surfaces_.list(), rendering_.place(), forces_);
+  const Wrench sum = rendering_.sum(surfaces_.list(), forces_);
+  return {handover_.step(surfaces_.list(), sum.force_N, dt),
+          torque_handover_.step(surfaces_.list(), sum.torque_N_m, dt)};
 }
 
 Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
@@ -151,25 +165,17 @@ void Renderer::take_events(const TickInput& in) {
   }
 }
 
-// What is left of the constraint force after all limits, split over the surfaces: each keeps its direction as far
-// as the sum does, the rest goes by size. The bodies then feel exactly what the hand feels.
-void Renderer::split(const Eigen::Vector3d& felt_constraint_N) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double sizes = 0;
-  for (const Eigen::Vector3d& f : forces_) {
-    sum += f;
-    sizes += f.norm();
-  }
-  felt_.clear();
-  if (sizes <= 0) return;
-  const double square = sum.squaredNorm();
-  const double kept = square > 0 ? std::clamp(felt_constraint_N.dot(sum) / square, 0.0, 1.0) : 0.0;
-  const Eigen::Vector3d rest = felt_constraint_N - kept * sum;
+// What is left of the constraint force after all limits, split over the surfaces: the bodies then feel exactly
+// what the hand feels.
+void Renderer::split(const Wrench& felt_constraint) {
   const auto list = surfaces_.list();
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    felt_.push_back({list[i].contact_id, list[i].body, proxy_.position() - radius_m_ * list[i].normal,
-                     kept * forces_[i] + forces_[i].norm() / sizes * rest});
-  }
+  const bool any = std::any_of(forces_.begin(), forces_.end(), [](const auto& f) { return f.norm() > 0; });
+  felt_.clear();
+  if (!any) return;
+  rendering_.share(felt_constraint, list, forces_);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    felt_.push_back(
+        {list[i].contact_id, list[i].body, rendering_.position() + rendering_.arm(list[i]), forces_[i]});
 }
 
 sync::How Renderer::how(const TickInput& in) const {
@@ -185,11 +191,15 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   tool_state_t& m = out_.state;
   m.header.sim_time_ns = in.map ? std::max<std::int64_t>(0, sync::to_ns(in.map->to_sim(in.now))) : -1;
   m.device.position_m = to_vec3(device_.position);
-  m.device.orientation = m.proxy.orientation = to_quat(device_.orientation);
-  m.proxy.position_m = to_vec3(proxy_.position());
+  m.device.orientation = to_quat(device_.orientation);
+  m.proxy.orientation = to_quat(rendering_.orientation());
+  m.proxy.position_m = to_vec3(rendering_.position());
   m.device_velocity_m_s = to_vec3f(device_.velocity);
-  m.proxy_velocity_m_s = to_vec3f(proxy_.velocity());
+  m.proxy_velocity_m_s = to_vec3f(rendering_.velocity());
+  m.device_spin_rad_s = to_vec3f(device_.spin);
+  m.proxy_spin_rad_s = to_vec3f(rendering_.spin());
   m.force_N = to_vec3f(out_.force_N);
+  m.torque_N_m = to_vec3f(out_.torque_N_m);
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
   m.touch_how = static_cast<std::int8_t>(how(in));
@@ -209,15 +219,17 @@ TickOutput& Renderer::step(const TickInput& in) {
 
   take_touch(in, dt);
   take_events(in);
-  const Eigen::Vector3d constraint = constraint_force(dt);
+  const Wrench constraint = constraint_wrench(dt);
   const bool felt = share() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = stepped(share() * (constraint + transient), in.force_step_N);
-  out_.force_N = safety_.limit(wanted, moved_, dt);
+  const Eigen::Vector3d wanted = stepped(share() * (constraint.force_N + transient), in.force_step_N);
+  const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
+  out_.force_N = limited.force_N;
+  out_.torque_N_m = limited.torque_N_m;
   // The transient takes its part of what the limits left.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
   const Eigen::Vector3d felt_transient = left * share() * transient;
-  split(out_.force_N - felt_transient);
+  split({out_.force_N - felt_transient, out_.torque_N_m});
   book_.step(in.now, dt, felt_);
   owed_.step(in.now, book_, uncertainty(), out_.reports);
   fill_state(in, felt_transient);

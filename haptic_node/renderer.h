@@ -16,8 +16,8 @@
 #include "haptic_node/devices/device.h"
 #include "haptic_node/handover.h"
 #include "haptic_node/owed_begins.h"
-#include "haptic_node/proxy.h"
 #include "haptic_node/reliefs.h"
+#include "haptic_node/rendering.h"
 #include "haptic_node/safety.h"
 #include "haptic_node/settings.gen.h"
 #include "haptic_node/surfaces.h"
@@ -49,7 +49,8 @@ struct TickInput {
 
 struct TickOutput {
   tool_state_t state{};
-  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();  // on the hand, world: command it now
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the hand, world: command it now
+  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the same
   std::vector<presentation_t> reports;
 };
 
@@ -80,15 +81,14 @@ class Renderer {
   void take_touch(const TickInput& in, double dt);
   void take_events(const TickInput& in);
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
-  Eigen::Vector3d constraint_force(double dt);
-  void split(const Eigen::Vector3d& felt_constraint_N);
+  Wrench constraint_wrench(double dt);
+  void split(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
   sync::How how(const TickInput& in) const;
   sync::Nanoseconds uncertainty() const;
 
   int tool_;
   std::int32_t tool_body_;
-  double radius_m_;
   std::vector<double> youngs_modulus_Pa_;
   Settings settings_;
   CouplingLimits coupling_;
@@ -96,8 +96,8 @@ class Renderer {
 
   Surfaces surfaces_;
   Reliefs reliefs_;
-  Proxy proxy_;
-  Handover handover_;
+  Rendering rendering_;
+  Handover handover_, torque_handover_;
   LoopDelay loop_delay_;
   Transients transients_;
   Safety& safety_;
@@ -109,7 +109,7 @@ class Renderer {
   sync::HostTime last_{};
   DeviceState device_;
   double device_share_ = 1;
-  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();  // of the device, since the last tick
   std::optional<sync::SimTime> model_time_;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
   std::vector<FeltForce> felt_;          // of each surface, as commanded

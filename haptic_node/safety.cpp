@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "haptic_node/devices/device.h"
 
@@ -11,6 +12,8 @@ namespace {
 // Faster than a hand can be (a pitcher's reaches 40 m/s): the device jumped, as a replayed motion may; no work is
 // done.
 constexpr double kFastest_m_s = 40;
+// The same of turning: a turn a tenth of a second (design: twice what a wrist can).
+constexpr double kFastest_rad_s = 63;
 
 // A late tick is not paid back by a jump of the force: it counts as two ticks of 1 kHz at most.
 constexpr double kLongestSlew_s = 0.002;
@@ -23,16 +26,21 @@ Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
 }  // namespace
 
 SafetyLimits safety_limits(const Settings& s) {
-  return {s.force_limit_N, s.slew_limit_N_s, s.energy_limit_J, s.power_limit_W};
+  return {s.force_limit_N, s.slew_limit_N_s,  s.energy_limit_J,
+          s.power_limit_W, s.torque_limit_Nm, s.torque_slew_limit_Nm_s};
 }
 
 void Safety::begin_tick(sync::HostTime now) {
-  if (now - renewed_ > Device::kWatchdog) last_.setZero();
+  if (now - renewed_ > Device::kWatchdog) {
+    last_.setZero();
+    last_torque_.setZero();
+  }
   renewed_ = now;
 }
 
 Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
-  const double work_J = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt ? last_.dot(moved_m) : 0;
+  const bool leaps = !moved_m.allFinite() || moved_m.norm() > kFastest_m_s * dt;
+  const double work_J = (leaps ? 0 : last_.dot(moved_m)) + std::exchange(turn_work_J_, 0.0);
   energy_J_ += work_J;
   // A debt is paid off within a second at most: one bad instant does not silence touch for long.
   tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
@@ -42,6 +50,24 @@ Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vect
   const Eigen::Vector3d allowed = left * clamped(wanted, limits_.force_N);
   last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));
   return last_;
+}
+
+Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
+                     double dt) {
+  const bool leaps = !turned_rad.allFinite() || turned_rad.norm() > kFastest_rad_s * dt;
+  turn_work_J_ = leaps ? 0 : last_torque_.dot(turned_rad);
+  Wrench w = wanted;
+  if (!w.torque_N_m.allFinite()) w.torque_N_m.setZero();
+  if (!w.force_N.allFinite()) w = {};
+  const double force = w.force_N.norm(), torque = w.torque_N_m.norm();
+  if (force > limits_.force_N) w.torque_N_m *= limits_.force_N / force;
+  if (torque > limits_.torque_N_m) w.force_N *= limits_.torque_N_m / torque;
+  w.force_N = limit(w.force_N, moved_m, dt);
+  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = left * clamped(w.torque_N_m, limits_.torque_N_m);
+  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kLongestSlew_s));
+  w.torque_N_m = last_torque_;
+  return w;
 }
 
 double Fade::step(sync::HostTime now, std::optional<sync::HostTime> newest, double dt) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "haptic_node/devices/device.h"
 #include "haptic_node/settings.gen.h"
 #include "sync/time.h"
 
@@ -16,6 +17,8 @@ struct SafetyLimits {
   double slew_N_s = 2000;
   double energy_J = 0.49;
   double power_W = 1;
+  double torque_N_m = 0.3;
+  double torque_slew_N_m_s = 75;
 };
 SafetyLimits safety_limits(const Settings& settings);
 
@@ -35,6 +38,10 @@ class Safety {
   // that was returned then. A wanted force that is not finite counts as none. Realtime-safe: yes.
   Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
 
+  // The same of force and torque together: a limit of size that one reaches holds back both, so that what is felt
+  // comes from where it did. turned_rad: how far the device turned.
+  Wrench limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad, double dt);
+
   // Energy given to the hand since the beginning, J.
   double energy_J() const { return energy_J_; }
   // What the hand may still be given at once, J.
@@ -44,7 +51,8 @@ class Safety {
   SafetyLimits limits_;
   double tank_J_;
   double energy_J_ = 0;
-  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), last_torque_ = Eigen::Vector3d::Zero();
+  double turn_work_J_ = 0;  // of the torque, since the last tick
   sync::HostTime renewed_{};
 };
 

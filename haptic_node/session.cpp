@@ -17,7 +17,8 @@ std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, co
   const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
   const auto& body = scene.bodies[static_cast<std::size_t>(tool.body)];
   const DeviceSpec spec = given ? *given : tool.device.empty() ? DeviceSpec{} : parse_device_spec(tool.device);
-  return make_device(spec, tool, to_eigen(body.pose.position_m), choice.settings);
+  return make_device(spec, tool, to_eigen(body.pose.position_m), choice.settings,
+                     to_eigen(body.pose.orientation).normalized());
 }
 
 Session::Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, sync::OwnClock own,
@@ -73,7 +74,7 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   if (in.map) due = events_.take_events(sync::SimTime::max());
   in.events = due;
   TickOutput& out = renderer_.step(in);
-  device_->write(out.force_N);
+  device_->write(Wrench{out.force_N, out.torque_N_m});
   return out;
 }
 

@@ -49,8 +49,8 @@ Surfaces::Told Surfaces::predict(const Surface& s) const {
   return told;
 }
 
-double Surfaces::true_height(const Told& told, const Eigen::Vector3d& proxy) const {
-  return told.normal.dot(proxy - told.point) - radius_m_;
+double Surfaces::true_height(const Told& told, const Eigen::Vector3d& place) const {
+  return told.normal.dot(place - told.point) - radius_m_;
 }
 
 void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy,
@@ -59,7 +59,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   const bool is_new = known == nullptr;
   Surface& s = is_new ? list_.emplace_back() : *known;
   // Where the proxy is above the plane as rendered so far, had it only moved as predicted.
-  const double rendered = is_new ? 0 : true_height(predict(s), proxy) + s.lag_m_;
+  const double rendered = is_new ? 0 : true_height(predict(s), place_of(s.tool_point, proxy)) + s.lag_m_;
   s.contact_id = plane.contact_id;
   s.body = plane.body;
   s.effective_mass_kg = plane.effective_mass_kg;
@@ -69,6 +69,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   s.friction_dynamic = std::min(plane.friction_dynamic, plane.friction_static);
   s.velocity = clamped(to_eigen(plane.velocity_m_s), limits_.surface_speed_limit_m_s);
   s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kLargestSpin_rad_s);
+  s.tool_point = to_eigen(plane.tool_point_m);
   s.told_point_ = to_eigen(plane.point_m);
   s.told_normal_ = to_eigen(plane.normal).normalized();
   s.mapped.take(plane, s.told_normal_);
@@ -78,7 +79,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   const Told told = predict(s);
   if (is_new) s.normal = told.normal;
   // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
-  const double height = true_height(told, proxy);
+  const double height = true_height(told, place_of(s.tool_point, proxy));
   // What yields already goes on yielding, also in front of the hand, between walls that leave it no room.
   const double pushes = std::max(0.0, -height);
   s.lag_m_ = s.depth_m > 0 ? rendered - height : is_new ? pushes : std::clamp(rendered - height, 0.0, pushes);
@@ -112,9 +113,11 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
     const touch_plane_t& p = model.planes[i];
     const Surface* known = find(p.contact_id, i);
     const bool pressed = known && known->depth_m > 0;
-    ranks[i] = {
-        !pressed,
-        pressed ? -known->depth_m : true_height({to_eigen(p.point_m), to_eigen(p.normal).normalized()}, proxy), i};
+    ranks[i] = {!pressed,
+                pressed ? -known->depth_m
+                        : true_height({to_eigen(p.point_m), to_eigen(p.normal).normalized()},
+                                      place_of(to_eigen(p.tool_point_m), proxy)),
+                i};
   }
   const std::size_t count = std::min({offered, at_most, kMaxPresent});
   std::partial_sort(ranks.begin(), ranks.begin() + count, ranks.begin() + offered);
@@ -157,7 +160,7 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
   }
   s.normal = turned(s.normal, told.normal, s.turn_rad_s_ * dt);
   // While it turns it pivots about the place under the proxy, whose height is what it should be.
-  s.offset_m = s.normal.dot(proxy) - (true_height(told, proxy) + s.lag_m_);
+  s.offset_m = s.normal.dot(proxy) - (true_height(told, place_of(s.tool_point, proxy)) + s.lag_m_);
   s.point = told.point;
   if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());
 }

@@ -34,13 +34,18 @@ struct Surface {
   double friction_static = 0, friction_dynamic = 0;
   // As rendered now.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double offset_m = 0;                              // the tool's centre stays at normal . x >= offset
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of the surface, m, world
+  double offset_m = 0;  // the tool's centre stays at normal . x >= offset, as it is turned
+  Eigen::Vector3d tool_point = Eigen::Vector3d::Zero();  // that meets it, in the tool's frame, m; of a ball 0
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       // of the surface, m, world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
   // How deep the device was pressed under it in the last tick, m; set by whoever solves for the proxy.
   double depth_m = 0;
   MappedPlace mapped;  // in the maps of its material
+  // Of a rigid tool, kept from tick to tick, m: the stretch of friction, what a contact that holds is still to be
+  // drawn back by, and whether it slips.
+  Eigen::Vector3d grip = Eigen::Vector3d::Zero(), owed = Eigen::Vector3d::Zero();
+  bool slips = false;
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
@@ -62,6 +67,17 @@ struct Surface {
   double leaves_in_s_ = -1;   // time left of one that the model has left out; negative: present
 };
 
+// Where the tool is: what meets a surface is a point of it, or its centre, which a skin keeps off.
+struct ToolPlace {
+  Eigen::Vector3d position;  // m, world
+  Eigen::Quaterniond orientation;
+  double skin_m;
+  // Where it meets a surface, m, world.
+  Eigen::Vector3d touched(const Surface& s) const {
+    return position + orientation * s.tool_point - skin_m * s.normal;
+  }
+};
+
 class Surfaces {
  public:
   static constexpr std::size_t kMaxPresent = 50;
@@ -77,6 +93,8 @@ class Surfaces {
   void step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
             std::size_t at_most = kMaxPresent);
   void clear() { list_.clear(); }
+  // How the tool is turned from now on; without word, not at all.
+  void turn(const Eigen::Quaterniond& orientation) { orientation_ = orientation; }
 
   // At most kMaxHalfSpaces.
   std::span<Surface> list() { return list_; }
@@ -90,7 +108,11 @@ class Surfaces {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // since it was told
   };
   Told predict(const Surface& s) const;
-  double true_height(const Told& told, const Eigen::Vector3d& proxy) const;
+  // place: of the tool, what meets the surface, or its centre where a skin keeps that off.
+  double true_height(const Told& told, const Eigen::Vector3d& place) const;
+  Eigen::Vector3d place_of(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
+    return proxy + orientation_ * tool_point;
+  }
   std::bitset<kMaxOffered> choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
                                   std::size_t at_most) const;
   void take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most);
@@ -101,6 +123,7 @@ class Surfaces {
 
   double radius_m_;
   SurfaceLimits limits_;
+  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
   std::optional<sync::SimTime> now_;
   std::vector<Surface> list_;
 };

@@ -15,10 +15,17 @@ struct DeviceState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, world
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();      // rad/s, world
   std::int32_t buttons = 0;                            // bit 0 first
   // It does not answer, or nonsense: position and orientation are the last that were known, and no force may be
   // felt.
   bool lost = false;
+};
+
+// On the hand, N and N m, in the axes of the world. The torque is about the position of the device.
+struct Wrench {
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();
 };
 
 class Device {
@@ -32,8 +39,9 @@ class Device {
   virtual void begin(sync::HostTime) {}
   // Where the hand is at `now`. Call once a tick, then write once.
   virtual DeviceState read(sync::HostTime now) = 0;
-  // Force on the hand, N, world frame, held until the next write.
-  virtual void write(const Eigen::Vector3d& force_N) = 0;
+  // What the hand is to feel, held until the next write. A device without torque leaves that out.
+  virtual void write(const Wrench& wrench) = 0;
+  void write(const Eigen::Vector3d& force_N) { write(Wrench{force_N, Eigen::Vector3d::Zero()}); }
 
   // What programs on the bus say of devices that they drive; it is for the one of that name.
   virtual void hear(const device_state_t&, sync::HostTime /*arrival*/) {}

@@ -45,16 +45,21 @@ DeviceState External::read(sync::HostTime now) {
   believed_.lost = lost(now);
   if (believed_.lost) {
     believed_.velocity.setZero();
+    believed_.spin.setZero();
     believed_.buttons = 0;
     return believed_;
   }
   believed_.position = offset_m_ + to_eigen(newest_->pose.position_m);
   believed_.orientation = to_eigen(newest_->pose.orientation).normalized();
   believed_.velocity = to_eigen(newest_->velocity_m_s);
+  believed_.spin = to_eigen(newest_->spin_rad_s);
   believed_.buttons = newest_->buttons;
   return believed_;
 }
 
-void External::write(const Eigen::Vector3d& force_N) { force_.force_N = to_vec3f(force_N); }
+void External::write(const Wrench& wrench) {
+  force_.force_N = to_vec3f(wrench.force_N);
+  force_.torque_N_m = to_vec3f(wrench.torque_N_m);
+}
 
 }  // namespace tactus::haptic

@@ -24,7 +24,8 @@ class External : public Device {
   // leaps, are contradictions.
   void hear(const device_state_t& state, sync::HostTime arrival) override;
   DeviceState read(sync::HostTime now) override;
-  void write(const Eigen::Vector3d& force_N) override;
+  using Device::write;
+  void write(const Wrench& wrench) override;
   device_force_t* tell() override { return &force_; }
 
  private:

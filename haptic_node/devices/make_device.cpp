@@ -21,7 +21,7 @@ void close_path(std::vector<double>& times, std::vector<Eigen::Vector3d>& points
 }
 
 std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
-                                  const Settings& s) {
+                                  const Settings& s, const Eigen::Quaterniond& rest) {
   std::vector<double> times;
   std::vector<Eigen::Vector3d> points;
   if (spec.motion) {
@@ -44,7 +44,9 @@ std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const tool_def_t& tool
   if (loop) close_path(times, points, s.path_return_speed_m_s);
   return std::make_unique<VirtualHand>(
       MonotoneCubic(std::move(times), std::move(points), MonotoneCubic::Ends::kRest), loop,
-      HandImpedance{s.hand_mass_kg, s.hand_damping_Ns_m, s.hand_stiffness_N_m});
+      HandImpedance{s.hand_mass_kg, s.hand_damping_Ns_m, s.hand_stiffness_N_m, s.hand_inertia_kgm2,
+                    s.hand_turn_damping_Nms_rad, s.hand_turn_stiffness_Nm_rad},
+      rest);
 }
 
 StringFrame frame_of(const DeviceSpec& spec) {
@@ -68,11 +70,11 @@ DeviceSpec parse_device_spec(const std::string& spec) {
 }
 
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
-                                    const Settings& settings) {
+                                    const Settings& settings, const Eigen::Quaterniond& rest) {
   if (spec.kind == DeviceSpec::Kind::kPlayback) return std::make_unique<Playback>(*spec.motion, spec.placement);
   if (spec.kind == DeviceSpec::Kind::kExternal)
     return std::make_unique<External>(spec.name, spec.placement.offset_m, settings.device_stale_after_s);
-  auto hand = make_hand(spec, tool, rest_m, settings);
+  auto hand = make_hand(spec, tool, rest_m, settings, rest);
   if (spec.kind == DeviceSpec::Kind::kVirtualHand) return hand;
   const Eigen::Vector3d& origin_m = spec.placement.offset_m;
   return std::make_unique<Spidar>(*spec.frame, origin_m,

@@ -23,8 +23,10 @@ struct DeviceSpec : ToolDevice {
 DeviceSpec parse_device_spec(const std::string& spec);
 
 // A virtual hand without a file, and the hand that holds a simulated string device, follows the waypoints of the
-// tool; without waypoints it rests at rest_m. Throws std::runtime_error when the waypoints' times do not increase.
+// tool; without waypoints it rests at rest_m; it is held as `rest` is turned. Throws std::runtime_error when the
+// waypoints' times do not increase.
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& tool, const Eigen::Vector3d& rest_m,
-                                    const Settings& settings);
+                                    const Settings& settings,
+                                    const Eigen::Quaterniond& rest = Eigen::Quaterniond::Identity());
 
 }  // namespace tactus::haptic

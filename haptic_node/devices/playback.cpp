@@ -1,5 +1,7 @@
 #include "haptic_node/devices/playback.h"
 
+#include "haptic_node/turns.h"
+
 namespace tactus::haptic {
 
 Playback::Playback(Motion motion, const Placement& placement)
@@ -16,6 +18,10 @@ DeviceState Playback::read(sync::HostTime now) {
   state.velocity = placement_.scale * placement_.rate * at.velocity;
   state.orientation =
       i + 1 < orientations_.size() ? orientations_[i].slerp(s, orientations_[i + 1]) : orientations_[i];
+  if (last_ && now > last_->first)
+    spin_ = turn_between(last_->second, state.orientation) / sync::to_seconds(now - last_->first);
+  if (!last_ || now > last_->first) last_.emplace(now, state.orientation);
+  state.spin = spin_;
   return state;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "haptic_node/turns.h"
+
 namespace tactus::haptic {
 namespace {
 
@@ -19,10 +21,26 @@ Propagator propagator(double a, double w2, double t) {
   return {decay, std::cos(r * t), std::sin(r * t) / r};
 }
 
+struct Oscillator {
+  double mass, damping, stiffness;
+};
+
+// Exact for a constant load and a target that moves evenly from `from` to `to`: no step size makes it unstable.
+void advance(const Oscillator& o, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+             const Eigen::Vector3d& load, double dt, Eigen::Vector3d& place, Eigen::Vector3d& rate) {
+  const double a = o.damping / (2 * o.mass), w2 = o.stiffness / o.mass;
+  const Eigen::Vector3d drift = (to - from) / dt;
+  const Eigen::Vector3d rest = load / o.stiffness;  // offset from the target at which nothing moves
+  const Eigen::Vector3d e = place - from - rest, de = rate - drift;
+  const auto [decay, c, s] = propagator(a, w2, dt);
+  place = to + rest + decay * ((c + s * a) * e + s * de);
+  rate = drift + decay * (-s * w2 * e + (c - s * a) * de);
+}
+
 }  // namespace
 
-VirtualHand::VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& hand)
-    : path_(std::move(path)), loop_(loop), hand_(hand) {}
+VirtualHand::VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& hand, const Eigen::Quaterniond& rest)
+    : path_(std::move(path)), loop_(loop), hand_(hand), rest_(rest) {}
 
 MonotoneCubic::At VirtualHand::target(sync::HostTime now) const {
   double t = begin_ && now > *begin_ ? sync::to_seconds(now - *begin_) : 0;
@@ -31,16 +49,12 @@ MonotoneCubic::At VirtualHand::target(sync::HostTime now) const {
   return path_.at(t);
 }
 
-// Exact for a constant force and a target that moves evenly from target_ to `to`: no step size makes it unstable.
-void VirtualHand::advance(const MonotoneCubic::At& to, const Eigen::Vector3d& force_N, double dt) {
+void VirtualHand::advance(const MonotoneCubic::At& to, double dt) {
   if (dt <= 0) return;
-  const double a = hand_.damping_N_s_m / (2 * hand_.mass_kg), w2 = hand_.stiffness_N_m / hand_.mass_kg;
-  const Eigen::Vector3d drift = (to.position - target_.position) / dt;
-  const Eigen::Vector3d rest = force_N / hand_.stiffness_N_m;  // offset from the target at which nothing moves
-  const Eigen::Vector3d e = position_ - target_.position - rest, de = velocity_ - drift;
-  const auto [decay, c, s] = propagator(a, w2, dt);
-  position_ = to.position + rest + decay * ((c + s * a) * e + s * de);
-  velocity_ = drift + decay * (-s * w2 * e + (c - s * a) * de);
+  haptic::advance({hand_.mass_kg, hand_.damping_N_s_m, hand_.stiffness_N_m}, target_.position, to.position,
+                  felt_.force_N, dt, position_, velocity_);
+  haptic::advance({hand_.inertia_kg_m2, hand_.turn_damping_N_m_s, hand_.turn_stiffness_N_m},
+                  Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), felt_.torque_N_m, dt, turn_, spin_);
   target_ = to;
 }
 
@@ -53,17 +67,19 @@ DeviceState VirtualHand::read(sync::HostTime now) {
   }
   const sync::HostTime released = last_ + kWatchdog;
   if (now > released) {
-    advance(target(released), force_, sync::to_seconds(kWatchdog));
-    force_.setZero();
+    advance(target(released), sync::to_seconds(kWatchdog));
+    felt_ = {};
     last_ = released;
   }
   if (now > last_) {
-    advance(target(now), force_, sync::to_seconds(now - last_));
+    advance(target(now), sync::to_seconds(now - last_));
     last_ = now;
   }
   DeviceState state;
   state.position = position_;
   state.velocity = velocity_;
+  state.orientation = turned_by(turn_, rest_);
+  state.spin = spin_;
   return state;
 }
 

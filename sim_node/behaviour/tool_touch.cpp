@@ -6,6 +6,7 @@
 #include "lcmtypes/bump.h"
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
+#include "sim_node/scene/tool_shape.h"
 
 namespace tactus::sim {
 
@@ -16,10 +17,14 @@ namespace {
 
 // A plane of the same shape belongs to the surface followed before when its normal has turned by less than this a step.
 const double kSameSurface = std::cos(60 * M_PI / 180);
+// And of a tool with a shape, when it meets a place of the tool not further than this from the one before. Design: what
+// rolls moves by less in a step, and the corners of what a hand holds lie further apart.
+constexpr double kSameFeature_m = 0.004;
 // A surface out of reach is forgotten after this, unless it is touched.
 constexpr sync::Nanoseconds kForget{50'000'000};
 // A begin is not dated back further than a message can be late before it counts as lost.
 constexpr sync::Nanoseconds kLatestNews{20'000'000};
+constexpr std::size_t kMostPlanes = 49;
 constexpr double kFelt_N = 1e-4;  // below, a force is rounding
 // Of places in the world, m.
 constexpr double kRounding_m = 1e-9;
@@ -33,7 +38,9 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   const tool_def_t& def = world.tools[static_cast<std::size_t>(tool)];
   tool_body_ = def.body;
   tool_material_ = def.material;
-  radius_m_ = def.radius_m;
+  const bool shaped = is_shaped(def);
+  radius_m_ = shaped ? 0 : def.radius_m;
+  bound_m_ = def.radius_m;
   tool_mass_kg_ = def.mass_kg;
   double own_compliance = 1 / settings.default_youngs_modulus_Pa;
   if (tool_material_ >= 0) {
@@ -43,12 +50,14 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
   const bool points = only_points(def, world.lights);
+  if (shaped && !points) shape_.emplace(world, tool, settings, trees);
   for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
     const bool meshed = s.kind == ShapeKind::kMesh || s.kind == ShapeKind::kHeightfield;
     ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
+    if (shape_) shape_->add(s, world);
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
                          std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
                          0});
@@ -74,14 +83,19 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   model_.tool = points ? -1 : tool;
   model_.pages = 1;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
+  if (shaped)
+    proxy_turn_ = device_turn_ = Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(tool_body_)].pose.linear()).normalized();
 }
 
-void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surface) {
+void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surface, const Vector3d& tool_point_m) {
   Near* best = nullptr;
-  double alike = kSameSurface;
+  double alike = shape_ ? -1 : kSameSurface;
   for (Near& n : near_) {
     const double cosine = n.plane.normal.dot(plane.normal);
-    if (n.surface == surface && n.seen != now && cosine > alike) best = &n, alike = cosine;
+    if (n.surface != surface || n.seen == now || cosine <= kSameSurface) continue;
+    // Of a shape the same place of the tool; the nearer, the liker.
+    const double off = shape_ ? (n.tool_point_m - tool_point_m).norm() / kSameFeature_m : 0;
+    if (off < 1 && cosine - off > alike) best = &n, alike = cosine - off;
   }
   if (best == nullptr) {
     best = &near_.emplace_back();
@@ -89,8 +103,21 @@ void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surfa
     best->surface = surface;
   }
   best->plane = plane;
+  best->tool_point_m = tool_point_m;
   best->seen = now;
   best->gap_m = plane.distance_m - radius_m_;
+}
+
+// Of a tool with a shape: all places that may meet the surface.
+void ToolTouch::meet(SimTime now, std::size_t surface, const BodyMotion& body, double reach_m) {
+  const auto pose = [](const Vector3d& position, const Eigen::Quaterniond& orientation) {
+    Eigen::Isometry3d p(orientation);
+    p.translation() = position;
+    return p;
+  };
+  shape_->query(surface, pose(body.position_m, body.orientation) * surfaces_[surface].traits.in_body,
+                pose(proxy_, proxy_turn_), reach_m, met_);
+  for (const ToolMeeting& m : met_) follow(now, m.plane, surface, m.tool_point_m);
 }
 
 void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
@@ -117,12 +144,16 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
     const auto i = static_cast<std::size_t>(candidate);
     const Surface& s = surfaces_[i];
     const BodyMotion& body = bodies[static_cast<std::size_t>(s.traits.body)];
+    if (shape_) {
+      meet(now, i, body, reach - bound_m_);
+      continue;
+    }
     const Vector3d place = s.from_body * body.to_body(proxy_);
     s.shape.query(place, reach, found_);
     for (SurfacePlane plane : found_) {
       plane.point = body.to_world(s.traits.in_body * plane.point);
       plane.normal = body.orientation * (s.traits.in_body.linear() * plane.normal);
-      follow(now, plane, i);
+      follow(now, plane, i, Vector3d::Zero());
     }
   }
   // What is out of reach has gone by at least that much.
@@ -169,8 +200,9 @@ void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<co
 // instant follows from the device, which does: where its gap to the plane became zero.
 void ToolTouch::judge(Near& n, SimTime when, SimTime before, SimTime now, std::span<const BodyMotion> bodies,
                       std::vector<contact_event_t>& events) {
-  const double gap = (device_ - n.plane.point).dot(n.plane.normal) - radius_m_;
-  const Vector3d past = velocity_ - body_of(n, bodies).velocity_at(n.plane.point);
+  const Vector3d place = shape_ ? Vector3d(device_ + device_turn_ * n.tool_point_m) : device_;
+  const double gap = (place - n.plane.point).dot(n.plane.normal) - radius_m_;
+  const Vector3d past = velocity_of(n) - body_of(n, bodies).velocity_at(n.plane.point);
   const bool touches = n.force_N > kFelt_N || n.gap_m <= settings_.touch_gap_m;
   SimTime met = when;
   if (n.device_gap_known && n.device_gap_m > 0 && gap <= 0)
@@ -207,6 +239,10 @@ void ToolTouch::take(const tool_state_t& m, SimTime now, std::span<const BodyMot
   heard_ = now;
   device_ = to_eigen(m.device.position_m);
   velocity_ = to_eigen(m.device_velocity_m_s);
+  if (shape_) {
+    device_turn_ = to_eigen(m.device.orientation).normalized();
+    spin_ = to_eigen(m.device_spin_rad_s);
+  }
   for (Near& n : near_) {
     n.force_N = 0;
     for (const tool_constraint_t& c : m.constraints) {
@@ -218,12 +254,16 @@ void ToolTouch::take(const tool_state_t& m, SimTime now, std::span<const BodyMot
   }
 }
 
+// Where the tool is now.
+void ToolTouch::hear(const tool_state_t& m) {
+  proxy_ = to_eigen(m.proxy.position_m);
+  proxy_velocity_ = to_eigen(m.proxy_velocity_m_s);
+  if (shape_) proxy_turn_ = to_eigen(m.proxy.orientation).normalized();
+}
+
 void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
                        std::vector<contact_event_t>& events) {
-  if (!news.empty()) {
-    proxy_ = to_eigen(news.back().proxy.position_m);
-    proxy_velocity_ = to_eigen(news.back().proxy_velocity_m_s);
-  }
+  if (!news.empty()) hear(news.back());
   look_around(now, bodies);
   for (const tool_state_t& m : news) take(m, now, bodies, events);
   const bool lost = !known_ || now - heard_ > ns(settings_.tool_stale_s);
@@ -244,7 +284,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.gap_m < b.gap_m; });
   model_.planes.clear();
   for (const Near& n : near_) {
-    if (n.seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
+    if (n.seen != now || model_.planes.size() >= kMostPlanes) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
     touch_plane_t p{};
@@ -256,6 +296,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.point_body_m = to_vec3f(body.to_body(n.plane.point));
     const Vector3d normal_body = body.orientation.conjugate() * n.plane.normal;
     p.normal_body = to_vec3f(normal_body);
+    p.tool_point_m = to_vec3f(n.tool_point_m);
     p.velocity_m_s = to_vec3f(body.velocity_at(n.plane.point));
     p.angular_velocity_rad_s = to_vec3f(body.spin_rad_s);
     const double moved_1_kg = mobility_1_kg(n, bodies);
@@ -277,7 +318,7 @@ void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact
     const SurfaceTraits& traits = surfaces_[n.surface].traits;
     const BodyMotion& body = body_of(n, bodies);
     const bool tool_is_b = traits.body < tool_body_;
-    const Vector3d on_body = n.plane.point, on_tool = proxy_ - radius_m_ * n.plane.normal;
+    const Vector3d on_body = n.plane.point, on_tool = proxy_ + arm(n, proxy_turn_);
     contact_t c{};
     c.contact_id = n.contact_id;
     c.kind = contact_t::POINT;
@@ -294,15 +335,16 @@ void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact
     c.normal_force_N = static_cast<float>(n.force_N);
     c.impulse_N_s = static_cast<float>(n.impulse_N_s);
     // b's surface past a's; the tool's surface moves with its proxy, whose velocity is that of the device along the plane.
-    const Vector3d past = velocity_ - body.velocity_at(n.plane.point);
+    const Vector3d past = velocity_of(n) - body.velocity_at(n.plane.point);
     const Vector3d tangential = past - past.dot(n.plane.normal) * n.plane.normal;
     c.sliding_velocity_m_s = to_vec3f(tool_is_b ? tangential : Vector3d(-tangential));
     c.point_count = 1;
+    const Vector3d in_tool = shape_ ? n.tool_point_m : Vector3d(on_tool - proxy_);
     contact_point_t p{};
     p.a_world_m = to_vec3f(tool_is_b ? on_body : on_tool);
     p.b_world_m = to_vec3f(tool_is_b ? on_tool : on_body);
-    p.a_body_m = to_vec3f(tool_is_b ? body.to_body(on_body) : Vector3d(on_tool - proxy_));
-    p.b_body_m = to_vec3f(tool_is_b ? Vector3d(on_tool - proxy_) : body.to_body(on_body));
+    p.a_body_m = to_vec3f(tool_is_b ? body.to_body(on_body) : in_tool);
+    p.b_body_m = to_vec3f(tool_is_b ? in_tool : body.to_body(on_body));
     c.points.push_back(p);
     out.push_back(c);
   }

@@ -13,6 +13,7 @@
 
 #include "sim_node/behaviour/body_motion.h"
 #include "sim_node/behaviour/group_tool.h"
+#include "sim_node/behaviour/shape_search.h"
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/contact_math.h"
 #include "sim_node/collision/ids.h"
@@ -80,6 +81,7 @@ class ToolTouch {
     std::int64_t contact_id = 0;
     std::size_t surface = 0;
     SurfacePlane plane;  // world
+    Eigen::Vector3d tool_point_m{0, 0, 0};  // of a shape: what meets it, in the tool's frame
     sync::SimTime seen{};
     bool touching = false;
     bool apart = true;  // while touching: within the hysteresis of its end
@@ -91,11 +93,21 @@ class ToolTouch {
     double closing_m_s = 0;   // speed at which the device came nearer, before
   };
 
+  // Of the device where the tool meets that surface, m/s; a ball has no lever.
+  Eigen::Vector3d velocity_of(const Near& n) const {
+    return shape_ ? Eigen::Vector3d(velocity_ + spin_.cross(device_turn_ * n.tool_point_m)) : velocity_;
+  }
   double reach_m() const {
-    return radius_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * velocity_.norm();
+    return bound_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * (velocity_.norm() + bound_m_ * spin_.norm());
   }
   void look_around(sync::SimTime now, std::span<const BodyMotion> bodies);
-  void follow(sync::SimTime now, const SurfacePlane& plane, std::size_t surface);
+  void meet(sync::SimTime now, std::size_t surface, const BodyMotion& body, double reach_m);
+  void follow(sync::SimTime now, const SurfacePlane& plane, std::size_t surface, const Eigen::Vector3d& tool_point_m);
+  void hear(const tool_state_t& m);
+  // From the centre of the tool, turned like that, to the place that meets the surface, skin and all.
+  Eigen::Vector3d arm(const Near& n, const Eigen::Quaterniond& orientation) const {
+    return orientation * n.tool_point_m - radius_m_ * n.plane.normal;
+  }
   void take(const tool_state_t& m, sync::SimTime now, std::span<const BodyMotion> bodies,
             std::vector<contact_event_t>& events);
   void judge(Near& n, sync::SimTime when, sync::SimTime before, sync::SimTime now, std::span<const BodyMotion> bodies,
@@ -110,7 +122,10 @@ class ToolTouch {
   }
 
   int tool_, tool_body_, tool_material_;
-  double radius_m_, tool_mass_kg_;
+  // Of a ball; a shape touches with its own points, and its bound is that of the ball around it.
+  double radius_m_, bound_m_, tool_mass_kg_;
+  std::optional<ShapeSearch> shape_;
+  std::vector<ToolMeeting> met_;
   double own_static_ = 1, own_dynamic_ = 1;  // friction of the tool's material
   Settings settings_;
   Ids& ids_;
@@ -132,6 +147,9 @@ class ToolTouch {
 
   bool known_ = false;
   Eigen::Vector3d proxy_{0, 0, 0}, device_{0, 0, 0}, velocity_{0, 0, 0}, proxy_velocity_{0, 0, 0};
+  // Of a shape; a ball turns without touching anything else.
+  Eigen::Vector3d spin_{0, 0, 0};
+  Eigen::Quaterniond proxy_turn_ = Eigen::Quaterniond::Identity(), device_turn_ = Eigen::Quaterniond::Identity();
   sync::SimTime heard_{}, last_stamp_{};
 };
 

@@ -25,9 +25,11 @@ void ToolTouch::archive(StateArchive& a) {
     a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.seen), a(n.gap_m);
     a(n.touching), a(n.apart), a(n.apart_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);
     a(n.device_gap_m), a(n.device_gap_known), a(n.closing_m_s);
+    if (shape_) a(n.tool_point_m);
   });
   a.fixed(surfaces_, [&](Surface& s) { a(s.friction_static), a(s.friction_dynamic); });
   a(known_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(heard_), a(last_stamp_);
+  if (shape_) a(spin_), a(proxy_turn_), a(device_turn_);
   a.message(model_);
 }
 
@@ -46,8 +48,7 @@ void ToolTouch::set_friction(int body, double friction) {
 
 void ToolTouch::feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news) {
   if (!news.empty()) {
-    proxy_ = to_eigen(news.back().proxy.position_m);
-    proxy_velocity_ = to_eigen(news.back().proxy_velocity_m_s);
+    hear(news.back());
     velocity_ = to_eigen(news.back().device_velocity_m_s);
   }
   // What was seen at this instant before is looked for anew.

@@ -1,6 +1,7 @@
 #include "sim_node/scene/scene_assets.h"
 
 #include "lcmtypes/vectors.h"
+#include "sim_node/scene/tool_shape.h"
 #include "sim_node/scene/triangles.h"
 #include "sync/decode.h"
 #include "sync/identity.h"
@@ -85,6 +86,10 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
   for (const ShapeDef& shape : world.shapes) scene.shapes.push_back(to_message(shape, hashes));
   for (const VisualDef& visual : world.visuals) scene.visuals.push_back(to_message(visual, hashes));
   scene.materials = world.materials, scene.lights = world.lights, scene.tools = world.tools;
+  for (tool_def_t& tool : scene.tools)
+    if (tool.shape == tool_def_t::MESH)
+      tool.mesh_hash =
+          hashes.meshes[static_cast<std::size_t>(tool_mesh(tool))];
   scene.settings = world.settings;
   scene.camera = to_pose(world.camera), scene.camera_fov_rad = world.camera_fov_rad;
   scene.listener = to_pose(world.listener);

@@ -1,11 +1,16 @@
 #include "sim_node/scene/tactus_tools.h"
 
+#include <cmath>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 
 #include "lcmtypes/tool_device.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/attributes.h"
+#include "sim_node/scene/mass.h"
+#include "sim_node/scene/mesh_file.h"
+#include "sim_node/scene/tool_shape.h"
 
 namespace tactus::sim {
 namespace {
@@ -36,12 +41,61 @@ std::string read_device(const LoadContext& context, const sdf::Element& element,
   context.refuse(element, std::string("has a bad device: ") + e.what());
 }
 
+constexpr double kLargest_m = 1, kSmallest_m = 1e-4;  // of a tool: what a hand holds
+
+// The triangles of a mesh tool; each file and scale once.
+int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::string& uri, double scale) {
+  const std::filesystem::path file = context.asset_file(uri, element);
+  const std::string key = file.string() + "|tool|" + std::to_string(scale);
+  const auto [at, is_new] = context.mesh_of.try_emplace(key, static_cast<int>(context.world.meshes.size()));
+  if (is_new) try {
+      context.world.meshes.push_back(read_mesh(file, "", false, Eigen::Vector3d::Constant(scale)));
+    } catch (const std::exception& e) {
+      context.refuse(element, "names mesh \"" + uri + "\", which cannot be read: " + e.what());
+    }
+  return at->second;
+}
+
+// What touches: a ball, or a shape that is felt with torque.
+void read_tool_shape(LoadContext& context, const sdf::Element& element, Attributes& attributes, tool_def_t& tool) {
+  const std::string shape = attributes.text("shape").value_or("ball");
+  tool.shape = tool_def_t::BALL;
+  if (shape == "ball") {
+    tool.radius_m = attributes.quantity("radius", "m", 0, 1).value_or(kDefaultRadius_m);
+  } else if (shape == "box") {
+    tool.shape = tool_def_t::BOX;
+    const auto edges = attributes.required_quantities("size", 3, "m", kSmallest_m, kLargest_m);
+    tool.size_m = {edges[0], edges[1], edges[2]};
+  } else if (shape == "capsule") {
+    tool.shape = tool_def_t::CAPSULE;
+    tool.size_m.x = attributes.required_quantity("radius", "m", kSmallest_m, kLargest_m);
+    tool.size_m.z = attributes.required_quantity("length", "m", kSmallest_m, kLargest_m);
+  } else if (shape == "mesh") {
+    tool.shape = tool_def_t::MESH;
+    const std::string uri = attributes.required_text("mesh");
+    tool.mesh_hash = mesh_of_tool(context, element, uri, attributes.quantity("scale", "1", 1e-6, 1e6).value_or(1));
+  } else {
+    context.refuse(element, "has shape \"" + shape + "\": give it ball, box, capsule or mesh");
+  }
+}
+
+// A solid of even density; a point as if it had 1 mm.
+Eigen::Matrix3d tool_inertia(const WorldDef& world, const tool_def_t& tool, Eigen::Vector3d& centre_m) {
+  ShapeDef shape = tool_shape(tool);
+  shape.material = -1;
+  if (shape.kind == ShapeKind::kSphere) return 0.4 * tool.mass_kg * std::pow(std::max(tool.radius_m, 1e-3), 2) * Eigen::Matrix3d::Identity();
+  bool has_density = false;
+  const MassProperties mass = scaled_to(mass_of(world, std::span(&shape, 1), has_density), tool.mass_kg);
+  centre_m = mass.centre_of_mass_m;
+  return mass.inertia_kg_m2;
+}
+
 void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   tool_def_t tool{};
   tool.name = attributes.required_text("name");
   if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that something else has: choose another");
-  tool.radius_m = attributes.quantity("radius", "m", 0, 1).value_or(kDefaultRadius_m);
+  read_tool_shape(context, *element, attributes, tool);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
   tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
   tool.loop = attributes.flag("loop").value_or(false) ? 1 : 0;
@@ -72,15 +126,17 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   body.name = tool.name;
   body.tool = static_cast<int>(context.world.tools.size());
   body.mass_kg = tool.mass_kg;
-  // A solid sphere; of a point, as if it had 1 mm.
-  const double radius = std::max(tool.radius_m, 1e-3);
-  body.inertia_kg_m2 = 0.4 * tool.mass_kg * radius * radius * Eigen::Matrix3d::Identity();
   body.gravity = false;
   if (pose) body.pose = *pose;
   if (!pose && !tool.waypoints.empty()) body.pose.translation() = to_eigen(tool.waypoints.front().position_m);
   tool.body = static_cast<std::int32_t>(context.world.bodies.size());
   context.body_of[body.name] = tool.body;
   context.world.bodies.push_back(body);
+  if (is_shaped(tool)) tool.radius_m = tool_bound_m(context.world, tool);
+  if (tool.radius_m > kLargest_m)
+    context.refuse(*element, "reaches further than 1 m from its origin: a hand holds something smaller");
+  BodyDef& held = context.world.bodies.back();
+  held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m);
   context.world.tools.push_back(tool);
 }
 

@@ -20,7 +20,8 @@ struct Fickle : Device {
     if (lost) s.velocity = Vector3d(9, 9, 9);  // nobody may believe it
     return s;
   }
-  void write(const Vector3d& force_N) override { force = force_N; }
+  using Device::write;
+  void write(const Wrench& wrench) override { force = wrench.force_N; }
   Vector3d at = Vector3d(0, 0, 0.002);  // the tool has a radius of 5 mm: 3 mm deep
   Vector3d force = Vector3d::Zero();
   bool lost = false;

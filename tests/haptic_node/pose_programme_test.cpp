@@ -1,5 +1,6 @@
 #include "haptic_node/pose_programme.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <optional>
@@ -9,8 +10,8 @@ using namespace tactus::haptic;
 
 namespace {
 
-// Tries every set of up to six half spaces: the one whose multipliers are all >= 0 and whose pose all others allow is the
-// answer (Karush, Kuhn and Tucker; the programme is convex).
+// Tries every set of up to six half spaces: the one whose multipliers are all >= 0 and whose pose all others allow
+// is the answer (Karush, Kuhn and Tucker; the programme is convex).
 std::optional<Vector6> brute_force(const std::vector<PoseHalfSpace>& region, const Vector6& goal) {
   const auto allowed = [&](const Vector6& q) {
     for (const PoseHalfSpace& h : region)
@@ -134,7 +135,8 @@ TEST_CASE("A motion into all that binds is shared so that each sees its own rate
     const auto shares = set.shares(rates);
     Vector6 motion = Vector6::Zero();
     for (std::size_t k = 0; k < normals.size(); ++k) motion += shares[k] * normals[k];
-    for (std::size_t k = 0; k < normals.size(); ++k) CHECK(motion.dot(normals[k]) == Approx(rates[k]).margin(1e-9));
+    for (std::size_t k = 0; k < normals.size(); ++k)
+      CHECK(motion.dot(normals[k]) == Approx(rates[k]).margin(1e-9));
     CHECK_FALSE(set.add(9, motion));
     CHECK(set.free_part(motion).norm() < 1e-9);
   }

@@ -5,13 +5,16 @@ namespace tactus::visual {
 Meshes meshes_of(const sync::SceneReceiver& scenes) {
   Meshes meshes;
   if (!scenes.scene()) return meshes;
-  for (const visual_def_t& visual : scenes.scene()->visuals) {
-    const shape_def_t& shape = visual.shape;
-    if (shape.kind != shape_def_t::MESH || meshes.contains(shape.mesh_hash)) continue;
-    const sync::Asset* asset = scenes.asset(shape.mesh_hash);
-    if (!asset) continue;
-    if (auto mesh = sync::decode_asset<mesh_t>(asset->bytes)) meshes.emplace(shape.mesh_hash, std::move(*mesh));
-  }
+  const auto take = [&](std::int64_t hash) {
+    if (meshes.contains(hash)) return;
+    const sync::Asset* asset = scenes.asset(hash);
+    if (!asset) return;
+    if (auto mesh = sync::decode_asset<mesh_t>(asset->bytes)) meshes.emplace(hash, std::move(*mesh));
+  };
+  for (const visual_def_t& visual : scenes.scene()->visuals)
+    if (visual.shape.kind == shape_def_t::MESH) take(visual.shape.mesh_hash);
+  for (const tool_def_t& tool : scenes.scene()->tools)
+    if (tool.shape == tool_def_t::MESH) take(tool.mesh_hash);
   return meshes;
 }
 

@@ -44,7 +44,7 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
   add_reliefs(scene, height_maps);
   for (const visual_def_t& v : scene.visuals) add(v, meshes);
-  for (const tool_def_t& t : scene.tools) add_tool(scene, t);
+  for (const tool_def_t& t : scene.tools) add_tool(scene, t, meshes);
   // A lamp modelled around its light would swallow all of it.
   for (Part& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
   for (Tool& t : tools_) t.ghost.look.diffuse.w() = static_cast<float>(settings.ghost_alpha);
@@ -79,14 +79,24 @@ void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   parts_.push_back(part);
 }
 
-void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool) {
+void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes) {
   Part ball;
-  const auto radius = static_cast<float>(std::max(tool.radius_m, kSmallestTool_m));
+  shape_def_t form{};
+  form.kind = tool.shape == tool_def_t::BOX       ? shape_def_t::BOX
+              : tool.shape == tool_def_t::CAPSULE ? shape_def_t::CAPSULE
+              : tool.shape == tool_def_t::MESH    ? shape_def_t::MESH
+                                                  : shape_def_t::SPHERE;
+  form.size_m = tool.size_m;
+  form.mesh_hash = tool.mesh_hash;
+  if (form.kind == shape_def_t::SPHERE) form.size_m.x = std::max(tool.radius_m, kSmallestTool_m);
+  // One whose mesh is missing is a ball, so that the hand is found.
+  if (!shape(form, meshes, ball)) {
+    form.kind = shape_def_t::SPHERE;
+    form.size_m.x = std::max(tool.radius_m, kSmallestTool_m);
+    shape(form, meshes, ball);
+  }
   ball.body = tool.body;
-  ball.geometry = kSphere;
-  ball.levels = true;
-  ball.radius_m = radius;
-  ball.look.scale = {radius, radius, radius, 40};
+  ball.look.scale.w() = 40;
   ball.look.diffuse << kToolColour, 1;
   ball.look.specular = {0.5f, 0.5f, 0.5f, 0};
   // It glows a little, so that the hand is found in the dark.

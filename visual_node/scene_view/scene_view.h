@@ -70,7 +70,7 @@ class SceneView {
 
   void add_reliefs(const scene_t& scene, const HeightMaps& height_maps);
   void add(const visual_def_t& visual, const Meshes& meshes);
-  void add_tool(const scene_t& scene, const tool_def_t& tool);
+  void add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes);
   bool shape(const shape_def_t& shape, const Meshes& meshes, Part& part);
   bool lamp_inside(const scene_t& scene, const Part& part) const;
   Placed place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const;

@@ -29,16 +29,17 @@ Counts SimulatedStrings::read(sync::HostTime now) {
   tension_N_ += follow * (wanted_N_ - tension_N_);
 
   const StructureMatrix w = structure_matrix(frame_, grip);
-  force_N_.setZero();
+  felt_ = {};
   slack_ = false;
   Counts counts(frame_.size());
   for (int i = 0; i < frame_.size(); ++i) {
     const bool taut = wound_m_(i) <= straight_m(i);
     slack_ = slack_ || !taut;
-    if (taut) force_N_ += tension_N_(i) * w.col(i).head<3>();
+    if (taut) felt_.force_N += tension_N_(i) * w.col(i).head<3>();
+    if (taut && w.rows() > 3) felt_.torque_N_m += tension_N_(i) * frame_.lever_m() * w.col(i).tail<3>();
     counts(i) = static_cast<std::int32_t>(std::lround((wound_m_(i) - middle_m_(i)) / frame_.encoder_step_m));
   }
-  hand_->write(force_N_);
+  hand_->write(felt_);
   return counts;
 }
 

@@ -22,7 +22,8 @@ class SimulatedStrings : public StringMotors {
 
   // What the strings really do: for tests and tables.
   const DeviceState& hand() const { return state_; }
-  const Eigen::Vector3d& force_N() const { return force_N_; }
+  const Eigen::Vector3d& force_N() const { return felt_.force_N; }
+  const Eigen::Vector3d& torque_N_m() const { return felt_.torque_N_m; }
   bool slack() const { return slack_; }
 
  private:
@@ -33,7 +34,7 @@ class SimulatedStrings : public StringMotors {
   PerString middle_m_;  // lengths where the counts are 0
   PerString wound_m_;   // length that is off the pulley; longer than the string is straight: it hangs through
   PerString wanted_N_, tension_N_;
-  Eigen::Vector3d force_N_ = Eigen::Vector3d::Zero();
+  Wrench felt_;
   std::optional<sync::HostTime> last_;
   bool slack_ = false;
 };

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_node/turns.h"
+
 namespace tactus::haptic {
 namespace {
 
 // Half a count on every string moves the pose by so many counts at the worst, within the workspace of every known
 // frame (tests/bench/spidar_table).
 constexpr double kPoseCounts = 1.6;
+// Of a grip on a single knot, which does not turn.
+constexpr double kLeastLever_m = 0.001;
 
 }  // namespace
 
@@ -17,7 +21,8 @@ Spidar::Spidar(StringFrame frame, const Eigen::Vector3d& origin_m, std::unique_p
       origin_m_(origin_m),
       motors_(std::move(motors)),
       middle_m_(string_lengths(frame_, {})),
-      velocity_(kPoseCounts * frame_.encoder_step_m) {
+      velocity_(kPoseCounts * frame_.encoder_step_m),
+      spin_(kPoseCounts * frame_.encoder_step_m / std::max(frame_.lever_m(), kLeastLever_m)) {
   check_frame(frame_);
   tensions_.tensions_N.setConstant(frame_.size(), frame_.min_tension_N);
 }
@@ -27,15 +32,24 @@ DeviceState Spidar::read(sync::HostTime now) {
   const PerString lengths_m = middle_m_ + frame_.encoder_step_m * counts.cast<double>();
   solved_ = solve_pose(frame_, lengths_m, pose_);
   const bool lost = !solved_.converged || !(solved_.residual_m <= kLostResidual_m);
-  if (lost || lost_) velocity_.clear();
+  if (lost || lost_) {
+    velocity_.clear();
+    spin_.clear();
+  }
   lost_ = lost;
-  if (!lost) pose_ = solved_.pose;
+  if (!lost) {
+    turned_rad_ += turn_between(pose_.orientation, solved_.pose.orientation);
+    pose_ = solved_.pose;
+  }
 
   DeviceState state;
   state.position = origin_m_ + pose_.position_m;
   state.orientation = pose_.orientation;
   state.lost = lost;
-  if (!lost) state.velocity = velocity_.add(pose_.position_m, now);
+  if (!lost) {
+    state.velocity = velocity_.add(pose_.position_m, now);
+    state.spin = spin_.add(turned_rad_, now);
+  }
   return state;
 }
 

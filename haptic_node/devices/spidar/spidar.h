@@ -28,9 +28,9 @@ class Spidar : public Device {
   // Outside the workspace the pose is what the strings say. While no pose explains them it is the last that did,
   // and the device is lost.
   DeviceState read(sync::HostTime now) override;
-  void write(const Eigen::Vector3d& force_N) override { write(Wrench{force_N, Eigen::Vector3d::Zero()}); }
-  // With a torque, N m, world; left out with four strings. Realtime-safe: yes, also the two above.
-  void write(const Wrench& wanted);
+  using Device::write;
+  // The torque is left out with four strings. Realtime-safe: yes, also the one above.
+  void write(const Wrench& wanted) override;
 
   double residual_m() const { return solved_.residual_m; }
   // How far the last written force is from what the strings give, and why.
@@ -44,6 +44,8 @@ class Spidar : public Device {
   std::unique_ptr<StringMotors> motors_;
   PerString middle_m_;
   WindowVelocity velocity_;
+  WindowVelocity spin_;
+  Eigen::Vector3d turned_rad_ = Eigen::Vector3d::Zero();  // all small turns so far
   SolvedPose solved_;
   GripPose pose_;  // the last that explained the strings
   Tensions tensions_;

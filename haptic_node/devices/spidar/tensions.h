@@ -3,16 +3,10 @@
 // keeps its direction and loses size, at most a fiftieth more than it must.
 #pragma once
 
+#include "haptic_node/devices/device.h"
 #include "haptic_node/devices/spidar/string_frame.h"
 
 namespace tactus::haptic {
-
-// Force and torque on the hand, in the frame, N and N m. The torque is about the grip's origin; none with four
-// strings.
-struct Wrench {
-  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
-  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();
-};
 
 struct Tensions {
   PerString tensions_N;      // within the frame's limits, always
@@ -25,7 +19,8 @@ struct Tensions {
   bool held = false;
 };
 
-// Exact but for rounding. Continuous in wrench and pose as long as `held`. Realtime-safe: yes.
+// wanted: on the hand, about the grip's origin; its torque is left out with four strings. Exact but for rounding.
+// Continuous in wrench and pose as long as `held`. Realtime-safe: yes.
 Tensions solve_tensions(const StringFrame& frame, const GripPose& pose, const Wrench& wanted);
 
 }  // namespace tactus::haptic

@@ -28,7 +28,8 @@ struct MovedHand : Device {
     s.orientation = p.orientation;
     return s;
   }
-  void write(const Vector3d& force_N) override { felt = force_N; }
+  using Device::write;
+  void write(const Wrench& wrench) override { felt = wrench.force_N; }
   std::function<GripPose(double)> path;
   Vector3d felt = Vector3d::Zero();
 };

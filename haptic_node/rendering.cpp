@@ -1,0 +1,110 @@
+#include "haptic_node/rendering.h"
+
+#include "haptic_node/coupling.h"
+#include "haptic_node/direct.h"
+#include "haptic_node/rigid_coupling.h"
+#include "haptic_node/turns.h"
+
+namespace tactus::haptic {
+namespace {
+
+Rendering::Kind kind_of(const std::string& name, bool shaped) {
+  if (name == "direct") return Rendering::Kind::kDirect;
+  if (name == "proxy") return Rendering::Kind::kProxy;
+  if (name == "rigid") return Rendering::Kind::kRigid;
+  return shaped ? Rendering::Kind::kRigid : Rendering::Kind::kProxy;
+}
+
+DevicePose pose_of(const DeviceState& device) { return {device.position, device.orientation}; }
+
+}  // namespace
+
+Rendering::Rendering(const tool_def_t& tool, const Settings& settings)
+    : shaped_(tool.shape != tool_def_t::BALL),
+      radius_m_(skin_m(tool)),
+      bound_m_(tool.radius_m),
+      kind_(kind_of(settings.rendering, shaped_)),
+      reach_m_(settings.proxy_reach_m),
+      reach_time_s_(settings.proxy_reach_time_s),
+      rigid_(coupling_lever_m(settings), bound_m_, radius_m_) {
+  arms_.reserve(kMaxHalfSpaces);
+}
+
+bool Rendering::change(const Settings& settings) {
+  const Kind wanted = kind_of(settings.rendering, shaped_);
+  if (wanted == kind_) return false;
+  kind_ = wanted;
+  proxy_.reset(pose_.position);
+  rigid_.reset(pose_);
+  return true;
+}
+
+void Rendering::reset(const DeviceState& device) {
+  pose_ = pose_of(device);
+  proxy_.reset(device.position);
+  rigid_.reset(pose_);
+  renew(device);
+}
+
+void Rendering::renew(const DeviceState& device) {
+  left_m_ = reach_m_ + reach_time_s_ * (device.velocity.norm() + bound_m_ * device.spin.norm());
+}
+
+void Rendering::step(std::span<Surface> surfaces, const DeviceState& device, double dt,
+                     std::span<Eigen::Vector3d> forces) {
+  const DevicePose placed{pose_.position, turned(device)};
+  switch (kind_) {
+    case Kind::kProxy:
+      proxy_.step(surfaces, device.position, dt);
+      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces);
+      pose_ = {proxy_.position(), device.orientation};
+      velocity_ = proxy_.velocity();
+      spin_ = device.spin;
+      break;
+    case Kind::kRigid:
+      rigid_.step(surfaces, pose_of(device), dt, left_m_);
+      left_m_ = std::max(0.0, left_m_ - rigid_.moved_m());
+      rigid_forces(surfaces, rigid_, device, forces);
+      pose_ = {rigid_.position(), rigid_.orientation()};
+      velocity_ = rigid_.velocity();
+      spin_ = rigid_.spin();
+      break;
+    case Kind::kDirect:
+      press_directly(surfaces, placed, pose_of(device), rigid_.lever_m(), radius_m_);
+      direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, forces);
+      pose_ = pose_of(device);
+      velocity_ = device.velocity;
+      spin_ = device.spin;
+      break;
+  }
+}
+
+Wrench Rendering::sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const {
+  Wrench w;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    w.force_N += forces[i];
+    if (turns()) w.torque_N_m += arm(surfaces[i]).cross(forces[i]);
+  }
+  return w;
+}
+
+void Rendering::share(const Wrench& felt, std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sizes = 0;
+  for (const Eigen::Vector3d& f : forces) {
+    sum += f;
+    sizes += f.norm();
+  }
+  if (sizes <= 0) return;
+  // Each keeps its direction as far as the sum does, the rest goes by size.
+  const double square = sum.squaredNorm();
+  const double kept = square > 0 ? std::clamp(felt.force_N.dot(sum) / square, 0.0, 1.0) : 0.0;
+  const Eigen::Vector3d rest = felt.force_N - kept * sum;
+  for (Eigen::Vector3d& f : forces) f = kept * f + f.norm() / sizes * rest;
+  if (!turns()) return;
+  arms_.clear();
+  for (const Surface& s : surfaces) arms_.push_back(arm(s));
+  share_wrench(felt, arms_, forces);
+}
+
+}  // namespace tactus::haptic
