@@ -207,5 +207,5 @@ TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on
     CHECK(error_N(clean, f) < 0.05 * clean.peak_N());
   }
   put_in_force(c, "");
-  CHECK(c.all_live(kNodes));
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }

@@ -109,6 +109,11 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
   const auto joined = c.watch();
   c.output_of({"sv", "kill", c.service("haptic_node_third")});  // comes back by itself
   const auto again = c.watch();
+  // One of them is told to push less, by the script that people use.
+  const std::string answer = c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/set",
+                                          "--in", c.out(), "haptic_node", "force_limit=1N"});
+  CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
+  const auto gentle = c.watch();
   c.processes.signal("run", SIGINT);
   c.finish(60);
 
@@ -141,6 +146,10 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
   CHECK(largest_N(log, kThird, joined) > 0.5);
   CHECK(largest_N(log, kThird, again) > 0.5);
   CHECK(begins(log, kThird) >= 2);
+  CHECK(largest_N(log, kLeft, again) > 1.5);
+  CHECK(largest_N(log, kLeft, gentle) <= 1 + 1e-6);
+  CHECK(largest_N(log, kLeft, gentle) > 0.9);
+  CHECK(largest_N(log, kThird, gentle) == Approx(largest_N(log, kThird, again)).epsilon(0.3));
 
   const auto summary = nlohmann::json::parse(contents(c.out() / "summary.json"), nullptr, false);
   REQUIRE_FALSE(summary.is_discarded());
