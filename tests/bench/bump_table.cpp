@@ -19,6 +19,9 @@ using namespace tactus::bench;
 namespace {
 
 constexpr double kBands_per_m[] = {12, 50, 150, 400, 700, 1000};  // the picture's pixels are 3200 per metre
+// A proxy over triangles rounds off what is narrower than the device is deep: as much as the relief is high.
+constexpr double kShallow_m = 0.0005;
+constexpr double kSlew_N_s = 2000;  // slew_limit
 constexpr double kSegment_m = 0.1;
 
 // What a force of that size that leans as the slope says has along the stroke.
@@ -40,12 +43,15 @@ bool spectrum_table(nlohmann::json& json) {
         const BumpTrace t = run(stroke);
         const Spectrum s =
             spectra(t.along_N, leaning(t, 1e3 * stroke.depth_m), t.step_m, kSegment_m, kBands_per_m[5]);
+        // Steep and fast: what the limit of slew takes away is no matter of maps.
+        const bool limited = quantile(t.change_N, 1) > 0.999 * kSlew_N_s / rate_Hz;
         for (std::size_t b = 0; b + 1 < std::size(kBands_per_m); ++b) {
           // At half the rate of samples there is nothing to compare.
           if (kBands_per_m[b + 1] > 0.45 / t.step_m) continue;
           const Band band = in_band(s, kBands_per_m[b], kBands_per_m[b + 1]);
-          std::printf("%8g %6g %5g mm | %5g to %5g %10.4f %10.4f %10.3f\n", speed_m_s, rate_Hz, 1e3 * height_m,
-                      band.from_per_m, band.to_per_m, band.share, band.coherence, band.gain);
+          std::printf("%8g %6g %5g mm | %5g to %5g %10.4f %10.4f %10.3f%s\n", speed_m_s, rate_Hz, 1e3 * height_m,
+                      band.from_per_m, band.to_per_m, band.share, band.coherence, band.gain,
+                      limited ? "  slew limit" : "");
           json.push_back({{"speed_m_s", speed_m_s},
                           {"rate_Hz", rate_Hz},
                           {"relief_m", height_m},
@@ -54,7 +60,8 @@ bool spectrum_table(nlohmann::json& json) {
                           {"share", band.share},
                           {"coherence", band.coherence},
                           {"gain", band.gain}});
-          if (band.share > 0.01) good = good && band.coherence >= 0.95 && band.gain >= 0.9 && band.gain <= 1.1;
+          if (band.share > 0.01 && !limited)
+            good = good && band.coherence >= 0.95 && band.gain >= 0.9 && band.gain <= 1.1;
         }
       }
   return good;
@@ -89,10 +96,21 @@ bool method_table(nlohmann::json& json) {
   std::printf("%8s %6s %-8s %11s %11s %11s %9s %9s %9s %9s\n", "m/s", "Hz", "method", "r along", "r up",
               "along rms N", "up rms N", "p99 N", "max N", "hand um");
   bool good = true;
+  // Of triangles that change the proxy needs time to yield: their force is true while the hand is slow.
+  const BumpTrace truth = run({.method = "mesh",
+                               .speed_m_s = 0.01,
+                               .length_m = 0.16,
+                               .friction = 0.2,
+                               .depth_m = kShallow_m,
+                               .lateral_m = 0.011});
   for (const double rate_Hz : {1000.0, 4000.0})
     for (const double speed_m_s : {0.05, 0.1, 0.2, 0.5}) {
-      BumpStroke stroke{
-          .speed_m_s = speed_m_s, .rate_Hz = rate_Hz, .length_m = 0.16, .friction = 0.2, .lateral_m = 0.011};
+      BumpStroke stroke{.speed_m_s = speed_m_s,
+                        .rate_Hz = rate_Hz,
+                        .length_m = 0.16,
+                        .friction = 0.2,
+                        .depth_m = kShallow_m,
+                        .lateral_m = 0.011};
       Compared by_height, by_normal;
       for (const char* method : {"mesh", "none", "height", "normal", "both"}) {
         stroke.method = method;
@@ -140,7 +158,7 @@ bool steep_table(nlohmann::json& json) {
                           {"method", method},
                           {"p99_N", p99},
                           {"max_N", most}});
-          good = good && most <= 2000 / rate_Hz + 1e-6;  // slew_limit
+          good = good && most <= kSlew_N_s / rate_Hz + 1e-6;
         }
   return good;
 }

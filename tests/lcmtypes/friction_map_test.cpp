@@ -31,8 +31,8 @@ TEST_CASE("Friction at a place is that of the grey there, linear between the mid
     CHECK(map.factor(up, {0.0, 0.05, 0}) == Approx(1.0));
   }
   SECTION("and lies on each side of a body as a relief does") {
-    CHECK(map.factor({1, 0, 0}, {9, 0.3, 0.05}) == Approx(1.5));    // y, z
-    CHECK(map.factor({0, -1, 0}, {0.05, 9, 0.15}) == Approx(1.0));  // z, x: between two pixels along u
+    CHECK(map.factor({1, 0, 0}, {9, 0.3, 0.05}) == Approx(1.5));     // y, z
+    CHECK(map.factor({0, -1, 0}, {0.05, 9, 0.15}) == Approx(0.75));  // z, x: a quarter of the way along u
   }
 }
 
