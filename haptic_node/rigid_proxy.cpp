@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "haptic_node/direct.h"
 #include "haptic_node/turns.h"
@@ -81,31 +82,24 @@ void RigidProxy::press(std::span<Surface> surfaces, const Rows& rows, const Vect
   for (std::size_t i = 0; i < rows.size; ++i) surfaces[i].depth_m = closest.multiplier[i];
 }
 
+// As depths are shared in direct rendering: contacts that press the same way share, so that together they damp as one;
+// one that begins to press begins with nothing. Not by the binding set: of contacts that are nearly dependent that would
+// make large rates of both signs, and a surface does not pull.
 void RigidProxy::depth_rates(std::span<const Surface> surfaces, const Eigen::Vector3d& velocity,
                              const Eigen::Vector3d& spin, std::span<double> rates) const {
-  std::fill(rates.begin(), rates.end(), 0.0);
-  std::array<double, 6> into{};
-  std::array<PoseHalfSpace, kMaxHalfSpaces> region;
-  std::array<double, kMaxHalfSpaces> weights{};
+  std::array<Vector6, kMaxHalfSpaces> way;
   const std::size_t n = std::min({surfaces.size(), rates.size(), kMaxHalfSpaces});
+  for (std::size_t i = 0; i < n; ++i)
+    if (surfaces[i].depth_m > 0) way[i] = reach(surfaces[i].normal, arm(surfaces[i]), lever_m_);
   for (std::size_t i = 0; i < n; ++i) {
-    region[i].normal = reach(surfaces[i].normal, arm(surfaces[i]), lever_m_);
-    weights[i] = surfaces[i].depth_m;
+    const Surface& s = surfaces[i];
+    rates[i] = 0;
+    if (s.depth_m <= 0) continue;
+    double with = 0;
+    for (std::size_t j = 0; j < n; ++j)
+      if (surfaces[j].depth_m > 0) with += surfaces[j].depth_m * std::abs(way[i].dot(way[j]));
+    rates[i] = s.depth_m / with * (s.velocity_at(s.point) - velocity - spin.cross(arm(s))).dot(s.normal);
   }
-  for (std::size_t k = 0; k < binding_.size(); ++k) {
-    const Surface& s = surfaces[binding_.member(k)];
-    into[k] = (s.velocity_at(s.point) - velocity - spin.cross(arm(s))).dot(s.normal);
-  }
-  const std::array<double, 6> shares = binding_.shares(into);
-  Vector6 motion = Vector6::Zero();
-  for (std::size_t k = 0; k < binding_.size(); ++k) motion += shares[k] * region[binding_.member(k)].normal;
-  // A rate may be negative, the spring being let go; a spread may not: both signs apart, by the pressure.
-  if (spread({region.data(), n}, {weights.data(), n}, motion, rates)) return;
-  if (spread({region.data(), n}, {weights.data(), n}, -motion, rates)) {
-    for (double& r : rates) r = -r;
-    return;
-  }
-  for (std::size_t k = 0; k < binding_.size(); ++k) rates[binding_.member(k)] = shares[k];
 }
 
 // Friction of each contact that is pressed, towards where it held, as far as its cone is wide: contact by contact,

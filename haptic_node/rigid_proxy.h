@@ -43,8 +43,7 @@ class RigidProxy {
   // How far a point of the tool moved in the last tick, at most, m.
   double moved_m() const { return moved_m_; }
   const BindingSet& binding() const { return binding_; }
-  // What a motion of the device does to the depths, m/s: device and surfaces move on as they do, and all that bind
-  // share it as they share the pressure. velocity of the device along all six ways.
+  // How fast depths grow while device and surfaces go on as they do, m/s: what each surface is to damp.
   void depth_rates(std::span<const Surface> surfaces, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin,
                    std::span<double> rates) const;
   bool feasible() const { return feasible_; }

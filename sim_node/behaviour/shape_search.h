@@ -18,11 +18,16 @@ struct ToolMeeting {
   Eigen::Vector3d tool_point_m{0, 0, 0};  // in the tool's frame
 };
 
+// A tool touches from a skin on, by which its edges are rounded: so it never overlaps with what it is pressed on, where
+// pairs of points have no direction to be trusted.
 class ShapeSearch {
  public:
   // Places of one direction whose points on the tool are nearer than this are one. Design: a quarter of the margin of a
   // touch model, far below a hand's breadth, so that 49 planes reach around a tool.
   static constexpr double kSamePlace_m = 0.002;
+
+  // Design: less than a hand finds by pressing, a hundred times what a proxy may be off.
+  static constexpr double kSkin_m = 0.0001;
 
   // trees: of this world; outlives this.
   ShapeSearch(const WorldDef& world, int tool, const Settings& settings, MeshTrees& trees);

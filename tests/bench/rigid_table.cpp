@@ -6,7 +6,7 @@
 // pressed: a box on a floor, 2.5 mm deep and turned a little, against springs in closed form. pushed: a free body pushed
 // off its centre; its momentum against the opposite of what the hand felt. thin: a plate of 2 mm that the hand goes
 // through and the box does not. between: a body between the box and a wall. hole: a peg, a mesh, let into its hole by a
-// virtual hand that is 0.2 mm and 1 degree off. stroke: over the bumpy sphere of stroke_table; change of force and torque
+// virtual hand that is 1 mm and 3 degrees off. stroke: over the bumpy sphere of stroke_table; change of force and torque
 // a tick. --check: exit 1 when a row breaks its limit.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -31,6 +31,9 @@ using test::TouchLoop;
 namespace {
 
 using Figures = std::vector<std::pair<std::string, double>>;
+
+// From there on a tool touches.
+constexpr double kSkin_m = sim::ShapeSearch::kSkin_m;
 
 struct Report {
   nlohmann::json out = nlohmann::json::array();
@@ -78,7 +81,7 @@ void pressed(Report& report, double rate_Hz) {
   Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
   for (int i = 0; i < static_cast<int>(rate_Hz); ++i) {
     const double in = std::min(1.0, loop.time_s() / 0.3);
-    const auto& out = loop.tick({0, 0, 0.02 - in * (0.01 + depth_m)}, about(Vector3d(1, 2, 0).normalized(), in * turn_rad));
+    const auto& out = loop.tick({0, 0, 0.02 - in * (0.01 - kSkin_m + depth_m)}, about(Vector3d(1, 2, 0).normalized(), in * turn_rad));
     force = out.force_N, torque = out.torque_N_m;
   }
   const haptic::CouplingLimits limits{settings.stiffness_limit_N_m, settings.mass_factor, settings.damping_ratio,
@@ -168,9 +171,9 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
   haptic::Settings settings = at_rate(rate_Hz);
   TouchLoop loop(w, settings);
   const double down = 0.02;
-  haptic::VirtualHand hand(haptic::MonotoneCubic({0, 0.2, 2}, {{0.0002, 0, above}, {0.0002, 0, above}, {0.0002, 0, above - 0.005 - down}},
+  haptic::VirtualHand hand(haptic::MonotoneCubic({0, 0.2, 2}, {{0.001, 0, above}, {0.001, 0, above}, {0.001, 0, above - 0.005 - down}},
                                                  haptic::MonotoneCubic::Ends::kRest),
-                           false, {}, about(Vector3d::UnitY(), M_PI / 180));
+                           false, {}, about(Vector3d::UnitY(), 3 * M_PI / 180));
   hand.begin(sync::host_time(0));
   double most_N = 0, most_N_m = 0, most_change = 0, z = 0;
   Vector3d last = Vector3d::Zero();
