@@ -181,6 +181,10 @@ class Cluster:
         """{node: why} of the nodes that could not be kept running."""
         return {name: s.lost() for name, s in self.services.items() if s.lost()}
 
+    def taken_down(self):
+        """The nodes that somebody took away and did not bring back. To be asked before all are stopped."""
+        return [name for name, s in self.services.items() if s.is_taken_down()] if self.alive() else []
+
     def stop(self):
         """Ends everything in order and reaps it. Returns the nodes that had to be killed."""
         self.end_table()

@@ -80,7 +80,8 @@ def watch_over(running, seconds, stop):
 
 
 def sum_up(plan, git, lost, restarts, warnings):
-    """Writes summary.json and the CSVs from the log. Returns what went wrong, a sentence each."""
+    """Writes summary.json and the CSVs from the log. lost: the nodes that are not expected at its end. Returns what went
+    wrong, a sentence each."""
     logs = [str(path) for path in sorted(plan.out.glob("run*.lcmlog"), key=lambda p: p.stat().st_mtime)]
     if not logs:
         return [f"recorder: {plan.out}/run.lcmlog was not written; see {plan.out}/logs/recorder.log"]
@@ -157,6 +158,7 @@ def run(plan):
     except OSError as error:
         wrong.append(sentence_of(error))
     finally:
+        taken = running.taken_down()
         stubborn = running.stop()
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
@@ -168,7 +170,9 @@ def run(plan):
     for name, count in restarts.items():
         if name not in lost:
             say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
-    wrong += sum_up(plan, git, lost, restarts, warnings)
+    for name in taken:
+        say(f"{name} was taken down and not brought back")
+    wrong += sum_up(plan, git, {*lost, *taken}, restarts, warnings)
     say(f"results in {plan.out}")
     os.close(claim)
     return wrong

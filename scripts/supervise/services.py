@@ -114,6 +114,14 @@ class Service:
         except OSError:
             return True
 
+    def is_taken_down(self):
+        """By somebody who told it to stay down; one that died is wanted up."""
+        try:
+            stat = (self.path / "supervise" / "stat").read_text(encoding="utf-8")
+        except OSError:
+            return False
+        return stat.startswith("down") and "want up" not in stat and not self.lost()
+
     def has_spoken(self):
         return self.log.exists() and self.log.stat().st_size > 0
 

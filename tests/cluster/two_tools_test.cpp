@@ -115,7 +115,8 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
   CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
   const auto gentle = c.watch();
   c.processes.signal("run", SIGINT);
-  c.finish(60);
+  CHECK(c.finish(60) == 0);  // who was taken away is missed by nobody
+  CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
 
   const RunLog log(c.out());
   const Figures before = figures(log, two);

@@ -236,6 +236,25 @@ class Seconds(Folders):
         self.assertAlmostEqual(600, running.now, delta=1)
 
 
+class TakenDown(Folders):
+    def service(self, stat):
+        (self.folder / "services").mkdir()
+        service = services.Service(self.folder, "haptic_node", ["true"], self.folder / "log", self.folder)
+        (service.path / "supervise").mkdir()
+        (service.path / "supervise" / "stat").write_text(stat, encoding="utf-8")
+        return service
+
+    def test_is_who_was_told_to_be_and_not_who_died_or_was_lost(self):
+        for stat, taken in (("down\n", True), ("down, normally up\n", True), ("down, want up\n", False), ("run, normally down\n", False),
+                            ("finish\n", False)):
+            with tempfile.TemporaryDirectory() as folder:
+                self.folder = pathlib.Path(folder)
+                service = self.service(stat)
+                self.assertEqual(taken, service.is_taken_down(), stat)
+                (service.path / "lost").write_text("left down", encoding="utf-8")
+                self.assertFalse(service.is_taken_down(), stat)
+
+
 class Results(Folders):
     def test_one_run_writes_to_a_folder_at_a_time(self):
         plan = self.plan()
