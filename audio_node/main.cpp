@@ -126,7 +126,7 @@ int main(int argc, char** argv) try {
         output.submit(impacts->strike(event, scheduled));
       }
     }
-    if (const auto map = contacts.map(now); map && sliding) {
+    if (const auto map = contacts.map(now); map && sliding && sliding->any()) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
       for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at))) output.submit(scrape);
