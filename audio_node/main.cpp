@@ -129,7 +129,8 @@ int main(int argc, char** argv) try {
     if (const auto map = contacts.map(now); map && sliding && sliding->any()) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
-      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at))) output.submit(scrape);
+      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at)))
+        output.submit(scrape);
       slid_at = now;
     }
     while (const auto report = output.next_report()) {
