@@ -138,12 +138,13 @@ int main(int argc, char** argv) try {
         output.submit(impacts->strike(event, scheduled));
       }
     }
-    if (const auto map = contacts.map(now); map && sliding) {
+    if (const auto map = contacts.map(now); map && sliding && sliding->any()) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone)
         sliding->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
       const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
-      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at))) output.submit(scrape);
+      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at)))
+        output.submit(scrape);
       slid_at = now;
     }
     while (const auto report = output.next_report()) {

@@ -47,6 +47,7 @@ Sliding::Sliding(const scene_t& scene, const HeightMaps& maps, HeardReliefs& rel
     if (const auto map = maps.find(m.bump_asset); map != maps.end()) to.relief = reliefs.get(m, map->second);
     if (const auto map = maps.find(m.friction_asset); map != maps.end())
       to.friction = std::make_shared<const FrictionMap>(map->second, m);
+    any_ = any_ || to.heard();
   }
   for (const body_def_t& b : scene.bodies)
     if (b.is_static) standing_[b.id] = to_eigen(b.pose.orientation);
@@ -78,7 +79,7 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
 
     Way& gone = ways_[c.contact_id];
     gone.seen = true;
-    gone.travelled_m += speed * dt_s;
+    gone.travelled_m += speed * std::clamp(dt_s, 0.0, 0.1);
     Scrape s;
     s.id = c.contact_id;
     s.at = at;

@@ -45,6 +45,8 @@ class Sliding {
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
+  // False: no surface of the scene can be heard so, and nobody need look at contacts.
+  bool any() const { return any_; }
   // What of the contacts of an instant is to be heard at `at`. dt_s: since the instant before.
   const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::HostTime at, double dt_s);
 
@@ -64,6 +66,7 @@ class Sliding {
   Settings settings_;
   Eigen::Isometry3d listener_;
   std::vector<Material> materials_;
+  bool any_ = false;
   std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move
   std::map<std::int64_t, Way> ways_;                     // of the contacts that slide
   std::vector<Scrape> out_;

@@ -59,7 +59,8 @@ class Renderer {
   // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
   Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
 
-  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not its.
+  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not
+  // its.
   void change(const Settings& settings);
 
   // What lies on the surfaces of its scene, from the next tick on; null: nothing.

@@ -7,7 +7,7 @@ import struct
 import sys
 import zlib
 
-SIDE_PX = 256
+COLUMNS, ROWS = 2048, 2  # a fine boundary: one pixel of 0.6 m is 0.3 mm
 
 
 def chunk(name, data):
@@ -15,9 +15,9 @@ def chunk(name, data):
 
 
 def main():
-    line = b"\0" + bytes(255 * (c >= SIDE_PX // 2) for c in range(SIDE_PX))
-    sys.stdout.buffer.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIDE_PX, SIDE_PX, 8, 0, 0, 0, 0)) +
-                            chunk(b"IDAT", zlib.compress(line * SIDE_PX, 9)) + chunk(b"IEND", b""))
+    line = b"\0" + bytes(255 * (c >= COLUMNS // 2) for c in range(COLUMNS))
+    sys.stdout.buffer.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", COLUMNS, ROWS, 8, 0, 0, 0, 0)) +
+                            chunk(b"IDAT", zlib.compress(line * ROWS, 9)) + chunk(b"IEND", b""))
 
 
 main()
