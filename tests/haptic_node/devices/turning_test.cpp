@@ -3,6 +3,8 @@
 
 #include "haptic_node/devices/external.h"
 #include "haptic_node/devices/playback.h"
+#include "haptic_node/devices/spidar/simulated_strings.h"
+#include "haptic_node/devices/spidar/spidar.h"
 #include "haptic_node/devices/virtual_hand.h"
 #include "haptic_node/turns.h"
 #include "lcmtypes/vectors.h"
@@ -77,5 +79,31 @@ TEST_CASE("Turns are put together and taken apart without loss") {
     const Vector3d turn = angle * Vector3d(2, -1, 0.5).normalized();
     const Quaterniond from(Eigen::AngleAxisd(1, Vector3d::UnitX()));
     CHECK((turn_between(from, turned_by(turn, from)) - turn).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("Eight strings turn the hand that holds their grip, and tell its spin; four leave torque out") {
+  for (const std::string name : {"desktop8", "desktop"}) {
+    const StringFrame frame = *known_frame(name);
+    auto hand = std::make_unique<VirtualHand>(MonotoneCubic({0}, {Vector3d::Zero()}, MonotoneCubic::Ends::kRest),
+                                              false, HandImpedance{});
+    Spidar device(frame, Vector3d::Zero(),
+                  std::make_unique<SimulatedStrings>(frame, Vector3d::Zero(), std::move(hand)));
+    DeviceState state;
+    double fastest = 0;
+    for (int i = 0; i < 1500; ++i) {
+      state = device.read(ms(i));
+      device.write(Wrench{Vector3d::Zero(), i < 100 ? Vector3d(0, 0, 0) : Vector3d(0, 0, 0.03)});
+      fastest = std::max(fastest, state.spin.z());
+    }
+    const Vector3d turned = turn_between(Quaterniond::Identity(), state.orientation);
+    CAPTURE(name, turned.transpose(), fastest);
+    if (frame.has_torque()) {
+      CHECK(turned.z() == Approx(0.03 / HandImpedance{}.turn_stiffness_N_m).epsilon(0.1));
+      CHECK(fastest > 0.3);
+      CHECK(state.spin.norm() < 0.05);
+    } else {
+      CHECK(turned.norm() < 1e-6);
+    }
   }
 }

@@ -33,7 +33,9 @@ tool_state_t state(const Vector3d& place, const Eigen::Quaterniond& turn, std::i
   return m;
 }
 
-Eigen::Quaterniond about(const Vector3d& axis, double rad) { return Eigen::Quaterniond(Eigen::AngleAxisd(rad, axis)); }
+Eigen::Quaterniond about(const Vector3d& axis, double rad) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(rad, axis));
+}
 
 // Where the point of the tool that a plane names is, over that plane.
 double height(const touch_plane_t& p, const Vector3d& place, const Eigen::Quaterniond& turn) {
