@@ -115,7 +115,7 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   if (in.fresh) rendering_.renew(device_);
   surfaces_.turn(rendering_.turned(device_));
-  surfaces_.step(in.fresh, sim_now, rendering_.position(), dt, in.planes);
+  surfaces_.step(in.fresh, sim_now, rendering_.position(), dt, rendering_.planes(in.planes));
 }
 
 Wrench Renderer::constraint_wrench(double dt) {

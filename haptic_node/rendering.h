@@ -3,6 +3,7 @@
 // alone; rigid, a body that does, with torque.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <tactus/tool_def_t.hpp>
 #include <vector>
@@ -23,6 +24,9 @@ class Rendering {
   // another.
   bool change(const Settings& settings);
   Kind kind() const { return kind_; }
+  // Of so many planes that may be considered, how many must be: three hold a point, six a body, and as many again are
+  // what it meets next (design).
+  std::size_t planes(std::size_t allowed) const { return turns() ? std::max<std::size_t>(allowed, 12) : allowed; }
 
   // The proxy is where the device is, and holds nothing.
   void reset(const DeviceState& device);

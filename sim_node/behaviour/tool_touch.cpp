@@ -17,6 +17,9 @@ namespace {
 
 // A plane of the same shape belongs to the surface followed before when its normal has turned by less than this a step.
 const double kSameSurface = std::cos(60 * M_PI / 180);
+// Margin of a tool with a shape over a surface of triangles, m: each pair of them within it is looked at, so the time grows
+// with its square. Design: what a proxy may move on two models (haptic setting proxy_reach), at rest.
+constexpr double kMeshMargin_m = 0.003;
 // And of a tool with a shape, when it meets a place of the tool not further than this from the one before. Design: what
 // rolls moves by less in a step, and the corners of what a hand holds lie further apart.
 constexpr double kSameFeature_m = 0.004;
@@ -24,7 +27,6 @@ constexpr double kSameFeature_m = 0.004;
 constexpr sync::Nanoseconds kForget{50'000'000};
 // A begin is not dated back further than a message can be late before it counts as lost.
 constexpr sync::Nanoseconds kLatestNews{20'000'000};
-constexpr std::size_t kMostPlanes = 49;
 constexpr double kFelt_N = 1e-4;  // below, a force is rounding
 // Of places in the world, m.
 constexpr double kRounding_m = 1e-9;
@@ -145,7 +147,8 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
     const Surface& s = surfaces_[i];
     const BodyMotion& body = bodies[static_cast<std::size_t>(s.traits.body)];
     if (shape_) {
-      meet(now, i, body, reach - bound_m_);
+      const bool meshed = s.traits.kind == ShapeKind::kMesh || s.traits.kind == ShapeKind::kHeightfield;
+      meet(now, i, body, reach - bound_m_ - (meshed ? std::max(0.0, settings_.touch_margin_m - kMeshMargin_m) : 0));
       continue;
     }
     const Vector3d place = s.from_body * body.to_body(proxy_);
@@ -284,7 +287,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.gap_m < b.gap_m; });
   model_.planes.clear();
   for (const Near& n : near_) {
-    if (n.seen != now || model_.planes.size() >= kMostPlanes) continue;
+    if (n.seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
     touch_plane_t p{};

@@ -20,9 +20,7 @@ ShapeDef tool_shape(const tool_def_t& tool) {
       s.mesh = tool_mesh(tool);
       s.size_m.setOnes();
       break;
-    default:
-      s.kind = ShapeKind::kSphere;
-      s.size_m = {tool.radius_m, 0, 0};
+    default: s.kind = ShapeKind::kSphere; s.size_m = {tool.radius_m, 0, 0};
   }
   return s;
 }
@@ -33,7 +31,8 @@ double tool_bound_m(const WorldDef& world, const tool_def_t& tool) {
     case tool_def_t::CAPSULE: return tool.size_m.x + 0.5 * tool.size_m.z;
     case tool_def_t::MESH: {
       double bound = 0;
-      for (const Eigen::Vector3d& v : world.meshes[static_cast<std::size_t>(tool_mesh(tool))].vertices) bound = std::max(bound, v.norm());
+      for (const Eigen::Vector3d& v : world.meshes[static_cast<std::size_t>(tool_mesh(tool))].vertices)
+        bound = std::max(bound, v.norm());
       return bound;
     }
     default: return tool.radius_m;

@@ -8,8 +8,8 @@ namespace tactus::sim {
 // Whether it has one that is felt with torque; else it is a ball or a point.
 inline bool is_shaped(const tool_def_t& tool) { return tool.shape != tool_def_t::BALL; }
 
-// Of a tool of a WorldDef whose shape is a mesh, its index in WorldDef::meshes: there the field mesh_hash holds that, since
-// the hash is known only when the scene is told (scene_assets.h).
+// Of a tool of a WorldDef whose shape is a mesh, its index in WorldDef::meshes: there the field mesh_hash holds
+// that, since the hash is known only when the scene is told (scene_assets.h).
 inline int tool_mesh(const tool_def_t& tool) { return static_cast<int>(tool.mesh_hash); }
 
 // In the frame of the tool's body; of a ball, a sphere of its radius.

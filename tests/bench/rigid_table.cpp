@@ -1,13 +1,13 @@
-// How true and how smooth is touch with six degrees of freedom? A box and a capsule in the hand, as the simulation sees
-// them and as touch renders them, without a clock or a bus.
+// How true and how smooth is touch with six degrees of freedom? A box and a capsule in the hand, as the simulation
+// sees them and as touch renders them, without a clock or a bus.
 //
 //   bin/rigid_table [--check] [--json FILE] [--seconds S]
 //
-// pressed: a box on a floor, 2.5 mm deep and turned a little, against springs in closed form. pushed: a free body pushed
-// off its centre; its momentum against the opposite of what the hand felt. thin: a plate of 2 mm that the hand goes
-// through and the box does not. between: a body between the box and a wall. hole: a peg, a mesh, let into its hole by a
-// virtual hand that is 1 mm and 3 degrees off. stroke: over the bumpy sphere of stroke_table; change of force and torque
-// a tick. --check: exit 1 when a row breaks its limit.
+// pressed: a box on a floor, 2.5 mm deep and turned a little, against springs in closed form. pushed: a free body
+// pushed off its centre; its momentum against the opposite of what the hand felt. thin: a plate of 2 mm that the
+// hand goes through and the box does not. between: a body between the box and a wall. hole: a peg, a mesh, let
+// into its hole by a virtual hand that is 1 mm and 3 degrees off. stroke: over the bumpy sphere of stroke_table;
+// change of force and torque a tick. --check: exit 1 when a row breaks its limit.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -53,7 +53,8 @@ struct Report {
   }
 };
 
-sim::WorldDef& add_shaped_tool(sim::WorldDef& w, std::int8_t shape, const Vector3d& size, const Vector3d& place, int mesh = 0) {
+sim::WorldDef& add_shaped_tool(sim::WorldDef& w, std::int8_t shape, const Vector3d& size, const Vector3d& place,
+                               int mesh = 0) {
   sim::test::add_tool(w, place);
   tool_def_t& t = w.tools.back();
   t.shape = shape;
@@ -81,18 +82,24 @@ void pressed(Report& report, double rate_Hz) {
   Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
   for (int i = 0; i < static_cast<int>(rate_Hz); ++i) {
     const double in = std::min(1.0, loop.time_s() / 0.3);
-    const auto& out = loop.tick({0, 0, 0.02 - in * (0.01 - kSkin_m + depth_m)}, about(Vector3d(1, 2, 0).normalized(), in * turn_rad));
+    const auto& out = loop.tick({0, 0, 0.02 - in * (0.01 - kSkin_m + depth_m)},
+                                about(Vector3d(1, 2, 0).normalized(), in * turn_rad));
     force = out.force_N, torque = out.torque_N_m;
   }
   const haptic::CouplingLimits limits{settings.stiffness_limit_N_m, settings.mass_factor, settings.damping_ratio,
                                       settings.device_mass_kg, settings.device_damping_Ns_m};
   const touch_plane_t& plane = loop.model().planes.at(0);
-  const double k = haptic::coupling_gains(plane.stiffness_N_m, plane.damping_N_s_m, 1e10, 1, 1 / rate_Hz, limits).stiffness_N_m;
+  const double k =
+      haptic::coupling_gains(plane.stiffness_N_m, plane.damping_N_s_m, 1e10, 1, 1 / rate_Hz, limits).stiffness_N_m;
   const double lever = haptic::coupling_lever_m(settings);
   const Vector3d expected = -k * lever * lever * turn_rad * Vector3d(1, 2, 0).normalized();
-  const double force_error = std::abs(force.z() / (k * depth_m) - 1), torque_error = (torque - expected).norm() / expected.norm();
+  const double force_error = std::abs(force.z() / (k * depth_m) - 1),
+               torque_error = (torque - expected).norm() / expected.norm();
   report.row("pressed " + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
-             {{"N", force.z()}, {"of_N", k * depth_m}, {"N_m", torque.norm()}, {"of_N_m", expected.norm()},
+             {{"N", force.z()},
+              {"of_N", k * depth_m},
+              {"N_m", torque.norm()},
+              {"of_N_m", expected.norm()},
               {"planes", static_cast<double>(loop.model().planes.size())}},
              force_error < 1e-3 && torque_error < 1e-2);
 }
@@ -115,10 +122,15 @@ void pushed(Report& report, double rate_Hz) {
     moment -= (out.torque_N_m + (proxy - b.centre_m).cross(out.force_N)) / rate_Hz;
   }
   const sim::BodyMotion& b = loop.world().bodies()[static_cast<std::size_t>(box)];
-  const Vector3d momentum = b.velocity_m_s / b.inverse_mass_1_kg, spin = b.inverse_inertia.inverse() * b.spin_rad_s;
-  const double of_impulse = (momentum - impulse).norm() / impulse.norm(), of_moment = (spin - moment).norm() / moment.norm();
+  const Vector3d momentum = b.velocity_m_s / b.inverse_mass_1_kg,
+                 spin = b.inverse_inertia.inverse() * b.spin_rad_s;
+  const double of_impulse = (momentum - impulse).norm() / impulse.norm(),
+               of_moment = (spin - moment).norm() / moment.norm();
   report.row("pushed " + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
-             {{"N_s", impulse.norm()}, {"off", of_impulse}, {"N_m_s", moment.norm()}, {"off_turning", of_moment},
+             {{"N_s", impulse.norm()},
+              {"off", of_impulse},
+              {"N_m_s", moment.norm()},
+              {"off_turning", of_moment},
               {"rad_s", b.spin_rad_s.norm()}},
              of_impulse < 0.01 && of_moment < 0.03 && b.spin_rad_s.norm() > 0.05);
 }
@@ -132,12 +144,15 @@ void thin(Report& report, double rate_Hz) {
   double lowest = 1;
   for (int i = 0; i < static_cast<int>(rate_Hz); ++i) {
     const double z = 0.04 - 0.5 * std::min(loop.time_s(), 0.2);
-    const auto& out = loop.tick({0.01 * std::sin(20 * loop.time_s()), 0, z}, about({0.6, 0.8, 0}, 0.3 * std::sin(30 * loop.time_s())));
+    const auto& out = loop.tick({0.01 * std::sin(20 * loop.time_s()), 0, z},
+                                about({0.6, 0.8, 0}, 0.3 * std::sin(30 * loop.time_s())));
     const Eigen::Isometry3d pose = to_eigen(out.state.proxy);
     for (int c = 0; c < 8; ++c)
-      lowest = std::min(lowest, (pose * Vector3d(c & 1 ? 0.02 : -0.02, c & 2 ? 0.015 : -0.015, c & 4 ? 0.01 : -0.01)).z());
+      lowest = std::min(lowest,
+                        (pose * Vector3d(c & 1 ? 0.02 : -0.02, c & 2 ? 0.015 : -0.015, c & 4 ? 0.01 : -0.01)).z());
   }
-  report.row("thin " + std::to_string(static_cast<int>(rate_Hz)) + " Hz", {{"mm_in", 1e3 * (0.001 - lowest)}}, lowest > 0.0005);
+  report.row("thin " + std::to_string(static_cast<int>(rate_Hz)) + " Hz", {{"mm_in", 1e3 * (0.001 - lowest)}},
+             lowest > 0.0005);
 }
 
 void between(Report& report) {
@@ -154,7 +169,8 @@ void between(Report& report) {
     furthest = std::max(furthest, x + 0.015 - 0.098);
     into = std::max(into, out.state.proxy.position_m.x + 0.01 - (x - 0.015));
   }
-  report.row("between", {{"mm_in_wall", 1e3 * furthest}, {"mm_in_body", 1e3 * into}}, furthest < 0.001 && into < 0.001);
+  report.row("between", {{"mm_in_wall", 1e3 * furthest}, {"mm_in_body", 1e3 * into}},
+             furthest < 0.001 && into < 0.001);
 }
 
 void hole(Report& report, const std::string& scenes, double rate_Hz) {
@@ -171,9 +187,10 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
   haptic::Settings settings = at_rate(rate_Hz);
   TouchLoop loop(w, settings);
   const double down = 0.02;
-  haptic::VirtualHand hand(haptic::MonotoneCubic({0, 0.2, 2}, {{0.001, 0, above}, {0.001, 0, above}, {0.001, 0, above - 0.005 - down}},
-                                                 haptic::MonotoneCubic::Ends::kRest),
-                           false, {}, about(Vector3d::UnitY(), 3 * M_PI / 180));
+  haptic::VirtualHand hand(
+      haptic::MonotoneCubic({0, 0.2, 2}, {{0.001, 0, above}, {0.001, 0, above}, {0.001, 0, above - 0.005 - down}},
+                            haptic::MonotoneCubic::Ends::kRest),
+      false, {}, about(Vector3d::UnitY(), 3 * M_PI / 180));
   hand.begin(sync::host_time(0));
   double most_N = 0, most_N_m = 0, most_change = 0, z = 0;
   Vector3d last = Vector3d::Zero();
@@ -188,14 +205,19 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
   }
   const double depth = above - 0.005 - z;
   report.row("hole " + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
-             {{"mm_deep", 1e3 * depth}, {"of_mm", 1e3 * down}, {"N_max", most_N}, {"N_m_max", most_N_m}, {"N_a_tick", most_change}},
+             {{"mm_deep", 1e3 * depth},
+              {"of_mm", 1e3 * down},
+              {"N_max", most_N},
+              {"N_m_max", most_N_m},
+              {"N_a_tick", most_change}},
              depth > 0.8 * down);
 }
 
 // As of stroke_table.
 constexpr double kRadius_m = 0.1, kBump_m = 0.0015, kSpeed_m_s = 0.1, kFriction = 0.3, kDeep_m = 0.003;
 double surface_m(const Vector3d& way, double waves) {
-  return kRadius_m + kBump_m * std::sin(waves * way.x()) * std::sin(waves * way.y() + 1) * std::sin(waves * way.z() + 2);
+  return kRadius_m +
+         kBump_m * std::sin(waves * way.x()) * std::sin(waves * way.y() + 1) * std::sin(waves * way.z() + 2);
 }
 
 void stroke(Report& report, std::int8_t shape, double rate_Hz, double seconds) {
@@ -223,7 +245,8 @@ void stroke(Report& report, std::int8_t shape, double rate_Hz, double seconds) {
   for (int i = 0; i < static_cast<int>((seconds + ends_s) * rate_Hz); ++i) {
     const double t = loop.time_s(), in = std::min(1.0, t / ends_s);
     const double angle = kSpeed_m_s / kRadius_m * std::max(0.0, t - ends_s);
-    const Vector3d way = (std::cos(angle) * x + std::sin(angle) * y + 0.2 * std::sin(2.3 * angle) * x.cross(y)).normalized();
+    const Vector3d way =
+        (std::cos(angle) * x + std::sin(angle) * y + 0.2 * std::sin(2.3 * angle) * x.cross(y)).normalized();
     // The box lies flat to the sphere; the capsule across the stroke.
     Eigen::Matrix3d turn;
     turn.col(box ? 2 : 0) = way;
@@ -242,11 +265,18 @@ void stroke(Report& report, std::int8_t shape, double rate_Hz, double seconds) {
     std::sort(v.begin(), v.end());
     return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
   };
-  const double count = static_cast<double>(force_changes.size()), p99 = quantile(force_changes, 0.99), most = quantile(force_changes, 1);
-  report.row(std::string("stroke ") + (box ? "box " : "capsule ") + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
-             {{"mean_N", mean_N / count}, {"p99_N", p99}, {"max_N", most}, {"p99_N_m", quantile(torque_changes, 0.99)},
-              {"max_N_m", quantile(torque_changes, 1)}, {"pops", static_cast<double>(pops)}, {"planes", planes / count}},
-             p99 <= 0.2 && most <= 0.5 && pops == 0);
+  const double count = static_cast<double>(force_changes.size()), p99 = quantile(force_changes, 0.99),
+               most = quantile(force_changes, 1);
+  report.row(
+      std::string("stroke ") + (box ? "box " : "capsule ") + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
+      {{"mean_N", mean_N / count},
+       {"p99_N", p99},
+       {"max_N", most},
+       {"p99_N_m", quantile(torque_changes, 0.99)},
+       {"max_N_m", quantile(torque_changes, 1)},
+       {"pops", static_cast<double>(pops)},
+       {"planes", planes / count}},
+      p99 <= 0.2 && most <= 0.5 && pops == 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A hand and a world, without a bus or a clock: the simulation at 1 kHz, touch as often as it likes, and what each says
-// reaches the other with its next step.
+// A hand and a world, without a bus or a clock: the simulation at 1 kHz, touch as often as it likes, and what each
+// says reaches the other with its next step.
 #pragma once
 
 #include <cmath>

@@ -33,6 +33,9 @@ struct Hand {
   Eigen::Vector3d last;
   std::map<std::int64_t, Eigen::Vector3d> impulses{};
 
+  // A ball's, whose centre is its only point; the points of a tool with a shape, which this hand never turns, have none.
+  double skin(const touch_plane_t& p) const { return to_eigen(p.tool_point_m).isZero(0) ? radius : 0; }
+
   tool_state_t tick(const touch_model_t& model, const Eigen::Vector3d& device, std::int64_t time_ns) {
     tool_state_t m{};
     m.header.sim_time_ns = time_ns;
@@ -43,19 +46,19 @@ struct Hand {
     for (int round = 0; round < 4; ++round)
       for (const touch_plane_t& p : model.planes) {
         const Eigen::Vector3d n = to_eigen(p.normal).normalized();
-        const double gap = (proxy - to_eigen(p.point_m)).dot(n) - radius;
+        const double gap = (proxy + to_eigen(p.tool_point_m) - to_eigen(p.point_m)).dot(n) - skin(p);
         if (gap < 0) proxy -= gap * n;
       }
     for (const touch_plane_t& p : model.planes) {
       const Eigen::Vector3d n = to_eigen(p.normal).normalized();
-      const double depth = radius - (device - to_eigen(p.point_m)).dot(n);
+      const double depth = skin(p) - (device + to_eigen(p.tool_point_m) - to_eigen(p.point_m)).dot(n);
       if (depth > 0)
         impulses.try_emplace(p.contact_id, Eigen::Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
       if (!impulses.count(p.contact_id)) continue;
       tool_constraint_t c{};
       c.contact_id = p.contact_id;
       c.body = p.body;
-      c.point_m = to_vec3f(proxy - radius * n);
+      c.point_m = to_vec3f(proxy + to_eigen(p.tool_point_m) - skin(p) * n);
       c.force_N = to_vec3f(Eigen::Vector3d(stiffness * std::max(0.0, depth) * n));
       c.impulse_N_s = to_vec3f(impulses[p.contact_id]);
       m.constraints.push_back(c);

@@ -116,6 +116,43 @@ TEST_CASE("A hole names the body that belongs into it, by its own name or that o
   CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='0m' ball='ball'/>"), Catch::Contains("between"));
 }
 
+TEST_CASE("A tool may have a shape, and turns as a solid of that shape does") {
+  const std::string point = "<tactus:waypoint time='1' position='0 0 0'/></tactus:tool>";
+  const auto tool = [&](const std::string& attributes, const auto& check) {
+    const WorldDef w = SceneFile(world("<tactus:tool name='h' mass='0.2kg' " + attributes + ">" + point)).load();
+    REQUIRE(w.tools.size() == 1);
+    check(w.tools[0], w.bodies.back());
+  };
+  tool("shape='box' size='4cm 6cm 20mm'", [](const tool_def_t& t, const BodyDef& b) {
+    CHECK(t.shape == tool_def_t::BOX);
+    CHECK(t.size_m.y == Approx(0.06));
+    CHECK(t.radius_m == Approx(0.5 * std::sqrt(0.04 * 0.04 + 0.06 * 0.06 + 0.02 * 0.02)));
+    CHECK(b.inertia_kg_m2(2, 2) == Approx(0.2 / 12 * (0.04 * 0.04 + 0.06 * 0.06)));
+  });
+  tool("shape='capsule' radius='5mm' length='8cm'", [](const tool_def_t& t, const BodyDef& b) {
+    CHECK(t.shape == tool_def_t::CAPSULE);
+    CHECK(t.size_m.x == Approx(0.005));
+    CHECK(t.size_m.z == Approx(0.08));
+    CHECK(t.radius_m == Approx(0.045));
+    CHECK(b.inertia_kg_m2(0, 0) > 10 * b.inertia_kg_m2(2, 2));
+  });
+  tool("radius='5mm'", [](const tool_def_t& t, const BodyDef& b) {
+    CHECK(t.shape == tool_def_t::BALL);
+    CHECK(b.inertia_kg_m2(0, 0) == Approx(0.4 * 0.2 * 0.005 * 0.005));
+  });
+  const auto said = [&](const std::string& attributes) {
+    return refusal("<tactus:tool name='h' " + attributes + ">" + point);
+  };
+  CHECK_THAT(said("shape='cone' size='1cm 1cm 1cm'"), Catch::Contains("\"cone\""));
+  CHECK_THAT(said("shape='box'"), Catch::Contains("\"size\""));
+  CHECK_THAT(said("shape='box' size='4cm 6cm'"), Catch::Contains("size"));
+  CHECK_THAT(said("shape='box' size='4cm 6cm 0m'"), Catch::Contains("size"));
+  CHECK_THAT(said("shape='capsule' radius='1cm'"), Catch::Contains("\"length\""));
+  CHECK_THAT(said("shape='mesh'"), Catch::Contains("\"mesh\""));
+  CHECK_THAT(said("shape='mesh' mesh='nowhere.obj'"), Catch::Contains("nowhere.obj"));
+  CHECK_THAT(said("shape='box' size='90cm 90cm 2m'"), Catch::Contains("size"));
+}
+
 TEST_CASE("A tool that cannot be is refused with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
   CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
