@@ -22,6 +22,7 @@ SurfaceLimits surface_limits(const Settings& s) {
 CouplingLimits coupling_limits(const Settings& s) {
   return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
 }
+PassivityLimits passivity_limits(const Settings& s) { return {s.generated_limit_J, s.force_limit_N}; }
 TransientShape transient_shape(const Settings& s) {
   return {s.transient_gain,
           s.transient_limit_N,
@@ -44,6 +45,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
       surfaces_(radius_m_, surface_limits(settings)),
       handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
+      passivity_(passivity_limits(settings)),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
@@ -58,6 +60,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
 void Renderer::change(const Settings& settings) {
   settings_ = settings;
   transients_.change(transient_shape(settings));
+  passivity_.change(passivity_limits(settings));
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -94,8 +97,12 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
+  model_age_s_ = age_s;
   loop_delay_.pass(age_s, dt);
-  if (in.fresh) loop_delay_.observe(age_s);
+  if (in.fresh) {
+    loop_delay_.observe(age_s);
+    passivity_.hear(*in.fresh);
+  }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   surfaces_.step(in.fresh, sim_now, proxy_.position(), dt, in.planes);
 }
@@ -112,7 +119,9 @@ Eigen::Vector3d Renderer::constraint_force(double dt) {
   }
   proxy_.step(surfaces_.list(), device_.position, dt);
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
-  coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_);
+  passivity_.observe(surfaces_.list(), proxy_.shift(), moved_, model_age_s_, dt);
+  coupling_forces(surfaces_.list(), proxy_.shift(), device_.velocity, proxy_.slipping(), forces_,
+                  passivity_.factor());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& f : forces_) sum += f;
   return handover_.step(surfaces_.list(), sum, dt);
@@ -187,6 +196,8 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.force_N = to_vec3f(out_.force_N);
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
+  m.generated_J = static_cast<float>(passivity_.generated_J());
+  m.coupling = static_cast<float>(passivity_.factor());
   m.touch_how = static_cast<std::int8_t>(how(in));
   m.fade = static_cast<float>(share());
   m.buttons = device_.buttons;
@@ -208,12 +219,14 @@ TickOutput& Renderer::step(const TickInput& in) {
   const bool felt = share() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   const Eigen::Vector3d wanted = stepped(share() * (constraint + transient), in.force_step_N);
+  safety_.at(device_.position);
   out_.force_N = safety_.limit(wanted, moved_, dt);
   // The transient takes its part of what the limits left.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
   const Eigen::Vector3d felt_transient = left * share() * transient;
   split(out_.force_N - felt_transient);
   book_.step(in.now, dt, felt_);
+  passivity_.note(felt_, surfaces_.list());
   owed_.step(in.now, book_, uncertainty(), out_.reports);
   fill_state(in, felt_transient);
   return out_;

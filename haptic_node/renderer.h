@@ -16,6 +16,7 @@
 #include "haptic_node/devices/device.h"
 #include "haptic_node/handover.h"
 #include "haptic_node/owed_begins.h"
+#include "haptic_node/passivity.h"
 #include "haptic_node/proxy.h"
 #include "haptic_node/safety.h"
 #include "haptic_node/settings.gen.h"
@@ -57,7 +58,8 @@ class Renderer {
   // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
   Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
 
-  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not its.
+  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not
+  // its.
   void change(const Settings& settings);
 
   // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
@@ -94,6 +96,7 @@ class Renderer {
   Proxy proxy_;
   Handover handover_;
   LoopDelay loop_delay_;
+  Passivity passivity_;
   Transients transients_;
   Safety& safety_;
   Fade fade_;
@@ -106,6 +109,7 @@ class Renderer {
   double device_share_ = 1;
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
   std::optional<sync::SimTime> model_time_;
+  double model_age_s_ = 0;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
   std::vector<FeltForce> felt_;          // of each surface, as commanded
   TickOutput out_;
