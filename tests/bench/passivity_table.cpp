@@ -9,7 +9,7 @@
 //   generated   the most that device port and body port gave together, over what they had taken in, in an episode
 //   told        the most that the observer of the renderer told of it
 //   without     generated, with the controller switched off
-//   cycle       the force sways at the end of the hold, by more than 0.05 N rms, and does not die away
+//   cycle       the force sways to and fro at the end of the hold, by more than 0.05 N rms, and does not die away
 //   of ideal    mean force of the hold over that of springs in a row: hand, surface and what holds the body
 //   of design   the same, with the stiffness that the rules of the coupling leave to a mass at that delay
 //   K           force over depth

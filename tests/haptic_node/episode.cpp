@@ -18,6 +18,7 @@ constexpr double kTableFriction = 0.3, kGravity_m_s2 = 9.81;
 // The hand waits, so that the renderer knows the network before the first touch.
 constexpr double kWaits_s = 1;
 constexpr int kHold_ms = 3800, kEnd_ms = 5000, kJudged_ms = 500, kApart_ms = 200;
+constexpr double kSwing_N = 0.03;
 constexpr int kFreeze_ms = 1700, kThaw_ms = 2200;
 
 Vector3d place(double z) { return {0, 0, z}; }
@@ -83,15 +84,28 @@ struct World {
   }
 };
 
-// Rms about the straight line that fits best: a drift is no cycle.
-double sway(const std::vector<double>& y) {
+// About the straight line that fits best: a drift is no cycle.
+struct Sway {
+  double rms_N = 0;
+  int swings = 0;
+};
+Sway sway(const std::vector<double>& y) {
   const double n = static_cast<double>(y.size());
   double mean = 0, slope = 0, squares = 0;
   for (const double v : y) mean += v / n;
   const auto x = [&](std::size_t i) { return (static_cast<double>(i) + 0.5) / n - 0.5; };
   for (std::size_t i = 0; i < y.size(); ++i) slope += 12 / n * x(i) * y[i];
-  for (std::size_t i = 0; i < y.size(); ++i) squares += std::pow(y[i] - mean - slope * x(i), 2) / n;
-  return std::sqrt(squares);
+  Sway s;
+  int side = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double off = y[i] - mean - slope * x(i);
+    squares += off * off / n;
+    const int now = off > kSwing_N ? 1 : off < -kSwing_N ? -1 : side;
+    s.swings += side != 0 && now != side;
+    side = now;
+  }
+  s.rms_N = std::sqrt(squares);
+  return s;
 }
 
 double ideal_N(const EpisodeDef& def) {
@@ -115,7 +129,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
   r.ideal_N = ideal_N(def);
   const int per_ms = static_cast<int>(def.settings.rate_Hz / 1000);
   double felt = 0, told = 0, taken_J = 0, booked_J = 0, last_force = 0, last_z = 0, sum = 0, depth = 0;
-  std::vector<double> held_N, before_N;
+  std::vector<double> held_N, before_N, earlier_N;
   double last_sent_ms = -1e9, last_felt_ms = 0;
   int judged = 0;
   bool begun = false;
@@ -161,6 +175,8 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
     for (const tool_constraint_t& c : out.state.constraints) felt = c.impulse_N_s.z;
     r.observed_mJ = std::max(r.observed_mJ, 1e3 * out.state.generated_J);
     r.least_coupling = std::min<double>(r.least_coupling, out.state.coupling);
+    if (press && ms >= kHold_ms - 3 * kJudged_ms && ms < kHold_ms - 2 * kJudged_ms)
+      earlier_N.push_back(last_force);
     if (press && ms >= kHold_ms - 2 * kJudged_ms && ms < kHold_ms - kJudged_ms) before_N.push_back(last_force);
     if ((press && ms >= kHold_ms - kJudged_ms && ms < kHold_ms) || (push && ms >= 1200 && ms < 2100)) {
       ++judged;
@@ -171,8 +187,10 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
   }
   if (judged > 0) {
     r.force_N = sum / judged;
-    r.sway_N = sway(held_N);
-    r.sway_before_N = sway(before_N);
+    r.sway_N = sway(held_N).rms_N;
+    r.swings = sway(held_N).swings;
+    r.sway_before_N = sway(before_N).rms_N;
+    r.sway_least_N = std::min({r.sway_N, r.sway_before_N, sway(earlier_N).rms_N});
     r.stiffness_N_m = depth > 0 ? sum / depth : 0;
   }
   r.pushed_m = -world.z;

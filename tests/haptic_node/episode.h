@@ -46,12 +46,13 @@ struct EpisodeResult {
   // The same as the renderer's observer has it: the most that it told.
   double observed_mJ = 0;
   double least_coupling = 1;  // the lowest factor that the controller chose
-  // Of the last half second of the hold: the force, its rms about its trend, that in the half second before, and
-  // force over depth.
-  double force_N = 0, sway_N = 0, sway_before_N = 0, stiffness_N_m = 0;
-  // Sways, and does not die away: a body on a spring rings by itself, at 1 kg with 0.88 of the sway after half a
-  // second.
-  bool cycles() const { return sway_N > 0.05 && sway_N > 0.95 * sway_before_N; }
+  // Of the last half second of the hold: the force, its rms about its trend, that in the half second before, the
+  // least of the last three, and force over depth.
+  double force_N = 0, sway_N = 0, sway_before_N = 0, sway_least_N = 0, stiffness_N_m = 0;
+  int swings = 0;  // how often it goes by more than 0.03 N from one side of its trend to the other
+  // Sways all the time, to and fro, and does not die away: a body on a spring rings by itself, at 1 kg with 0.88
+  // of the sway after half a second; and what a long loss shakes once is no cycle.
+  bool cycles() const { return swings >= 3 && sway_least_N > 0.05 && sway_N > 0.95 * sway_before_N; }
   double peak_N = 0;            // of the whole run
   double ideal_N = 0;           // of springs in a row: hand, surface, what holds the body; pushed along: friction
   double pushed_m = 0;          // how far the body came
