@@ -20,7 +20,8 @@ std::string limits_sentence(const Settings& s) {
   out << "force at most " << s.force_limit_N << " N, changing by at most " << s.slew_limit_N_s / 1000
       << " N/ms, torque at most " << s.torque_limit_Nm << " N m, changing by at most "
       << s.torque_slew_limit_Nm_s / 1000 << " N m/ms, giving the hand at most " << s.energy_limit_J
-      << " J at once and " << s.power_limit_W << " W lastingly; zero within "
+      << " J at once and " << s.power_limit_W << " W lastingly, within " << s.workspace_m
+      << " m of where the device began; zero within "
       << (s.stale_after_s + s.fade_s) * 1000 << " ms without a touch model";
   return out.str();
 }

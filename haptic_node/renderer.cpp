@@ -24,6 +24,7 @@ CouplingLimits coupling_limits(const Settings& s) {
   return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
 }
 ReliefDef reliefs_of(const Settings& s) { return relief_def(s.bump, s.bump_steepest, s.recovery_time_s); }
+PassivityLimits passivity_limits(const Settings& s) { return {s.generated_limit_J, s.force_limit_N}; }
 TransientShape transient_shape(const Settings& s) {
   return {s.transient_gain,
           s.transient_limit_N,
@@ -49,6 +50,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
       torque_handover_(settings.recovery_time_s,
                        settings.recovery_speed_m_s * settings.stiffness_limit_N_m * rendering_.lever_m()),
+      passivity_(passivity_limits(settings)),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
@@ -68,6 +70,7 @@ void Renderer::change(const Settings& settings) {
     handover_.renew();
     torque_handover_.renew();
   }
+  passivity_.change(passivity_limits(settings));
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -110,8 +113,12 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
+  model_age_s_ = age_s;
   loop_delay_.pass(age_s, dt);
-  if (in.fresh) loop_delay_.observe(age_s);
+  if (in.fresh) {
+    loop_delay_.observe(age_s);
+    passivity_.hear(*in.fresh);
+  }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   if (in.fresh) rendering_.renew(device_);
   surfaces_.turn(rendering_.turned(device_));
@@ -130,7 +137,9 @@ Wrench Renderer::constraint_wrench(double dt) {
   }
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   reliefs_.look(surfaces_.list(), rendering_.place(), dt);
-  rendering_.step(surfaces_.list(), device_, dt, forces_);
+  rendering_.solve(surfaces_.list(), device_, dt);
+  passivity_.observe(rendering_.stored(surfaces_.list()), moved_, turned_, model_age_s_, dt);
+  rendering_.press(surfaces_.list(), device_, passivity_.factor(), forces_);
   reliefs_.lean(surfaces_.list(), rendering_.place(), forces_);
   const Wrench sum = rendering_.sum(surfaces_.list(), forces_);
   return {handover_.step(surfaces_.list(), sum.force_N, dt),
@@ -202,6 +211,8 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.torque_N_m = to_vec3f(out_.torque_N_m);
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
+  m.generated_J = static_cast<float>(passivity_.generated_J());
+  m.coupling = static_cast<float>(passivity_.factor());
   m.touch_how = static_cast<std::int8_t>(how(in));
   m.fade = static_cast<float>(share());
   m.buttons = device_.buttons;
@@ -223,6 +234,7 @@ TickOutput& Renderer::step(const TickInput& in) {
   const bool felt = share() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   const Eigen::Vector3d wanted = stepped(share() * (constraint.force_N + transient), in.force_step_N);
+  safety_.at(device_.position);
   const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
   out_.force_N = limited.force_N;
   out_.torque_N_m = limited.torque_N_m;
@@ -231,6 +243,7 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Eigen::Vector3d felt_transient = left * share() * transient;
   split({out_.force_N - felt_transient, out_.torque_N_m});
   book_.step(in.now, dt, felt_);
+  passivity_.note(felt_, surfaces_.list(), rendering_.turns() ? &rendering_.position() : nullptr);
   owed_.step(in.now, book_, uncertainty(), out_.reports);
   fill_state(in, felt_transient);
   return out_;

@@ -16,6 +16,7 @@
 #include "haptic_node/devices/device.h"
 #include "haptic_node/handover.h"
 #include "haptic_node/owed_begins.h"
+#include "haptic_node/passivity.h"
 #include "haptic_node/reliefs.h"
 #include "haptic_node/rendering.h"
 #include "haptic_node/safety.h"
@@ -100,6 +101,7 @@ class Renderer {
   Rendering rendering_;
   Handover handover_, torque_handover_;
   LoopDelay loop_delay_;
+  Passivity passivity_;
   Transients transients_;
   Safety& safety_;
   Fade fade_;
@@ -112,6 +114,7 @@ class Renderer {
   double device_share_ = 1;
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();  // of the device, since the last tick
   std::optional<sync::SimTime> model_time_;
+  double model_age_s_ = 0;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
   std::vector<FeltForce> felt_;          // of each surface, as commanded
   TickOutput out_;

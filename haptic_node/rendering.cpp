@@ -50,13 +50,11 @@ void Rendering::renew(const DeviceState& device) {
   left_m_ = reach_m_ + reach_time_s_ * (device.velocity.norm() + bound_m_ * device.spin.norm());
 }
 
-void Rendering::step(std::span<Surface> surfaces, const DeviceState& device, double dt,
-                     std::span<Eigen::Vector3d> forces) {
+void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {
   const DevicePose placed{pose_.position, turned(device)};
   switch (kind_) {
     case Kind::kProxy:
       proxy_.step(surfaces, device.position, dt);
-      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces);
       pose_ = {proxy_.position(), device.orientation};
       velocity_ = proxy_.velocity();
       spin_ = device.spin;
@@ -64,19 +62,51 @@ void Rendering::step(std::span<Surface> surfaces, const DeviceState& device, dou
     case Kind::kRigid:
       rigid_.step(surfaces, pose_of(device), dt, left_m_);
       left_m_ = std::max(0.0, left_m_ - rigid_.moved_m());
-      rigid_forces(surfaces, rigid_, device, forces);
       pose_ = {rigid_.position(), rigid_.orientation()};
       velocity_ = rigid_.velocity();
       spin_ = rigid_.spin();
       break;
     case Kind::kDirect:
       press_directly(surfaces, placed, pose_of(device), rigid_.lever_m(), radius_m_);
-      direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, forces);
       pose_ = pose_of(device);
       velocity_ = device.velocity;
       spin_ = device.spin;
       break;
   }
+}
+
+void Rendering::press(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+                      std::span<Eigen::Vector3d> forces) const {
+  switch (kind_) {
+    case Kind::kProxy:
+      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factor);
+      break;
+    case Kind::kRigid: rigid_forces(surfaces, rigid_, device, factor, forces); break;
+    case Kind::kDirect: direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, factor, forces); break;
+  }
+}
+
+Stored Rendering::stored(std::span<const Surface> surfaces) const {
+  Stored all;
+  Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d twist_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
+  double stiffest_N_m = 0, grips_J = 0;
+  for (const Surface& s : surfaces) {
+    if (s.depth_m <= 0 || !s.moves()) continue;
+    all.pressed = true;
+    const double K = s.coupling_stiffness_N_m;
+    push_N += K * s.depth_m * s.normal;
+    depth_m += s.depth_m * s.normal;
+    stiffest_N_m = std::max(stiffest_N_m, K);
+    if (!turns()) continue;
+    const Eigen::Vector3d moment = arm(s).cross(s.normal) / lever_m();
+    twist_N += K * s.depth_m * moment;
+    turn_m += s.depth_m * moment;
+    grips_J += 0.5 * K * s.grip.squaredNorm();
+  }
+  if (kind_ == Kind::kProxy) grips_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
+  all.energy_J = 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) + grips_J;
+  return all;
 }
 
 Wrench Rendering::sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const {

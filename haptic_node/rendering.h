@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptic_node/devices/device.h"
+#include "haptic_node/passivity.h"
 #include "haptic_node/proxy.h"
 #include "haptic_node/rigid_proxy.h"
 #include "haptic_node/settings.gen.h"
@@ -24,16 +25,21 @@ class Rendering {
   // another.
   bool change(const Settings& settings);
   Kind kind() const { return kind_; }
-  // Of so many planes that may be considered, how many must be: three hold a point, six a body, and as many again are
-  // what it meets next (design).
+  // Of so many planes that may be considered, how many must be: three hold a point, six a body, and as many again
+  // are what it meets next (design).
   std::size_t planes(std::size_t allowed) const { return turns() ? std::max<std::size_t>(allowed, 12) : allowed; }
 
   // The proxy is where the device is, and holds nothing.
   void reset(const DeviceState& device);
   // A touch model has come: so much further the tool may go.
   void renew(const DeviceState& device);
-  // One tick: sets depths, and the force of each surface on the hand, N. Realtime-safe: yes.
-  void step(std::span<Surface> surfaces, const DeviceState& device, double dt, std::span<Eigen::Vector3d> forces);
+  // One tick: sets depths. Realtime-safe: yes.
+  void solve(std::span<Surface> surfaces, const DeviceState& device, double dt);
+  // Then the force of each surface on the hand, N. factor: on the stiffness of the coupling to what moves.
+  void press(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+             std::span<Eigen::Vector3d> forces) const;
+  // And what their springs hold, of those that move, with a factor of 1.
+  Stored stored(std::span<const Surface> surfaces) const;
 
   // Of the proxy; of direct rendering, the device's.
   const Eigen::Vector3d& position() const { return pose_.position; }
@@ -52,10 +58,10 @@ class Rendering {
   // Makes the forces such that together they are what the hand feels of the constraints.
   void share(const Wrench& felt, std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces);
   double lever_m() const { return rigid_.lever_m(); }
-
- private:
+  // Torque is felt.
   bool turns() const { return kind_ == Kind::kRigid || (kind_ == Kind::kDirect && shaped_); }
 
+ private:
   bool shaped_;
   double radius_m_, bound_m_;
   Kind kind_;

@@ -43,7 +43,7 @@ double coupling_lever_m(const Settings& s) {
 }
 
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
-                  std::span<Eigen::Vector3d> forces) {
+                  double factor, std::span<Eigen::Vector3d> forces) {
   const std::size_t n = std::min({surfaces.size(), forces.size(), kMaxHalfSpaces});
   std::array<double, kMaxHalfSpaces> rate{};  // of each depth, m/s
   proxy.depth_rates(surfaces, device.velocity, device.spin, {rate.data(), n});
@@ -58,15 +58,16 @@ void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, co
     const double share = s.depth_m / pressed;
     if (!proxy.feasible())
       rate[i] = -share * past(s, device, arm).dot(s.normal) / off_centre(s, arm, proxy.lever_m());
-    const double normal = std::max(0.0, s.coupling_stiffness_N_m * s.depth_m + s.coupling_damping_N_s_m * rate[i]);
-    Eigen::Vector3d along = s.coupling_stiffness_N_m * s.grip;
-    if (!s.slips) along -= share * s.coupling_damping_N_s_m / off_centre(s, arm, proxy.lever_m()) * over;
+    const auto [K, B] = felt_gains(s, factor, pressed);
+    const double normal = std::max(0.0, K * s.depth_m + B * rate[i]);
+    Eigen::Vector3d along = K * s.grip;
+    if (!s.slips) along -= share * B / off_centre(s, arm, proxy.lever_m()) * over;
     forces[i] = normal * s.normal + within(along, normal * (s.slips ? s.friction_dynamic : s.friction_static));
   }
 }
 
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
-                   double tool_radius_m, std::span<Eigen::Vector3d> forces) {
+                   double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces) {
   double pressed = 0;
   for (const Surface& s : surfaces) pressed += s.depth_m;
   for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
@@ -75,8 +76,9 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
     if (s.depth_m <= 0) continue;
     const Eigen::Vector3d arm = device.orientation * s.tool_point - tool_radius_m * s.normal;
     const Eigen::Vector3d speed = past(s, device, arm);
-    const double damping = s.depth_m / pressed * s.coupling_damping_N_s_m / off_centre(s, arm, lever_m);
-    const double normal = std::max(0.0, s.coupling_stiffness_N_m * s.depth_m - damping * speed.dot(s.normal));
+    const auto [K, B] = felt_gains(s, factor, pressed);
+    const double damping = s.depth_m / pressed * B / off_centre(s, arm, lever_m);
+    const double normal = std::max(0.0, K * s.depth_m - damping * speed.dot(s.normal));
     forces[i] = normal * s.normal + within(-damping * flat(speed, s.normal), normal * s.friction_dynamic);
   }
 }

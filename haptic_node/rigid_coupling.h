@@ -18,13 +18,13 @@ double coupling_lever_m(const Settings& settings);
 
 // Of each surface that binds, N, into `forces`: along its normal by its depth and by the rate at which the device
 // presses into it, shared among all that bind; never pulling. Along it by its grip, within the cone.
-// Realtime-safe: yes.
+// factor: as of coupling_forces. Realtime-safe: yes.
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
-                  std::span<Eigen::Vector3d> forces);
+                  double factor, std::span<Eigen::Vector3d> forces);
 
 // The same of direct rendering, where friction is dynamic and fades with the speed over the surface.
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
-                   double tool_radius_m, std::span<Eigen::Vector3d> forces);
+                   double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 
 // Changes forces at those arms as little as can be, the large ones most, so that together they are `felt`: exactly
 // the force, and the torque as far as the places allow.

@@ -1,6 +1,6 @@
 // What keeps the person safe whatever arrives: the force is limited in size, in change per time and in the energy
-// that it gives to the hand, and it fades when the touch model is lost. Scenes come and go; the hand, its force
-// and what it has been given stay, so there is one Safety for the life of the process.
+// that it gives to the hand and in where it acts, and it fades when the touch model is lost. Scenes come and go;
+// the hand, its force and what it has been given stay, so there is one Safety for the life of the process.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,6 +19,7 @@ struct SafetyLimits {
   double power_W = 1;
   double torque_N_m = 0.3;
   double torque_slew_N_m_s = 75;
+  double workspace_m = 2;
 };
 SafetyLimits safety_limits(const Settings& settings);
 
@@ -33,6 +34,10 @@ class Safety {
 
   // A tick begins. A force that was not renewed within the watchdog of the device has been let go.
   void begin_tick(sync::HostTime now);
+
+  // Where the device is, before limit. The workspace is a ball about the place where it was first; over the
+  // outermost tenth of it the force goes to zero, outside there is none. A place that is not finite is outside.
+  void at(const Eigen::Vector3d& device_m);
 
   // One tick: the force to command now, N. moved_m: how far the device moved since the last call, under the force
   // that was returned then. A wanted force that is not finite counts as none. Realtime-safe: yes.
@@ -54,6 +59,8 @@ class Safety {
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), last_torque_ = Eigen::Vector3d::Zero();
   double turn_work_J_ = 0;  // of the torque, since the last tick
   sync::HostTime renewed_{};
+  std::optional<Eigen::Vector3d> centre_m_;
+  double inside_ = 1;  // factor of the workspace
 };
 
 // Factor on the force: 1 while touch models arrive, to 0 within `fade` from the moment at which the newest is

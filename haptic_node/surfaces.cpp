@@ -25,6 +25,15 @@ Eigen::Vector3d turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, d
   return (Eigen::AngleAxisd(at_most_rad, axis.normalized()) * from).normalized();
 }
 
+// The border lets no other in; should one come by another way, it is left out.
+bool makes_sense(const touch_plane_t& p) {
+  const double square = to_eigen(p.normal).squaredNorm();
+  return square > 0 && std::isfinite(square) && to_eigen(p.point_m).allFinite() &&
+         to_eigen(p.velocity_m_s).allFinite() && to_eigen(p.angular_velocity_rad_s).allFinite() &&
+         p.effective_mass_kg > 0 && std::isfinite(p.stiffness_N_m) && std::isfinite(p.damping_N_s_m) &&
+         std::isfinite(p.friction_static) && std::isfinite(p.friction_dynamic);
+}
+
 // Faster than a body can seem to turn to a hand: one radian in 10 ms.
 constexpr double kLargestSpin_rad_s = 100;
 
@@ -130,7 +139,8 @@ void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy, st
   for (Surface& s : list_) s.taken_ = false;
   // The list is in the order of the planes where no message changed it: each is looked for at its own place first.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
-    if (chosen[i]) take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy, i);
+    if (chosen[i] && makes_sense(model.planes[i]))
+      take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy, i);
   for (Surface& s : list_)
     if (!s.taken_) leave(s);
 }

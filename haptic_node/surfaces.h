@@ -49,6 +49,8 @@ struct Surface {
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
+  // Whether pushing it moves it.
+  bool moves() const { return effective_mass_kg < 1e9; }
   // Velocity of its material at a place, m/s.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& place) const {
     return velocity + angular_velocity.cross(place - point);

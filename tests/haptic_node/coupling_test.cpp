@@ -37,8 +37,8 @@ TEST_CASE("The gains keep all four rules for every mass, delay and device") {
 TEST_CASE("A light body is coupled softly, and more so the later it answers") {
   const CouplingLimits limits;
   const double soft = coupling_gains(1e6, 0, 0.01, 0.003, 1e-3, limits).stiffness_N_m;
-  CHECK(soft == Approx(0.1 * 0.01 / 9e-6));
-  CHECK(coupling_gains(1e6, 0, 0.01, 0.006, 1e-3, limits).stiffness_N_m == Approx(soft / 4));
+  CHECK(soft == Approx(0.1 * 0.01 / 9e-6).epsilon(0.002));
+  CHECK(coupling_gains(1e6, 0, 0.01, 0.006, 1e-3, limits).stiffness_N_m == Approx(soft / 4).epsilon(0.005));
   CHECK(coupling_gains(1e6, 0, 1e9, 0.006, 1e-3, limits).stiffness_N_m > 5 * soft);
 }
 

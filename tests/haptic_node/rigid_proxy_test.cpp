@@ -48,7 +48,7 @@ struct World {
     at.position = device.position;
     at.orientation = device.orientation;
     std::vector<Vector3d> forces(surfaces.size());
-    rigid_forces(surfaces, proxy, at, forces);
+    rigid_forces(surfaces, proxy, at, 1, forces);
     Wrench w;
     for (std::size_t i = 0; i < forces.size(); ++i) {
       w.force_N += forces[i];

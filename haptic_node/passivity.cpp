@@ -1,0 +1,170 @@
+#include "haptic_node/passivity.h"
+
+#include <cmath>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::haptic {
+namespace {
+
+// Longer than any delay that a touch model may have before it counts as lost, so that the last books are in.
+constexpr double kApart_s = 0.2;
+// From a tick to the step that applies its force and back, beyond the age of the touch model: a step and a tick.
+constexpr double kWay_s = 0.002;
+// How fast the estimate of what holds a body follows; a few models of 30 Hz are not averaged, nor is the noise of
+// one step believed.
+constexpr double kHeld_s = 0.02;
+// For so long it is believed that what held a body still does; then it counts as free. Longer than a period of 30
+// Hz, shorter than the 50 ms after which a touch model is lost.
+constexpr double kTrust_s = 0.04;
+// So many books are kept while nothing is felt on them. Design: several times what a touch model tells of.
+constexpr std::size_t kMostBooks = 32;
+// What was dissipated counts as credit up to here, so that old friction does not pay for a new oscillation.
+constexpr double kMostCredit_J = 0.01;
+// The allowance fills up so fast: after one bad moment touch comes back within seconds.
+constexpr double kRefill_W = 0.0002;
+// The factor falls to nothing within 5 ms of 1 kHz: a force of 8 N then stays below the limit of slew; and comes
+// back in a second, slower than any hand or body sways, so that it drives no cycle of its own.
+constexpr double kFall_1_s = 200, kRise_1_s = 1;
+// As in safety.cpp: faster than a hand can be; the device jumped, no work is done.
+constexpr double kFastest_m_s = 40, kFastest_rad_s = 100;
+
+bool finite(const touch_applied_t& a) { return to_eigen(a.impulse_N_s).allFinite() && std::isfinite(a.energy_J); }
+bool finite(const touch_plane_t& p) {
+  return to_eigen(p.velocity_m_s).allFinite() && to_eigen(p.normal).allFinite() &&
+         std::isfinite(p.effective_mass_kg) && p.effective_mass_kg > 0;
+}
+
+}  // namespace
+
+Passivity::Book* Passivity::find(std::int64_t contact_id) {
+  for (Book& b : books_)
+    if (b.contact_id == contact_id) return &b;
+  return nullptr;
+}
+
+Passivity::Book& Passivity::add(std::int64_t contact_id) {
+  if (books_.size() >= ContactBook::kMaxContacts)
+    books_.erase(std::max_element(books_.begin(), books_.end(),
+                                  [](const Book& x, const Book& y) { return x.idle_s < y.idle_s; }));
+  Book& b = books_.emplace_back();
+  b.contact_id = contact_id;
+  return b;
+}
+
+void Passivity::hear(Book& b, const touch_plane_t& plane, const touch_applied_t& applied, std::int64_t sim_ns) {
+  const Eigen::Vector3d normal = to_eigen(plane.normal), velocity = to_eigen(plane.velocity_m_s);
+  const double mass_kg = plane.effective_mass_kg;
+  if (b.told_ns >= 0 && sim_ns > b.told_ns) {
+    // Newton: what the body's motion changed by, less the push, is what others did.
+    const double dt = 1e-9 * static_cast<double>(sim_ns - b.told_ns);
+    const double others_N_s =
+        normal.dot(mass_kg * (velocity - b.velocity) - (to_eigen(applied.impulse_N_s) - b.applied_N_s));
+    b.held_N += (1 - std::exp(-dt / kHeld_s)) * (std::clamp(others_N_s / dt, 0.0, limits_.force_N) - b.held_N);
+  }
+  b.told_ns = sim_ns;
+  b.mass_kg = mass_kg;
+  b.normal = normal;
+  b.velocity = velocity;
+}
+
+void Passivity::hear(const touch_model_t& fresh) {
+  for (const touch_applied_t& a : fresh.applied) {
+    if (!finite(a)) continue;
+    Book* b = find(a.contact_id);
+    if (!b) b = &add(a.contact_id);
+    if (!b->told) {
+      b->told = true;
+      // More than can have been given since it was first felt here: the simulation knows it from before.
+      const Eigen::Vector3d impulse = to_eigen(a.impulse_N_s);
+      if (impulse.norm() > 1.5 * b->given_N_s.norm()) {
+        b->before_J = a.energy_J;
+        b->given_N_s = b->applied_N_s = impulse;
+      }
+    }
+    for (const touch_plane_t& p : fresh.planes)
+      if (p.contact_id == a.contact_id && finite(p)) hear(*b, p, a, fresh.header.sim_time_ns);
+    b->energy_J = a.energy_J;
+    b->applied_N_s = to_eigen(a.impulse_N_s);
+  }
+}
+
+void Passivity::note(std::span<const FeltForce> forces, std::span<const Surface> surfaces,
+                     const Eigen::Vector3d* about_m) {
+  for (Book& b : books_) {
+    b.force_N.setZero();
+    b.torque_N_m.setZero();
+  }
+  for (std::size_t i = 0; i < forces.size() && i < surfaces.size(); ++i) {
+    const FeltForce& f = forces[i];
+    if (!surfaces[i].moves() || f.force_N.isZero(0) || !f.force_N.allFinite()) continue;
+    Book* b = find(f.contact_id);
+    if (!b) b = &add(f.contact_id);
+    b->force_N -= f.force_N;
+    if (about_m) b->torque_N_m -= (f.point - *about_m).cross(f.force_N);
+    b->idle_s = 0;
+  }
+}
+
+// What the body was given since it told last, J.
+double Passivity::unseen_J(const Book& b, double window_s) const {
+  if (b.told_ns < 0 || b.idle_s > window_s) return 0;
+  Eigen::Vector3d p = b.given_N_s - b.applied_N_s;
+  const double size = p.norm(), most_N_s = limits_.force_N * (window_s + kWay_s);
+  if (size > most_N_s) p *= most_N_s / size;  // a part was never applied
+  double work_J = p.dot(b.velocity);
+  const double pushed = std::max(0.0, -p.dot(b.normal)), held = b.held_N * std::min(window_s, kTrust_s);
+  // What it gives is its own motion, until the push has turned it round.
+  if (work_J < 0) work_J = std::min(0.0, work_J + pushed * pushed / (2 * b.mass_kg));
+  return work_J + pushed * std::max(0.0, pushed - held) / (2 * b.mass_kg);
+}
+
+void Passivity::begin_episode() {
+  hand_J_ = settled_J_ = wasted_J_ = credit_J_ = 0;
+  for (Book& b : books_) {
+    b.before_J = b.energy_J;
+    b.given_N_s = b.applied_N_s;
+    b.held_N = 0;
+  }
+}
+
+// Those of facets that were stroked over long ago; what their bodies got stays counted.
+void Passivity::forget_the_idle() {
+  while (books_.size() > kMostBooks) {
+    const auto oldest = std::max_element(books_.begin(), books_.end(),
+                                         [](const Book& x, const Book& y) { return x.idle_s < y.idle_s; });
+    if (oldest->idle_s <= kApart_s) return;
+    settled_J_ += oldest->energy_J - oldest->before_J;
+    books_.erase(oldest);
+  }
+}
+
+void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
+                        double age_s, double dt) {
+  const bool moved = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt;
+  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kFastest_rad_s * dt;
+  const double window_s = std::max(0.0, age_s) + kWay_s;
+  double bodies_J = 0;
+  for (Book& b : books_) {
+    b.given_N_s += dt * b.force_N;
+    if (moved) hand_J_ -= b.force_N.dot(moved_m);
+    if (turned) hand_J_ -= b.torque_N_m.dot(turned_rad);
+    b.idle_s += dt;
+    bodies_J += b.energy_J - b.before_J + unseen_J(b, window_s);
+  }
+  const double stored_J = coupling.energy_J;
+
+  apart_s_ = coupling.pressed ? 0 : apart_s_ + dt;
+  if (apart_s_ > kApart_s) begin_episode(), bodies_J = 0;
+  credit_J_ = -hand_J_ - settled_J_ - bodies_J - wasted_J_;
+  if (credit_J_ < stored_J) wasted_J_ -= kRefill_W * dt;
+  const double beyond_J = std::max(0.0, credit_J_ - stored_J - kMostCredit_J);
+  wasted_J_ += beyond_J;
+  credit_J_ -= beyond_J;
+  const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
+  const double wanted = stored_J > allowed_J ? allowed_J / stored_J : 1.0;
+  factor_ = std::clamp(wanted, std::max(0.0, factor_ - kFall_1_s * dt), std::min(1.0, factor_ + kRise_1_s * dt));
+  forget_the_idle();
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,72 @@
+// One episode of touch in closed loop: a hand with the impedance of the virtual hand, the renderer, a world of one
+// wall or one body, and a bus between them that is late, thin, lossy or frozen. Pure; each figure is taken at the
+// true ports, from the motion of the body and not from what anybody says of it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "haptic_node/devices/virtual_hand.h"
+#include "haptic_node/settings.gen.h"
+
+namespace tactus::haptic::test {
+
+inline constexpr double kPress_m = 0.01, kTap_m = 0.006, kPush_m = 0.12;  // deep, deep, and far
+
+// What becomes of the touch model on its way.
+struct Network {
+  const char* name = "as it is";
+  int delay_ms = 0;
+  double rate_Hz = 1000;
+  bool bursts = false;   // 30 % lost, 10 messages in a row on average (Gilbert's chain)
+  bool freezes = false;  // for half a second, 0.7 s after the hand began, nothing comes
+};
+
+enum class Act {
+  kPress,  // 10 mm into the surface within 0.3 s, held for 2.5 s, and out
+  kTap,    // five times, 6 mm deep, at 2 Hz
+  kPush    // a free body along a table, 0.12 m in 1.2 s
+};
+
+struct EpisodeDef {
+  Act act = Act::kPress;
+  double mass_kg = 0;           // of the body; 0: a wall
+  double stiffness_N_m = 1000;  // of the surface
+  Network network;
+  HandImpedance hand;
+  unsigned seed = 7;  // of the losses
+  Settings settings;
+};
+
+struct EpisodeResult {
+  // The most that device port and body port have given together, over what they had taken in, at any moment of an
+  // episode of contact (time-domain passivity: Hannaford and Ryu 2002), mJ. A wall takes nothing. An episode ends
+  // when hand and surface have been apart, without force, for 0.2 s.
+  double generated_mJ = 0;
+  // The same as the renderer's observer has it: the most that it told.
+  double observed_mJ = 0;
+  double least_coupling = 1;  // the lowest factor that the controller chose
+  // Of the last half second of the hold: the force, its rms about its trend, that in the half second before, the
+  // least of the last three, and force over depth.
+  double force_N = 0, sway_N = 0, sway_before_N = 0, sway_least_N = 0, stiffness_N_m = 0;
+  int swings = 0;  // how often it goes by more than 0.03 N from one side of its trend to the other
+  // Sways all the time, to and fro, and does not die away: a body on a spring rings by itself, at 1 kg with 0.88
+  // of the sway after half a second; and what a long loss shakes once is no cycle.
+  bool cycles() const { return swings >= 3 && sway_least_N > 0.05 && sway_N > 0.95 * sway_before_N; }
+  double peak_N = 0;            // of the whole run
+  double ideal_N = 0;           // of springs in a row: hand, surface, what holds the body; pushed along: friction
+  double pushed_m = 0;          // how far the body came
+  double largest_step_N = 0;    // largest change of the force from tick to tick
+  std::vector<double> tick_us;  // what each tick took, where asked for
+};
+
+EpisodeResult run_episode(const EpisodeDef& def, bool timed = false);
+
+// That of the settings, a finger tip, a hand, an arm: orders of magnitude of what is published, see there.
+struct HandKind {
+  const char* name;
+  HandImpedance impedance;
+};
+std::span<const HandKind> hand_kinds();
+
+}  // namespace tactus::haptic::test
