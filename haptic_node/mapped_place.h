@@ -29,7 +29,7 @@ struct MappedPlace {
 
   // Of a plane that has just been told; normal: as it was told, world, unit.
   void take(const touch_plane_t& plane, const Eigen::Vector3d& normal) {
-    const Eigen::Vector3d u = to_eigen(plane.bump_u_body), n = to_eigen(plane.normal_body);
+    const Eigen::Vector3d u = to_eigen(plane.bump_u), n = to_eigen(plane.normal_body);
     const Eigen::Vector3d across = u - u.dot(normal) * normal;
     // A normal of no direction, or an axis along it, is of no body: then the surface is smooth.
     if (plane.material < 0 || n.norm() < 0.5 || across.norm() < 1e-3) {

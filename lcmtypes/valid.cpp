@@ -88,7 +88,7 @@ bool sane(const touch_plane_t& p) {
          unit(p.normal_body) && sane(p.tool_point_m) && sane(p.velocity_m_s) && sane(p.angular_velocity_rad_s) &&
          finite_positive(p.effective_mass_kg) && sane_not_negative(p.stiffness_N_m) &&
          sane_not_negative(p.damping_N_s_m) && sane_not_negative(p.friction_static) &&
-         sane_not_negative(p.friction_dynamic) && sane(p.bump_u_body);
+         sane_not_negative(p.friction_dynamic) && sane(p.bump_u);
 }
 
 bool sane(const touch_applied_t& a) { return sane(a.impulse_N_s) && sane(a.energy_J); }

@@ -309,7 +309,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.friction_static = static_cast<float>(s.friction_static);
     p.friction_dynamic = static_cast<float>(s.friction_dynamic);
     p.bump_asset = s.bump_asset;
-    if (s.mapped) p.bump_u_body = to_vec3f(body.orientation * Vector3d::Unit(bump_axes(normal_body).u));
+    if (s.mapped) p.bump_u = to_vec3f(body.orientation * Vector3d::Unit(bump_axes(normal_body).u));
     model_.planes.push_back(p);
   }
   model_.plane_count = static_cast<std::int8_t>(model_.planes.size());

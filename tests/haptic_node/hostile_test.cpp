@@ -61,7 +61,7 @@ struct Liar {
     p.angular_velocity_rad_s = to_vec3f(vector());
     p.tool_point_m = to_vec3f(below(4) ? Vector3d(Vector3d::Zero()) : vector());
     p.bump_asset = static_cast<std::int64_t>(random());
-    p.bump_u_body = to_vec3f(vector());
+    p.bump_u = to_vec3f(vector());
     p.material = finite ? below(3) - 1 : static_cast<int>(random());
     return p;
   }

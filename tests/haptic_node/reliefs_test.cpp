@@ -45,7 +45,7 @@ touch_plane_t mapped(std::int64_t id, const Vector3d& x, double turned = 0,
   p.point_body_m = to_vec3f(turn.transpose() * (Vector3d(x.x(), x.y(), 0) - origin));
   p.normal_body = to_vec3f(Vector3d::UnitZ());
   p.bump_asset = 1;
-  p.bump_u_body = to_vec3f(turn * Vector3d::UnitX());
+  p.bump_u = to_vec3f(turn * Vector3d::UnitX());
   return p;
 }
 
@@ -127,7 +127,7 @@ TEST_CASE("Every plane that is touched has its own relief, up to many at once") 
     wall.point_body_m = to_vec3f(Vector3d(0.02, 0.003, 0.004)),
     wall.point_m = to_vec3(Vector3d(0.02, 0.003, 0.004));
     wall.normal_body = to_vec3f(-Vector3d::UnitX());
-    wall.bump_u_body = to_vec3f(Vector3d::UnitY());  // a wall across x: (y, z)
+    wall.bump_u = to_vec3f(Vector3d::UnitY());  // a wall across x: (y, z)
     double t = 0;
     const Vector3d device(0.02 - kRadius_m + 0.001, 0.003, kRadius_m - 0.002);
     Vector3d force;
@@ -239,8 +239,8 @@ TEST_CASE("A plane that names no axis, an absurd one or no material is smooth") 
   bench.renderer.set_maps(waves());
   touch_plane_t p = mapped(7, {0.004, 0, 0});
   const int wrong = GENERATE(0, 1, 2, 3, 4);
-  if (wrong == 0) p.bump_u_body = {};
-  if (wrong == 1) p.bump_u_body = to_vec3f(Vector3d::UnitZ());  // along the normal
+  if (wrong == 0) p.bump_u = {};
+  if (wrong == 1) p.bump_u = to_vec3f(Vector3d::UnitZ());  // along the normal
   if (wrong == 2) p.material = -1;
   if (wrong == 3) p.material = 1000;  // of another scene
   if (wrong == 4) p.normal_body = {};

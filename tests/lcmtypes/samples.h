@@ -96,7 +96,7 @@ class Samples {
     fill(p.tool_point_m), fill(p.velocity_m_s), fill(p.angular_velocity_rad_s);
     p.effective_mass_kg = single(0.001, 9), p.stiffness_N_m = single(0, 9000), p.damping_N_s_m = single(0, 9);
     p.friction_static = single(0, 1), p.friction_dynamic = single(0, 1);
-    p.bump_asset = whole(0, 100), fill(p.bump_u_body);
+    p.bump_asset = whole(0, 100), fill(p.bump_u);
   }
   void fill(touch_applied_t& a) { a.contact_id = whole(0, 9), fill(a.impulse_N_s), a.energy_J = single(-1, 1); }
   void fill(tool_constraint_t& c) {

@@ -127,16 +127,16 @@ TEST_CASE("A plane names the relief of its surface and the axis of the body alon
   CHECK((to_eigen(plane().normal_body) - sign * Vector3d::Unit(across)).norm() < 1e-6);
   CHECK(plane().bump_asset == 77);
   const Vector3d u = pose.linear() * Vector3d::Unit((across + 1) % 3);
-  CHECK((to_eigen(plane().bump_u_body) - u).norm() < 1e-6);
+  CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
   SECTION("also for a map of friction alone") {
     w.materials[1].bump_asset = 0, w.materials[1].friction_asset = 78;
     CHECK(plane().bump_asset == 0);
-    CHECK((to_eigen(plane().bump_u_body) - u).norm() < 1e-6);
+    CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
   }
   SECTION("and a smooth one names none") {
     w.shapes[shape].material = 0;
     CHECK(plane().bump_asset == 0);
-    CHECK(to_eigen(plane().bump_u_body) == Vector3d(0, 0, 0));
+    CHECK(to_eigen(plane().bump_u) == Vector3d(0, 0, 0));
     w.shapes[shape].material = -1;
     CHECK(plane().bump_asset == 0);
   }
