@@ -154,7 +154,8 @@ Row run(const sim::WorldDef& world, sim::MeshTrees& trees, const Stroke& stroke,
       *trace << '\n';
     }
     if (t < stroke.ends_s() + 0.02 || t > end_s - stroke.ends_s()) {
-      row.ends_max_N = std::max(row.ends_max_N, change);
+      // The hand is set going sideways from one tick to the next when it is in: that step of its speed is its own.
+      if (t <= stroke.ends_s() || t > end_s - stroke.ends_s()) row.ends_max_N = std::max(row.ends_max_N, change);
       continue;
     }
     changes.push_back(change);
