@@ -110,6 +110,7 @@ int main(int argc, char** argv) try {
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
       head_tool = head_of(*scene.scene());
+      head.forget();
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);

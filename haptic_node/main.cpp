@@ -74,11 +74,12 @@ int main(int argc, char** argv) try {
   bool no_touch = false;  // so are all tools of the scene: no touch model says that the world has begun
   auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
   sync::SettingChanges changes(options.name, options.run_id);
+  // A safety limit may not become looser than the scene has it, nor the command line.
+  haptic::Settings own = given.settings;
   const auto change = [&](const std::string& name, const std::string& value) {
-    sync::change_live(choice.settings, given.settings, haptic::setting_fields(), name, value);
-    if (session) session->change(choice.settings);
-    std::cerr << options.name << ": " << name << " is " << value << "; "
-              << haptic::limits_sentence(choice.settings) << "\n";
+    if (!session) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
+    sync::change_live(choice.settings, own, haptic::setting_fields(), name, value);
+    session->change(choice.settings);
   };
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
@@ -90,6 +91,7 @@ int main(int argc, char** argv) try {
     sense.step(now);
     if (scenes.poll(now)) {
       choice = haptic::choose(*scenes.scene(), tool_name, options.set);
+      own = choice.settings;
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       if (session) session->let_go();
       device.reset();
@@ -139,7 +141,8 @@ int main(int argc, char** argv) try {
       if (session) session->push(m->message, m->arrival);
     while (const auto m = device_states.pop())
       if (session) session->push(m->message, m->arrival);
-    while (const auto m = setting_changes.pop()) changes.take(m->message, change);
+    // One a tick: whoever moves a slider takes no more of a tick than that.
+    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     if (!session) continue;
     haptic::TickOutput& out = session->step(now,

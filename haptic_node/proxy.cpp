@@ -77,6 +77,7 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
     shift.setZero();
     closest = solve(surfaces, device);
   }
+  feasible_ = closest.feasible;
   touching_ = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.depth_m > 0; });
   if (!touching_) slipping_ = false;
   // Garbage in, for example two nearly parallel planes far away, must not send the tool out of the world.

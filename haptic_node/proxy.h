@@ -22,6 +22,7 @@ class Proxy {
     velocity_.setZero();
     shift_.setZero();
     slipping_ = false;
+    touching_ = false;
   }
 
   // One tick: sets depth_m of every surface. Realtime-safe: yes.
@@ -33,6 +34,8 @@ class Proxy {
   const Eigen::Vector3d& shift() const { return shift_; }
   bool slipping() const { return slipping_; }
   bool touching() const { return touching_; }
+  // False: the surfaces have no point in common, and each is pressed for itself.
+  bool feasible() const { return feasible_; }
 
  private:
   Eigen::Vector3d carried(std::span<const Surface> surfaces, double dt) const;
@@ -42,6 +45,7 @@ class Proxy {
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
   bool slipping_ = false;
   bool touching_ = false;
+  bool feasible_ = true;
 };
 
 }  // namespace tactus::haptic

@@ -1,7 +1,9 @@
 #include "haptic_node/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "haptic_node/turns.h"
 #include "lcmtypes/vectors.h"
@@ -33,6 +35,19 @@ TransientShape transient_shape(const Settings& s) {
           s.transient_decay_1_s,
           {kLate, sync::from_seconds(s.late_tolerance_s),
            sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
+}
+
+// So many as a message tells of; the others' share goes to these.
+void keep_largest(std::span<Eigen::Vector3d> forces) {
+  if (forces.size() <= ContactBook::kMaxTold || forces.size() > kMaxHalfSpaces) return;
+  std::array<double, kMaxHalfSpaces> sizes;
+  for (std::size_t i = 0; i < forces.size(); ++i) sizes[i] = forces[i].squaredNorm();
+  const auto last = sizes.begin() + ContactBook::kMaxTold - 1;
+  std::nth_element(sizes.begin(), last, sizes.begin() + static_cast<std::ptrdiff_t>(forces.size()),
+                   std::greater<>());
+  std::size_t kept = 0;
+  for (Eigen::Vector3d& f : forces)
+    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactBook::kMaxTold)) f.setZero();
 }
 
 }  // namespace
@@ -67,6 +82,11 @@ void Renderer::change(const Settings& settings) {
   transients_.change(transient_shape(settings));
   reliefs_.change(reliefs_of(settings));
   if (rendering_.change(settings)) {
+    for (Surface& s : surfaces_.list()) {
+      s.grip.setZero();
+      s.owed.setZero();
+      s.slips = false;
+    }
     handover_.renew();
     torque_handover_.renew();
   }
@@ -181,6 +201,7 @@ void Renderer::split(const Wrench& felt_constraint) {
   const bool any = std::any_of(forces_.begin(), forces_.end(), [](const auto& f) { return f.norm() > 0; });
   felt_.clear();
   if (!any) return;
+  keep_largest(forces_);
   rendering_.share(felt_constraint, list, forces_);
   for (std::size_t i = 0; i < list.size(); ++i)
     felt_.push_back(
@@ -234,7 +255,7 @@ TickOutput& Renderer::step(const TickInput& in) {
   const bool felt = share() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   const Eigen::Vector3d wanted = stepped(share() * (constraint.force_N + transient), in.force_step_N);
-  safety_.at(device_.position);
+  if (!device_.lost) safety_.at(device_.position);
   const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
   out_.force_N = limited.force_N;
   out_.torque_N_m = limited.torque_N_m;

@@ -8,6 +8,10 @@
 namespace tactus::haptic {
 namespace {
 
+// As tool_touch.h of the simulation: it looks no further around a tool that says it is faster. Design: faster than
+// a hand that feels (a reach is 1 to 2 m/s).
+constexpr double kFastestHand_m_s = 5;
+
 Rendering::Kind kind_of(const std::string& name, bool shaped) {
   if (name == "direct") return Rendering::Kind::kDirect;
   if (name == "proxy") return Rendering::Kind::kProxy;
@@ -26,6 +30,7 @@ Rendering::Rendering(const tool_def_t& tool, const Settings& settings)
       kind_(kind_of(settings.rendering, shaped_)),
       reach_m_(settings.proxy_reach_m),
       reach_time_s_(settings.proxy_reach_time_s),
+      force_limit_N_(settings.force_limit_N),
       rigid_(coupling_lever_m(settings), bound_m_, radius_m_) {
   arms_.reserve(kMaxHalfSpaces);
 }
@@ -47,7 +52,8 @@ void Rendering::reset(const DeviceState& device) {
 }
 
 void Rendering::renew(const DeviceState& device) {
-  left_m_ = reach_m_ + reach_time_s_ * (device.velocity.norm() + bound_m_ * device.spin.norm());
+  const double speed_m_s = device.velocity.norm() + bound_m_ * device.spin.norm();
+  left_m_ = reach_m_ + reach_time_s_ * std::min(speed_m_s, kFastestHand_m_s);
 }
 
 void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {
@@ -90,7 +96,7 @@ Stored Rendering::stored(std::span<const Surface> surfaces) const {
   Stored all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d twist_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
-  double stiffest_N_m = 0, grips_J = 0;
+  double stiffest_N_m = 0, grips_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
     if (s.depth_m <= 0 || !s.moves()) continue;
     all.pressed = true;
@@ -98,6 +104,7 @@ Stored Rendering::stored(std::span<const Surface> surfaces) const {
     push_N += K * s.depth_m * s.normal;
     depth_m += s.depth_m * s.normal;
     stiffest_N_m = std::max(stiffest_N_m, K);
+    each_J += 0.5 * K * s.depth_m * s.depth_m;
     if (!turns()) continue;
     const Eigen::Vector3d moment = arm(s).cross(s.normal) / lever_m();
     twist_N += K * s.depth_m * moment;
@@ -105,7 +112,10 @@ Stored Rendering::stored(std::span<const Surface> surfaces) const {
     grips_J += 0.5 * K * s.grip.squaredNorm();
   }
   if (kind_ == Kind::kProxy) grips_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
-  all.energy_J = 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) + grips_J;
+  // Where surfaces leave no room, or each is a spring at the device, what they push does not add up to one
+  // stretch.
+  const bool one = kind_ == Kind::kProxy ? proxy_.feasible() : kind_ == Kind::kRigid && rigid_.feasible();
+  all.energy_J = grips_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) : each_J);
   return all;
 }
 
@@ -134,7 +144,7 @@ void Rendering::share(const Wrench& felt, std::span<const Surface> surfaces, std
   if (!turns()) return;
   arms_.clear();
   for (const Surface& s : surfaces) arms_.push_back(arm(s));
-  share_wrench(felt, arms_, forces);
+  share_wrench(felt, arms_, forces, force_limit_N_);
 }
 
 }  // namespace tactus::haptic

@@ -65,7 +65,7 @@ class Rendering {
   bool shaped_;
   double radius_m_, bound_m_;
   Kind kind_;
-  double reach_m_, reach_time_s_;
+  double reach_m_, reach_time_s_, force_limit_N_;
   double left_m_ = 0;  // that the tool may go on this touch model
   Proxy proxy_;
   RigidProxy rigid_;

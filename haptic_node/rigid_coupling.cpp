@@ -83,7 +83,8 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
   }
 }
 
-void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces) {
+void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
+                  double most_N) {
   double sizes = 0, lever_m = 0;
   for (const Eigen::Vector3d& f : forces) sizes += f.norm();
   if (!(sizes > 0)) return;
@@ -111,6 +112,10 @@ void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std
     if (axes.eigenvalues()[k] > 1e-6 * lever_m * lever_m)
       turn += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
   }
+  double largest_N = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    largest_N = std::max(largest_N, forces[i].norm() / sizes * turn.cross(arms[i] - middle).norm());
+  if (largest_N > most_N) turn *= most_N / largest_N;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const double weight = forces[i].norm() / sizes;
     forces[i] += weight * (force + turn.cross(arms[i] - middle));

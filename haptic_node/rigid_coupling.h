@@ -27,7 +27,9 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
                    double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 
 // Changes forces at those arms as little as can be, the large ones most, so that together they are `felt`: exactly
-// the force, and the torque as far as the places allow.
-void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces);
+// the force, and the torque as far as the places allow without couples of forces larger than most_N: places that lie
+// nearly on a line would need them.
+void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
+                  double most_N);
 
 }  // namespace tactus::haptic

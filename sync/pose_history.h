@@ -29,6 +29,8 @@ class PoseHistory {
   explicit PoseHistory(OwnClock own) : sender_(own), own_(own) {}
 
   void push(const tool_state_t& state, HostTime arrival);
+  // What was heard is of a world that is no more.
+  void forget() { samples_.clear(); }
   // kNone: nothing was ever heard. Past kStaleAfter it is still the last pose, and kStale.
   Sample<BodyPose> at(HostTime t) const;
 

@@ -68,7 +68,7 @@ void set(Settings& settings, std::span<const SettingField<Settings>> table, std:
 }
 
 // Changes one option of a node that runs. It is asked for over the bus, by anybody: a safety limit may not become looser
-// than its default, nor than `own`, which is what the command line says. Throws std::invalid_argument with one sentence;
+// than its default, nor than `own`, which is what scene and command line say. Throws std::invalid_argument with one sentence;
 // then nothing has changed.
 template <class Settings>
 void change_live(Settings& settings, const Settings& own, std::span<const SettingField<Settings>> table,
@@ -83,7 +83,7 @@ void change_live(Settings& settings, const Settings& own, std::span<const Settin
       const double past = changed.**limit - own.**limit;
       if (std::string_view(entry.row.safety) == "max" ? past > 0 : past < 0)
         throw std::invalid_argument("setting " + std::string(name) +
-                                    " protects a person: it may not be looser than the node's own command line says");
+                                    " protects a person: it may not be looser than its scene and its command line say");
     }
     settings = std::move(changed);
     return;

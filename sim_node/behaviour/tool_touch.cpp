@@ -66,6 +66,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     if (s.material < 0) continue;
     const material_def_t& m = world.materials[static_cast<std::size_t>(s.material)];
     surfaces_.back().bump_asset = m.bump_asset;
+    if (m.bump_asset != 0) relief_m_ = std::max(relief_m_, m.bump_height_m);
     surfaces_.back().mapped = m.bump_asset != 0 || m.friction_asset != 0;
   }
   std::vector<SphereTree::Sphere> fixed;

@@ -2,6 +2,7 @@
 // tool is a ghost at its proxy's pose; the force is the haptic node's. Pure.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
@@ -27,6 +28,9 @@ namespace tactus::sim {
 
 class ToolTouch {
  public:
+  // Whoever tells of a faster one, in a false message, does not make the world look for surfaces everywhere. Design:
+  // faster than a hand that feels (a reach is 1 to 2 m/s).
+  static constexpr double kFastestHand_m_s = 5;
   // Speed that a unit impulse along n at the point of a body gives to that point, 1/kg.
   using Mobility = std::function<double(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n)>;
 
@@ -98,7 +102,8 @@ class ToolTouch {
     return shape_ ? Eigen::Vector3d(velocity_ + spin_.cross(device_turn_ * n.tool_point_m)) : velocity_;
   }
   double reach_m() const {
-    return bound_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * (velocity_.norm() + bound_m_ * spin_.norm());
+    const double speed_m_s = std::min(velocity_.norm() + bound_m_ * spin_.norm(), kFastestHand_m_s);
+    return bound_m_ + relief_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * speed_m_s;
   }
   void look_around(sync::SimTime now, std::span<const BodyMotion> bodies);
   void meet(sync::SimTime now, std::size_t surface, const BodyMotion& body, double reach_m);
@@ -148,6 +153,7 @@ class ToolTouch {
   bool known_ = false;
   Eigen::Vector3d proxy_{0, 0, 0}, device_{0, 0, 0}, velocity_{0, 0, 0}, proxy_velocity_{0, 0, 0};
   // Of a shape; a ball turns without touching anything else.
+  double relief_m_ = 0;  // the highest on any surface: a hand may feel a surface so much higher than it is here
   Eigen::Vector3d spin_{0, 0, 0};
   Eigen::Quaterniond proxy_turn_ = Eigen::Quaterniond::Identity(), device_turn_ = Eigen::Quaterniond::Identity();
   sync::SimTime heard_{}, last_stamp_{};

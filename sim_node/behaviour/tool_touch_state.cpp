@@ -50,6 +50,10 @@ void ToolTouch::feel(sync::SimTime now, std::span<const BodyMotion> bodies, std:
   if (!news.empty()) {
     hear(news.back());
     velocity_ = to_eigen(news.back().device_velocity_m_s);
+    if (shape_) {
+      spin_ = to_eigen(news.back().device_spin_rad_s);
+      device_turn_ = to_eigen(news.back().device.orientation).normalized();
+    }
   }
   // What was seen at this instant before is looked for anew.
   for (Near& n : near_) n.seen = std::min(n.seen, now - sync::Nanoseconds(1));

@@ -144,7 +144,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     last_force = out.force_N;
   }
   // That it was pressed at all, and that lies did get in.
-  CHECK(pressed > ticks / 50);
+  CHECK(pressed > ticks / 100);
   if (finite) CHECK(let_in > ticks / 20);
 }
 

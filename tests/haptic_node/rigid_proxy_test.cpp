@@ -3,6 +3,7 @@
 #include "haptic_node/rigid_proxy.h"
 
 #include <catch2/catch.hpp>
+#include <limits>
 #include <random>
 
 #include "haptic_node/rigid_coupling.h"
@@ -225,7 +226,7 @@ TEST_CASE("Forces that are to be another wrench are, as far as their places allo
     std::vector<Vector3d> arms(count), forces(count);
     for (std::size_t i = 0; i < count; ++i) arms[i] = vector(0.03), forces[i] = vector(1);
     const Wrench felt{vector(1), vector(0.02)};
-    share_wrench(felt, arms, forces);
+    share_wrench(felt, arms, forces, std::numeric_limits<double>::infinity());
     Wrench sum;
     for (std::size_t i = 0; i < count; ++i) {
       sum.force_N += forces[i];
@@ -239,4 +240,17 @@ TEST_CASE("Forces that are to be another wrench are, as far as their places allo
       CHECK((error - error.dot(line) * line).norm() < 1e-6);
     }
   }
+}
+
+TEST_CASE("Places nearly on a line are not torn apart by a torque about it") {
+  const std::vector<Vector3d> arms{{-0.02, 0, -0.01}, {0, 0.0001, -0.01}, {0.02, 0, -0.01}};
+  std::vector<Vector3d> forces(3, Vector3d(0, 0, 1));
+  const Wrench felt{{0, 0, 3}, {0.01, 0, 0}};
+  share_wrench(felt, arms, forces, 8);
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& f : forces) {
+    sum += f;
+    CHECK(f.norm() <= 8 + 1.01);
+  }
+  CHECK((sum - felt.force_N).norm() < 1e-9);
 }

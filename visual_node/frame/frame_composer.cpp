@@ -42,6 +42,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
   settings_ = settings;
   scene_ = scene;
   head_tool_ = head_of(scene);
+  head_.forget();
   view_.emplace(scene, meshes, settings, height_maps);
   flashes_ = Flashes(settings);
   ledger_.set(settings);
