@@ -1,6 +1,7 @@
 // Several hands on one scene, each a process: one goes and one comes, and neither the world nor the hand that
 // stays notices.
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tactus/contact_events_t.hpp>
@@ -95,28 +96,46 @@ struct ThreeHands : RunScript {
   }
 };
 
+// One goes, another comes, is killed and comes back, and one is told to push less.
+struct Story {
+  ThreeHands c;
+  std::vector<Span> two, alone, joined, again, gentle;
+
+  Story() {
+    c.begin();
+    c.output_of({"sv", "down", c.service("haptic_node_third")});
+    sleep_s(1.5);
+    two = c.watch();
+    c.output_of({"sv", "down", c.service("haptic_node_right")});
+    alone = c.watch();
+    c.output_of({"sv", "up", c.service("haptic_node_third")});
+    joined = c.watch();
+    c.output_of({"sv", "kill", c.service("haptic_node_third")});  // comes back by itself
+    again = c.watch();
+    // By the script that people use.
+    const std::string answer =
+        c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/set", "--in", c.out(),
+                     "haptic_node", "force_limit=1N"});
+    CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
+    gentle = c.watch();
+    c.processes.signal("run", SIGINT);
+    CHECK(c.finish(60) == 0);  // who was taken away is missed by nobody
+    CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
+  }
+};
+
 }  // namespace
 
 TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices") {
-  ThreeHands c;
-  c.begin();
-  c.output_of({"sv", "down", c.service("haptic_node_third")});
-  sleep_s(1.5);
-  const auto two = c.watch();
-  c.output_of({"sv", "down", c.service("haptic_node_right")});
-  const auto alone = c.watch();
-  c.output_of({"sv", "up", c.service("haptic_node_third")});
-  const auto joined = c.watch();
-  c.output_of({"sv", "kill", c.service("haptic_node_third")});  // comes back by itself
-  const auto again = c.watch();
-  // One of them is told to push less, by the script that people use.
-  const std::string answer = c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/set",
-                                          "--in", c.out(), "haptic_node", "force_limit=1N"});
-  CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
-  const auto gentle = c.watch();
-  c.processes.signal("run", SIGINT);
-  CHECK(c.finish(60) == 0);  // who was taken away is missed by nobody
-  CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
+  // A machine that is kept from its work before anything is changed has nothing to compare with: once more then.
+  auto story = std::make_unique<Story>();
+  for (int tries = 1; tries < 3 && figures(RunLog(story->c.out()), story->two).sim_Hz < 990; ++tries) {
+    story.reset();
+    story = std::make_unique<Story>();
+  }
+  const ThreeHands& c = story->c;
+  const auto &two = story->two, &alone = story->alone, &joined = story->joined, &again = story->again,
+             &gentle = story->gentle;
 
   const RunLog log(c.out());
   const Figures before = figures(log, two);
