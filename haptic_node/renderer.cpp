@@ -203,9 +203,10 @@ void Renderer::split(const Wrench& felt_constraint) {
   if (!any) return;
   keep_largest(forces_);
   rendering_.share(felt_constraint, list, forces_);
-  for (std::size_t i = 0; i < list.size(); ++i)
-    felt_.push_back(
-        {list[i].contact_id, list[i].body, rendering_.position() + rendering_.arm(list[i]), forces_[i]});
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    felt_.push_back({list[i].contact_id, list[i].body, Eigen::Vector3d::Zero(), forces_[i]});
+    if (!forces_[i].isZero(0)) felt_.back().point = rendering_.place().touched(list[i]);
+  }
 }
 
 sync::How Renderer::how(const TickInput& in) const {

@@ -96,7 +96,7 @@ class Surfaces {
             std::size_t at_most = kMaxPresent);
   void clear() { list_.clear(); }
   // How the tool is turned from now on; without word, not at all.
-  void turn(const Eigen::Quaterniond& orientation) { orientation_ = orientation; }
+  void turn(const Eigen::Quaterniond& orientation) { turned_ = orientation.toRotationMatrix(); }
 
   // At most kMaxHalfSpaces.
   std::span<Surface> list() { return list_; }
@@ -113,7 +113,7 @@ class Surfaces {
   // place: of the tool, what meets the surface, or its centre where a skin keeps that off.
   double true_height(const Told& told, const Eigen::Vector3d& place) const;
   Eigen::Vector3d place_of(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
-    return proxy + orientation_ * tool_point;
+    return proxy + turned_ * tool_point;
   }
   std::bitset<kMaxOffered> choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
                                   std::size_t at_most) const;
@@ -125,7 +125,7 @@ class Surfaces {
 
   double radius_m_;
   SurfaceLimits limits_;
-  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d turned_ = Eigen::Matrix3d::Identity();  // the tool, from its frame to the world
   std::optional<sync::SimTime> now_;
   std::vector<Surface> list_;
 };

@@ -52,7 +52,8 @@ struct Liar {
     if (kind == 3) p.point_m = to_vec3(vector());
     if (!finite && kind == 4) p.normal = to_vec3f(vector());
     const auto positive = [&](double x) { return finite ? std::clamp(std::abs(x), 1e-30, 9e8) : x; };
-    p.effective_mass_kg = static_cast<float>(positive(number()));
+    // Every third stands still, for all that it says: what moves the controller of passivity soon lets go of.
+    p.effective_mass_kg = below(3) == 0 ? 1e10f : static_cast<float>(positive(number()));
     p.stiffness_N_m = static_cast<float>(positive(number()));
     p.damping_N_s_m = static_cast<float>(positive(number()));
     p.friction_static = static_cast<float>(positive(number()));
@@ -144,7 +145,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     last_force = out.force_N;
   }
   // That it was pressed at all, and that lies did get in.
-  CHECK(pressed > ticks / 100);
+  CHECK(pressed > ticks / 50);
   if (finite) CHECK(let_in > ticks / 20);
 }
 
