@@ -37,6 +37,7 @@ class BindingSet {
   // Puts another in; false when it depends on those that are there.
   bool add(std::size_t index, const Vector6& normal);
   void drop(std::size_t k);
+  void clear() { size_ = 0; }
   // v in terms of the binding normals, least squares.
   std::array<double, 6> coefficients(const Vector6& v) const;
 

@@ -45,7 +45,7 @@ void RigidProxy::reset(const DevicePose& at) {
   velocity_.setZero();
   spin_.setZero();
   moved_m_ = 0;
-  binding_ = {};
+  binding_.clear();
   feasible_ = true;
 }
 
