@@ -1,23 +1,26 @@
 // audio_node: sounds the hits and scrapes of the scene through a sound card, each on its sample: when PLAYOUT
 // says, else at a delay of its own.
 //
-//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); SCENE; TOOL_STATE of a head, where the ear is
+//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); WORLD_STATE, how bodies with maps are turned; SCENE;
+//        TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
 // Losing CONTACT_EVENTS lets what sounds die away; losing the sound card is reported, and the card is tried again.
 // The loop never waits for another node, the card's callback never for the loop.
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <memory>
+#include <thread>
 
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
 #include "audio_node/sliding.h"
 #include "lcmtypes/pointing.h"
+#include "sync/body_history.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
+#include "sync/opening.h"
 #include "sync/pose_history.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
@@ -73,16 +76,17 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
+  auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   // Past the profile, which makes events late or rare: where the ear is, is none.
   auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
   sync::PoseHistory head(node.bus().clocks());
   int head_tool = -1;  // of the scene; -1: the ear stays
   sync::ContactStream contacts(node.bus().clocks());
-  audio::HeardReliefs reliefs;  // outlives the output, whose callback reads them
+  sync::BodyHistory bodies(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority);
   std::unique_ptr<audio::Impacts> impacts;
   std::unique_ptr<audio::Sliding> sliding;
-  std::optional<sync::Opening<audio::HeightMaps>> maps;
+  std::optional<sync::Opening<audio::HeardSurfaces>> surfaces;
   sync::HostTime slid_at{};
   std::int64_t scenes = 0;
 
@@ -115,16 +119,27 @@ int main(int argc, char** argv) try {
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
       sliding.reset();
-      maps.emplace([bytes = audio::pictures_of(scene)] { return audio::read_maps(bytes); });
+      output.hear(nullptr);
+      surfaces.emplace([of = *scene.scene(), pictures = sync::pictures_of(scene)] {
+        sync::leave_realtime();
+        return audio::read_surfaces(of, pictures);
+      });
     }
-    if (maps && maps->done()) {
-      sliding = std::make_unique<audio::Sliding>(*scene.scene(), *maps->take(), reliefs, output.settings());
-      maps.reset();
+    if (surfaces && surfaces->done()) {
+      const std::shared_ptr<const audio::HeardSurfaces> heard = surfaces->take();
+      surfaces.reset();
+      output.hear(heard);
+      sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, output.settings());
     }
+    // Of scenes that are over: tables of 200 MB take 20 ms to free.
+    if (auto unread = output.take_unread(); !unread.empty())
+      std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
     const bool plays = (impacts || now - started > kOpenAnyway) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
+    while (const auto m = world.pop())
+      if (!sliding || sliding->any()) bodies.push(m->message, m->arrival);
     while (const auto m = tools.pop())
       if (m->message.tool == head_tool) head.push(m->message, m->arrival);
 
@@ -143,8 +158,11 @@ int main(int argc, char** argv) try {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone)
         sliding->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
-      const auto state = contacts.state_at(map->to_sim(std::min(now, heard_at - sense.delay())));
-      for (const audio::Scrape& scrape : sliding->scrapes(state.value, heard_at, sync::to_seconds(now - slid_at)))
+      const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
+      contacts.keep(sense.delay());
+      bodies.keep(sense.delay());
+      for (const audio::Scrape& scrape :
+           sliding->scrapes(contacts.state_at(t).value, t, heard_at, sync::to_seconds(now - slid_at)))
         output.submit(scrape);
       slid_at = now;
     }

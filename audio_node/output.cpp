@@ -25,7 +25,8 @@ Output::Output(std::string folder, std::string device, int fifo_priority)
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
-      crossing_(std::make_shared<Crossing>()) {}
+      crossing_(std::make_shared<Crossing>()),
+      scrapes_(*crossing_) {}
 
 void Output::configure(Settings settings) {
   if (!device_.empty()) settings.device = device_;

@@ -4,8 +4,10 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "audio_node/device/stream.h"
+#include "audio_node/scrape_line.h"
 #include "audio_node/settings.gen.h"
 #include "sync/opening.h"
 
@@ -28,9 +30,14 @@ class Output {
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
   void submit(const Strike& strike);
+  // Scrapes from now on are of these surfaces; null: of none. It keeps those before as long as the callback may
+  // read them.
+  void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
+  // Those that it need not keep any more. Freeing them may take milliseconds: not in a loop.
+  std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
   // What is not taken at once is not heard: the next one is.
   void submit(const Scrape& scrape) {
-    if (stream_) crossing_->scrapes.push(scrape);
+    if (stream_) scrapes_.submit(scrape);
   }
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
@@ -65,6 +72,7 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
+  ScrapeLine scrapes_;             // goes after the stream, whose callback reads what it keeps
   std::optional<Orders> ordered_;  // what the renderer has been told; nothing: it is new
   std::optional<sync::Opening<Stream>> opening_;
   std::unique_ptr<Stream> stream_;

@@ -52,6 +52,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       late_(def.late),
       voices_(kQualities[0].voices, def.rate_Hz),
       scrapes_(def.rate_Hz),
+      scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
@@ -104,12 +105,17 @@ void Renderer::render(float* stereo, int frames, const BlockTime& time) {
   for (int done = 0; done < frames; done += kMaxBlock)
     render_some(stereo + 2 * done, std::min(kMaxBlock, frames - done),
                 {time.first_sample + samples(done), time.uncertainty, {}});
+  let_go_of_scrapes();
 }
 
 void Renderer::abandon() {
   const auto drop = [&](const Strike& s) { report(s, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0)); };
   for (Strike strike; crossing_.strikes.pop(strike);) drop(strike);
   while (const Strike* strike = scheduler_.pop_before(sync::HostTime::max())) drop(*strike);
+  for (Scrape s; crossing_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
+  next_scrape_.reset();
+  scrapes_.clear();
+  let_go_of_scrapes();
 }
 
 // The block's frames are rendered now and leave the limiter kDelay frames later.
@@ -131,12 +137,21 @@ void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
 void Renderer::take_scrapes(sync::HostTime until) {
   for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
     if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
+    scrapes_taken_ = s.number + 1;
     if (s.at > until) {
       next_scrape_ = s;
       return;
     }
     scrapes_.take(s);
   }
+}
+
+// What is still in the queue has larger numbers than all that were taken out of it.
+void Renderer::let_go_of_scrapes() {
+  std::int64_t held = scrapes_taken_;
+  if (next_scrape_) held = std::min(held, next_scrape_->number);
+  if (const auto oldest = scrapes_.oldest()) held = std::min(held, *oldest);
+  crossing_.scrapes_let_go.store(held, std::memory_order_release);
 }
 
 void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {

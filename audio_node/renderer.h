@@ -41,6 +41,9 @@ struct Crossing {
   Spsc<Strike> strikes{512};
   Spsc<Orders> orders{16};
   Spsc<Scrape> scrapes{1024};
+  // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
+  std::atomic<std::int64_t> scrapes_let_go{0};
+  static_assert(std::atomic<std::int64_t>::is_always_lock_free);
   Spsc<presentation_t> reports{4096};
   std::atomic<int> quality{0};  // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
@@ -68,16 +71,19 @@ class Renderer {
   // drop-out silences was dropped by the profile. Realtime-safe: yes.
   void render(float* stereo, int frames, const BlockTime& time);
 
-  // What waits will never sound: reports all of it as dropped. Of the loop's thread, once the callback has ended.
+  // What waits will never sound: reports all strikes as dropped, and holds no scrape. Of the loop's thread, once
+  // the callback has ended.
   void abandon();
 
   int sounding() const { return voices_.active(); }
+  int scraping() const { return scrapes_.active(); }
 
  private:
   void take_orders();
   void adapt(int frames, sync::Nanoseconds used);
   void render_some(float* stereo, int frames, const BlockTime& time);
   void take_scrapes(sync::HostTime until);
+  void let_go_of_scrapes();
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
@@ -89,6 +95,7 @@ class Renderer {
   Voices voices_;
   Scrapes scrapes_;
   std::optional<Scrape> next_scrape_;  // taken, but not yet to be heard
+  std::int64_t scrapes_taken_;         // out of the queue, with those of the renderers before
   Dropout dropout_;
   std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the samples that are being rendered
   Limiter limiter_;

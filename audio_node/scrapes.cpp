@@ -83,6 +83,13 @@ void Scrapes::render(float* mix, int frames, sync::HostTime first) {
     if (v.on) render(v, mix, frames, first);
 }
 
+std::optional<std::int64_t> Scrapes::oldest() const {
+  std::optional<std::int64_t> oldest;
+  for (const Voice& v : voices_)
+    if (v.on && (!oldest || v.now.number < *oldest)) oldest = v.now.number;
+  return oldest;
+}
+
 int Scrapes::active() const {
   return static_cast<int>(std::count_if(voices_.begin(), voices_.end(), [](const Voice& v) { return v.on; }));
 }

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "audio_node/scrape.h"
 
@@ -20,6 +22,9 @@ class Scrapes {
   // Adds `frames` frames, left and right interleaved, the first of which is heard at `first`. Realtime-safe: yes.
   void render(float* mix, int frames, sync::HostTime first);
   int active() const;
+  // Number of the oldest scrape that it holds, and whose relief it may still read. Realtime-safe: yes.
+  std::optional<std::int64_t> oldest() const;
+  void clear() { voices_ = {}; }
 
  private:
   struct Voice {

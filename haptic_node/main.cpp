@@ -96,7 +96,7 @@ int main(int argc, char** argv) try {
       if (session) session->let_go();
       device.reset();
       maps.reset();
-      opening_maps.emplace([scene = *scenes.scene(), pictures = haptic::pictures_of(scenes)] {
+      opening_maps.emplace([scene = *scenes.scene(), pictures = sync::pictures_of(scenes)] {
         sync::leave_realtime();
         return std::make_unique<haptic::SurfaceMaps>(haptic::read_maps(scene, pictures));
       });

@@ -1,20 +1,12 @@
 #include "haptic_node/surface_maps.h"
 
+#include <map>
 #include <stdexcept>
+#include <tuple>
 
 namespace tactus::haptic {
 
-Pictures pictures_of(const sync::SceneReceiver& scenes) {
-  Pictures pictures;
-  if (!scenes.scene()) return pictures;
-  for (const material_def_t& m : scenes.scene()->materials)
-    for (const std::int64_t hash : {m.bump_asset, m.friction_asset})
-      if (const sync::Asset* asset = hash != 0 && !pictures.contains(hash) ? scenes.asset(hash) : nullptr)
-        pictures.emplace(hash, asset->bytes);
-  return pictures;
-}
-
-SurfaceMaps read_maps(const scene_t& scene, const Pictures& pictures) {
+SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures) {
   SurfaceMaps maps;
   std::map<std::int64_t, HeightMap> read;
   const auto map_of = [&](std::int64_t hash, const std::string& material, const char* what) -> const HeightMap* {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <tactus/scene_t.hpp>
@@ -11,7 +10,7 @@
 
 #include "lcmtypes/friction_map.h"
 #include "lcmtypes/relief.h"
-#include "sync/scene_exchange.h"
+#include "sync/scene_pictures.h"
 
 namespace tactus::haptic {
 
@@ -31,11 +30,7 @@ struct SurfaceMaps {
   }
 };
 
-using Pictures = std::map<std::int64_t, sync::Bytes>;  // by content hash
-
-// The pictures that the materials of the receiver's scene name, as far as they were sent. It copies them.
-Pictures pictures_of(const sync::SceneReceiver& scenes);
 // Reads them, which may take as long as a second: not for a loop. What cannot be read is smooth.
-SurfaceMaps read_maps(const scene_t& scene, const Pictures& pictures);
+SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures);
 
 }  // namespace tactus::haptic

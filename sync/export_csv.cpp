@@ -46,7 +46,9 @@ class Row {
 
 std::string haptic_csv_names() {
   return "time_s,host_s,tool,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,force_x_N,force_y_N,"
-         "force_z_N,transient_x_N,transient_y_N,transient_z_N,fade,touch_how,constraints,energy_J\n";
+         "force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,transient_x_N,transient_y_N,transient_z_N,fade,"
+         "coupling,"
+         "touch_how,constraints,energy_J,generated_J\n";
 }
 
 std::string csv_row(const tool_state_t& m) {
@@ -56,11 +58,14 @@ std::string csv_row(const tool_state_t& m) {
       .vector(m.device.position_m)
       .vector(m.proxy.position_m)
       .vector(m.force_N)
+      .vector(m.torque_N_m)
       .vector(m.transient_N)
       .number(m.fade)
+      .number(m.coupling)
       .text(to_string(static_cast<How>(m.touch_how)))
       .number(m.constraint_count)
       .number(m.energy_J)
+      .number(m.generated_J)
       .end();
 }
 

@@ -8,7 +8,7 @@
 namespace tactus::sync {
 
 // Lines of column names, with units, and of values; each ends with a newline. Times are s: simulated (empty when the
-// message speaks of no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths m, forces N, world frame.
+// message speaks of no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths m, forces N, torques N m, world frame.
 std::string haptic_csv_names();
 std::string csv_row(const tool_state_t&);
 std::string thermal_csv_names();

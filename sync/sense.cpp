@@ -63,6 +63,7 @@ void Sense::put_in_force(const ProfileInForce& profile) {
     const Profile parsed = parse_profile(profile.text, "profile");
     stack_ = Stack(parsed, d.modality, profile.start);
     stack_.set_scene(names_);
+    for (const auto& stream : streams_) stream->change_profile();
     profile_hash_ = profile.hash;
     node_.set_profile(profile.hash);
     if (profile.generation > 0 || !parsed.rules.empty())

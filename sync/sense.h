@@ -107,12 +107,17 @@ class Sense {
   struct AnyStream {
     virtual ~AnyStream() = default;
     virtual void step(Sense& sense, HostTime now, HostTime lets) = 0;
+    virtual void change_profile() = 0;
     virtual HostTime newest_arrival() const = 0;
   };
   template <class Message>
   struct Held : AnyStream {
     explicit Held(Queue<Message>& inbox) : stream(inbox) {}
     void step(Sense& sense, HostTime now, HostTime lets) override;
+    // Events are decided on one by one.
+    void change_profile() override {
+      if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
+    }
     HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
     Stream<Message> stream;
   };

@@ -75,6 +75,11 @@ class DegradedSnapshots {
   void push(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
     note_newest(m);
     const SimTime time = sim_time(m.header.sim_time_ns);
+    if constexpr (requires { m.pages; })
+      if (m.pages > 1) {
+        arriving_ = snapshot_key(m);
+        if (arriving_ == split_) return;
+      }
     if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
     if (stack.lost_on_wire(wire_key(m), time)) return;
     if constexpr (requires { m.pages; })
@@ -82,6 +87,12 @@ class DegradedSnapshots {
         return gather(std::move(m), arrival, stack, decisions);
     const Verdict v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
+  }
+  // From now on another profile decides. The snapshot whose pages are just arriving was begun under the one
+  // before: what is still to come of it is dropped, so that nobody puts halves of two profiles together.
+  void change_profile() {
+    split_ = arriving_;
+    gathering_.clear();
   }
   // The next message that is let through by now, and when it arrived.
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
@@ -169,6 +180,7 @@ class DegradedSnapshots {
 
   Waiting<Message> waiting_;
   std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
+  std::optional<std::uint64_t> arriving_, split_;             // keys of snapshots of several pages
   std::map<std::uint64_t, Verdict> verdicts_;
   std::deque<std::uint64_t> order_;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;

@@ -54,8 +54,14 @@ std::uint64_t stream_of(const tool_state_t& m) { return 0x2000u + static_cast<st
 
 std::uint64_t snapshot_key(const contact_frame_t& m) { return key(m.header, stream_of(m)); }
 std::uint64_t snapshot_key(const world_state_t& m) { return key(m.header, stream_of(m)); }
-std::uint64_t snapshot_key(const touch_model_t& m) { return key(m.header, stream_of(m)); }
-std::uint64_t snapshot_key(const tool_state_t& m) { return key(m.header, stream_of(m)); }
+// A hand moves on while the world stands still, and all that is told of it is of one instant: the number of the
+// first page tells them apart.
+std::uint64_t snapshot_key(const touch_model_t& m) {
+  return mixed(key(m.header, stream_of(m)), static_cast<std::uint64_t>(m.header.seq - m.page));
+}
+std::uint64_t snapshot_key(const tool_state_t& m) {
+  return mixed(key(m.header, stream_of(m)), static_cast<std::uint64_t>(m.header.seq));
+}
 
 std::vector<Signal> signals_of(const contact_frame_t& m) {
   std::vector<Signal> signals;

@@ -14,7 +14,8 @@
 
 namespace tactus::sync {
 
-// What all pages of one snapshot have in common and no other snapshot has.
+// What all pages of one snapshot have in common and no other snapshot has. Those of bodies and contacts while the
+// world stands still say the same, and are one.
 std::uint64_t snapshot_key(const contact_frame_t&);
 std::uint64_t snapshot_key(const world_state_t&);
 std::uint64_t snapshot_key(const touch_model_t&);

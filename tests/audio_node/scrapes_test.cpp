@@ -6,32 +6,15 @@
 #include <numbers>
 #include <vector>
 
-#include "audio_node/sliding.h"
-#include "lcmtypes/vectors.h"
+#include "tests/audio_node/waves.h"
 
 using namespace tactus;
 using namespace tactus::audio;
+using namespace tactus::audio::test;
 
 namespace {
 
-constexpr double kRate_Hz = 48000, kWave_m = 0.002, kHigh_m = 0.0002;
-
-HeightMap waves() {
-  HeightMap map{32, 2, 65535, {}};
-  for (int i = 0; i < 64; ++i)
-    map.levels.push_back(static_cast<std::uint16_t>(
-        std::lround(65535 * (0.5 + 0.5 * std::sin(2 * std::numbers::pi * (i % 32 + 0.5) / 32)))));
-  return map;
-}
-
-material_def_t rough() {
-  material_def_t m{};
-  m.friction_static = m.friction_dynamic = 0.5;
-  m.bump_asset = 1, m.bump_size_u_m = m.bump_size_v_m = kWave_m, m.bump_height_m = kHigh_m;
-  return m;
-}
-
-sync::HostTime at_ms(double ms) { return sync::host_time(static_cast<std::int64_t>(1e9 + 1e6 * ms)); }
+constexpr double kRate_Hz = 48000;
 
 // A second of a contact that slides along u at a speed, told every millisecond with places that jitter.
 std::vector<float> heard(const Relief& relief, double speed_m_s, float level, double told_ms = 1000) {
@@ -59,28 +42,6 @@ double amplitude(const std::vector<float>& stereo, double frequency_Hz) {
     sum += static_cast<double>(stereo[static_cast<std::size_t>(2 * (from + i))]) *
            std::polar(1.0, -2 * M_PI * frequency_Hz * i / kRate_Hz);
   return 2 * std::abs(sum) / n;
-}
-
-contact_t sliding(double speed_m_s, double force_N, const Eigen::Vector3d& place) {
-  contact_t c{};
-  c.contact_id = 5, c.body_a = 0, c.body_b = 1, c.material_a = 0, c.material_b = 1, c.tool = 0;
-  c.normal = to_vec3f(Eigen::Vector3d::UnitZ());
-  c.normal_force_N = static_cast<float>(force_N);
-  c.sliding_velocity_m_s = to_vec3f(Eigen::Vector3d(0, speed_m_s, 0));  // world; the board is turned by 90 degrees
-  c.point_count = 1, c.points.resize(1);
-  c.points[0].a_body_m = to_vec3f(place);
-  return c;
-}
-
-scene_t board() {
-  scene_t s{};
-  s.listener = to_pose(Eigen::Isometry3d::Identity());
-  s.bodies.resize(2), s.body_count = 2;
-  s.bodies[0].is_static = 1, s.bodies[1].id = 1;
-  s.bodies[0].pose = to_pose(Eigen::Isometry3d(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())));
-  s.materials = {rough(), material_def_t{}}, s.material_count = 2;
-  s.materials[1].friction_dynamic = 0.5;
-  return s;
 }
 
 }  // namespace
@@ -119,43 +80,4 @@ TEST_CASE("Roughness is the same in every run, and of unit mean square") {
   CHECK(square == Approx(1).epsilon(0.05));
   CHECK(std::abs(mean) < 0.05);
   CHECK(roughness(0.123) == roughness(0.123));
-}
-
-TEST_CASE("Contacts that slide over a map are told with the place in it, and louder with the power of friction") {
-  HeardReliefs reliefs;
-  const scene_t scene = board();
-  Sliding slides(scene, {{1, waves()}}, reliefs, Settings{});
-  const auto all = slides.scrapes({sliding(0.1, 2, {0.005, 0.003, 0})}, at_ms(0), 0.001);
-  CHECK(slides.any());
-  REQUIRE(all.size() == 1);
-  const Scrape s = all[0];
-  CHECK(s.u == Approx(0.005 / kWave_m));
-  CHECK(s.v == Approx(0.003 / kWave_m));
-  CHECK(s.u_per_s == Approx(0.1 / kWave_m));  // +y of the world is +x of the board
-  CHECK(std::abs(s.v_per_s) < 1e-4);
-  CHECK(s.along_u == Approx(1));
-  CHECK(s.level == Approx(Settings{}.scrape_level * std::sqrt(0.5 * 2 * 0.1)));
-  CHECK(slides.scrapes({sliding(0.1, 8, {0.005, 0.003, 0})}, at_ms(1), 0.001)[0].level == Approx(2 * s.level));
-  CHECK(slides.scrapes({sliding(0.0001, 8, {0.005, 0.003, 0})}, at_ms(2), 0.001).empty());
-  SECTION("where nothing has a map, nothing is heard") {
-    scene_t plain = scene;
-    plain.materials[0].bump_asset = 0;
-    Sliding silent(plain, {}, reliefs, Settings{});
-    CHECK_FALSE(silent.any());
-    CHECK(silent.scrapes({sliding(0.1, 2, {0, 0, 0})}, at_ms(0), 0.001).empty());
-  }
-  SECTION("a friction map changes the level where it changes") {
-    scene_t mapped = scene;
-    material_def_t& m = mapped.materials[0];
-    m.bump_asset = 0;
-    m.friction_asset = 2, m.friction_size_u_m = m.friction_size_v_m = 0.4, m.friction_black = 0.25,
-    m.friction_white = 4;
-    const HeightMap halves{2, 2, 255, {0, 255, 0, 255}};
-    Sliding both(mapped, {{2, halves}}, reliefs, Settings{});
-    const float black = both.scrapes({sliding(0.1, 2, {0.1, 0, 0})}, at_ms(0), 0.001)[0].level;
-    const float white = both.scrapes({sliding(0.1, 2, {0.3, 0, 0})}, at_ms(1), 0.001)[0].level;
-    // Of a pair the root of 16 counts, and of power the root again.
-    CHECK(white == Approx(2 * black));
-    CHECK(both.scrapes({sliding(0.1, 2, {0.1, 0, 0})}, at_ms(0), 0.001)[0].relief == nullptr);
-  }
 }

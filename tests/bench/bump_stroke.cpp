@@ -4,12 +4,10 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <optional>
 
-#include "haptic_node/renderer.h"
 #include "lcmtypes/relief.h"
-#include "sim_node/behaviour/tool_touch.h"
 #include "sim_node/scene/triangles.h"
+#include "tests/bench/stroke_loop.h"
 #include "tests/sim_node/simple_hand.h"
 
 namespace tactus::bench {
@@ -20,8 +18,6 @@ using Eigen::Vector3d;
 constexpr double kTile_m = 0.08;   // one repetition, as in bump_plane.sdf
 constexpr double kEnds_s = 0.15;   // in which the hand comes in and the force settles; not counted
 constexpr double kStart_s = 0.05;  // in which the hand sets off, and the damper answers; not counted either
-constexpr double kStiffness_N_m = 1000;
-constexpr std::int64_t kBegins_ns = 5'000'000'000;
 
 const HeightMap& planks() {
   static const HeightMap map = [] {
@@ -94,40 +90,20 @@ sim::WorldDef world_of(const BumpStroke& s) {
   return w;
 }
 
-scene_t scene_of() {
-  scene_t s{};
-  s.step_ns = 1'000'000;
-  s.bodies.resize(2), s.body_count = 2;
-  s.tools.resize(1), s.tool_count = 1;
-  s.tools[0].body = 1;
-  return s;
-}
-
 }  // namespace
 
 BumpTrace run(const BumpStroke& stroke) {
   const sim::WorldDef world = world_of(stroke);
   sim::MeshTrees trees;
-  sim::Settings of_sim;
-  of_sim.touch_stiffness_N_m = kStiffness_N_m;
-  sim::Ids ids(1);
-  sim::ToolTouch touch(world, 0, of_sim, ids, trees);
-  std::vector<sim::BodyMotion> bodies;
-  for (const sim::BodyDef& b : world.bodies) {
-    sim::BodyMotion m;
-    m.position_m = m.centre_m = b.pose.translation();
-    bodies.push_back(m);
-  }
   haptic::Settings settings;
   settings.rate_Hz = stroke.rate_Hz;
   settings.bump = stroke.method == "mesh" ? "none" : stroke.method;
-  haptic::Safety safety(haptic::safety_limits(settings));
-  haptic::Renderer renderer(scene_of(), 0, settings, safety);
+  StrokeLoop loop(world, trees, settings);
   const material_def_t wears = material(stroke.height_m);
   const auto relief = std::make_shared<const Relief>(make_relief(planks(), wears));
   auto maps = std::make_shared<haptic::SurfaceMaps>();
   maps->by_material.push_back({relief, nullptr});
-  renderer.set_maps(maps);
+  loop.renderer().set_maps(maps);
 
   const Vector3d along = Vector3d(stroke.oblique, 1, 0).normalized();
   const double high = 0.01 + stroke.height_m;
@@ -140,47 +116,19 @@ BumpTrace run(const BumpStroke& stroke) {
 
   BumpTrace out;
   out.step_m = stroke.speed_m_s / stroke.rate_Hz;
-  std::vector<tool_state_t> news;
-  std::vector<contact_event_t> events;
-  touch_model_t on_the_way;
-  std::optional<sync::HostTime> arrival;
-  bool sent = false;
-  Vector3d last_device = device(0), last_force = Vector3d::Zero();
   const double end_s = kEnds_s + stroke.length_m / along.y() / stroke.speed_m_s;
   const auto ticks = static_cast<std::int64_t>(end_s * stroke.rate_Hz);
-  const auto per_step = static_cast<std::int64_t>(stroke.rate_Hz / 1000);
   for (std::int64_t i = 0; i < ticks; ++i) {
-    const std::int64_t ns = std::llround(1e9 * static_cast<double>(i) / stroke.rate_Hz);
-    const double t = 1e-9 * static_cast<double>(ns);
-    haptic::TickInput in;
-    in.now = sync::host_time(kBegins_ns + ns);
-    in.device.position = device(t);
-    in.device.velocity = (in.device.position - last_device) * stroke.rate_Hz;
-    last_device = in.device.position;
-    in.map = sync::TimeMap{sync::sim_time(0), sync::host_time(kBegins_ns), 1};
-    // What the world said at its last step arrives with the next tick.
-    if (std::exchange(sent, false)) in.fresh = &on_the_way, arrival = in.now;
-    in.touch_arrival = arrival;
-    const haptic::TickOutput& tick = renderer.step(in);
-    news.push_back(tick.state);
-    if (i % per_step == 0) {
-      events.clear();
-      touch.update(sync::sim_time(ns), bodies, news, events);
-      news.clear();
-      on_the_way = touch.model();
-      on_the_way.header.sim_time_ns = ns;
-      sent = true;
-    }
-    const double change = (tick.force_N - last_force).norm();
-    last_force = tick.force_N;
+    const double t = loop.time_s();
+    const Vector3d at = device(t);
+    const haptic::TickOutput& tick = loop.tick(at);
     if (t < kEnds_s + kStart_s) continue;
-    const Eigen::Vector2d at = bump_at(wears, {2, 0, 1}, in.device.position);
     out.place_m.push_back(stroke.speed_m_s * (t - kEnds_s));
     out.along_N.push_back(tick.force_N.dot(along));
     out.up_N.push_back(tick.force_N.z());
-    out.slope.push_back(relief->slope(at).dot(along.head<2>()));
+    out.slope.push_back(relief->slope(bump_at(wears, {2, 0, 1}, at)).dot(along.head<2>()));
     out.proxy_m.push_back(tick.state.proxy.position_m.z);
-    out.change_N.push_back(change);
+    out.change_N.push_back(loop.change_N());
   }
   return out;
 }

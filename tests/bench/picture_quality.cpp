@@ -60,7 +60,7 @@ int main(int argc, char** argv) try {
   const auto display = visual::make_headless(-1);
   const visual::Settings settings;
   const visual::SceneView view(*scenes.scene(), visual::meshes_of(scenes), settings,
-                               visual::height_maps_of(scenes, said));
+                               visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said));
   visual::Renderer renderer(view.width(), view.height(), settings.shadow_size);
   renderer.load(view.geometries(), view.lighting(), view.reliefs());
   std::vector<Eigen::Isometry3d> poses;

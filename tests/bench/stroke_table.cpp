@@ -14,21 +14,20 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "haptic_node/renderer.h"
-#include "sim_node/behaviour/tool_touch.h"
 #include "sim_node/scene/triangles.h"
+#include "tests/bench/stroke_loop.h"
 #include "tests/sim_node/collision/meshes.h"
 #include "tests/sim_node/simple_hand.h"
 
 using namespace tactus;
+using bench::kStiffness_N_m;
 using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRadius_m = 0.1, kBump_m = 0.0015, kSpeed_m_s = 0.1, kFriction = 0.3, kStiffness_N_m = 1000;
-constexpr double kMean_N = 3;                       // 3 mm at 1000 N/m
-constexpr double kAir_m = 0.002;                    // above the surface, at both ends
-constexpr std::int64_t kBegins_ns = 5'000'000'000;  // host time of simulated time zero
+constexpr double kRadius_m = 0.1, kBump_m = 0.0015, kSpeed_m_s = 0.1, kFriction = 0.3;
+constexpr double kMean_N = 3;     // 3 mm at 1000 N/m
+constexpr double kAir_m = 0.002;  // above the surface, at both ends
 
 // Height of the surface over the centre, in a direction. waves: of a bump, radians per radian.
 double surface_m(const Vector3d& way, double waves) {
@@ -49,18 +48,6 @@ sim::WorldDef bumpy_world(int level, double tool_m, double waves) {
   w.shapes[static_cast<std::size_t>(shape)].mesh = 0;
   sim::test::add_tool(w, {0, 0, 0.2}, tool_m);
   return w;
-}
-
-scene_t scene_of(double tool_m) {
-  scene_t s{};
-  s.step_ns = 1'000'000;
-  s.bodies.resize(2);
-  s.body_count = 2;
-  s.tools.resize(1);
-  s.tools[0].body = 1;
-  s.tools[0].radius_m = tool_m;
-  s.tool_count = 1;
-  return s;
 }
 
 struct Row {
@@ -96,59 +83,21 @@ double quantile(std::vector<double> x, double q) {
 }
 
 Row run(const sim::WorldDef& world, sim::MeshTrees& trees, const Stroke& stroke, std::ofstream* trace) {
-  sim::Settings of_sim;
-  of_sim.touch_stiffness_N_m = kStiffness_N_m;
-  sim::Ids ids(1);
-  sim::ToolTouch touch(world, 0, of_sim, ids, trees);
-  std::vector<sim::BodyMotion> bodies;
-  for (const sim::BodyDef& b : world.bodies) {
-    sim::BodyMotion m;
-    m.position_m = m.centre_m = b.pose.translation();
-    bodies.push_back(m);
-  }
   haptic::Settings settings;
   settings.rate_Hz = stroke.rate_Hz;
-  haptic::Safety safety(haptic::safety_limits(settings));
-  haptic::Renderer renderer(scene_of(stroke.tool_m), 0, settings, safety);
+  bench::StrokeLoop loop(world, trees, settings);
 
   Row row{.tool_mm = 1e3 * stroke.tool_m, .rate_Hz = stroke.rate_Hz, .sway_mm = 1e3 * stroke.sway_m};
   std::vector<double> changes;
-  std::vector<tool_state_t> news;
-  std::vector<contact_event_t> events;
-  touch_model_t on_the_way;
-  std::optional<sync::HostTime> arrival;
-  bool sent = false;
-  Vector3d last_device = stroke.device(0), last_force = Vector3d::Zero();
   const double end_s = stroke.seconds + 2 * stroke.ends_s();
   const auto ticks = static_cast<std::int64_t>(end_s * stroke.rate_Hz);
-  const auto per_step = static_cast<std::int64_t>(stroke.rate_Hz / 1000);
   for (std::int64_t i = 0; i < ticks; ++i) {
-    const std::int64_t ns = std::llround(1e9 * static_cast<double>(i) / stroke.rate_Hz);
-    const double t = 1e-9 * static_cast<double>(ns);
-    haptic::TickInput in;
-    in.now = sync::host_time(kBegins_ns + ns);
-    in.device.position = stroke.device(t);
-    in.device.velocity = (in.device.position - last_device) * stroke.rate_Hz;
-    last_device = in.device.position;
-    in.map = sync::TimeMap{sync::sim_time(0), sync::host_time(kBegins_ns), 1};
-    // What the world said at its last step arrives with the next tick.
-    if (std::exchange(sent, false)) in.fresh = &on_the_way, arrival = in.now;
-    in.touch_arrival = arrival;
-    const haptic::TickOutput& out = renderer.step(in);
-    news.push_back(out.state);
-    if (i % per_step == 0) {
-      events.clear();
-      touch.update(sync::sim_time(ns), bodies, news, events);
-      news.clear();
-      on_the_way = touch.model();
-      on_the_way.header.sim_time_ns = ns;
-      sent = true;
-    }
-    const double change = (out.force_N - last_force).norm();
-    last_force = out.force_N;
+    const double t = loop.time_s();
+    const haptic::TickOutput& out = loop.tick(stroke.device(t));
+    const double change = loop.change_N();
     if (trace) {
       *trace << t << ',' << out.force_N.x() << ',' << out.force_N.y() << ',' << out.force_N.z() << ',' << change;
-      for (const touch_plane_t& p : on_the_way.planes)
+      for (const touch_plane_t& p : loop.model().planes)
         *trace << ',' << p.contact_id << ',' << p.normal.x << ',' << p.normal.y << ',' << p.normal.z << ','
                << p.point_m.x << ',' << p.point_m.y << ',' << p.point_m.z;
       *trace << '\n';
@@ -161,7 +110,7 @@ Row run(const sim::WorldDef& world, sim::MeshTrees& trees, const Stroke& stroke,
     changes.push_back(change);
     if (out.force_N.norm() < 0.05) ++row.pops;  // all along it is 3 mm inside
     row.mean_N += out.force_N.norm();
-    row.planes += static_cast<double>(on_the_way.planes.size());
+    row.planes += static_cast<double>(loop.model().planes.size());
   }
   row.ticks = static_cast<int>(changes.size());
   row.mean_N /= row.ticks;

@@ -7,58 +7,12 @@
 #include <random>
 
 #include "haptic_node/touch_input.h"
-#include "sim_node/publish/touch_pages.h"
 #include "sync/decode.h"
+#include "tests/haptic_node/paged_models.h"
 
 using namespace tactus;
 using namespace tactus::haptic;
-
-namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-// A model whose every plane and book names its step.
-touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t books) {
-  touch_model_t m{};
-  m.header.incarnation = 5;
-  m.header.run_id = 1;
-  m.header.sim_time_ns = m.header.publish_time_ns = step * kMs;
-  m.clock = {step * kMs, step * kMs, 1};
-  for (std::size_t i = 0; i < planes; ++i) {
-    touch_plane_t p{};
-    p.contact_id = step * 1000 + static_cast<std::int64_t>(i);
-    m.planes.push_back(p);
-  }
-  for (std::size_t i = 0; i < books; ++i) {
-    touch_applied_t a{};
-    a.contact_id = step * 1000 + static_cast<std::int64_t>(i);
-    m.applied.push_back(a);
-  }
-  return m;
-}
-
-// As the publisher numbers them.
-std::vector<touch_model_t> pages_of(const touch_model_t& whole, std::int64_t& seq) {
-  std::vector<touch_model_t> out;
-  touch_model_t scratch{};
-  sim::each_touch_page(whole, scratch, [&](touch_model_t& page) {
-    page.header.seq = seq++;
-    out.push_back(page);
-  });
-  return out;
-}
-
-bool is_whole(const touch_model_t& m, std::int64_t step, std::size_t planes, std::size_t books) {
-  bool good = m.page == 0 && m.pages == 1 && m.planes.size() == planes && m.applied.size() == books &&
-              m.plane_count == static_cast<int>(planes) && m.applied_count == static_cast<int>(books);
-  for (std::size_t i = 0; good && i < planes; ++i)
-    good = m.planes[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
-  for (std::size_t i = 0; good && i < books; ++i)
-    good = m.applied[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
-  return good;
-}
-
-}  // namespace
+using namespace tactus::haptic::test;
 
 TEST_CASE("Every page of a touch model fits a datagram, and together they are the model") {
   std::int64_t seq = 3;

@@ -34,8 +34,14 @@ TEST_CASE("A row of haptic.csv has a value under every name") {
   m.device.position_m.x = 0.1;
   m.proxy.position_m.z = -0.25;
   m.force_N.y = 2.5f;
+  m.torque_N_m.x = -0.0625f;
+  m.torque_N_m.y = 0.03125f;
+  m.torque_N_m.z = 0.015625f;
   m.transient_N.z = 0.125f;
   m.fade = 0.5f;
+  m.coupling = 0.75f;
+  m.energy_J = -0.25f;
+  m.generated_J = 0.001953125f;
   m.touch_how = static_cast<std::int8_t>(How::kHeld);
   const std::string names = haptic_csv_names(), row = csv_row(m);
   CHECK(cells(names).size() == cells(row).size());
@@ -45,8 +51,14 @@ TEST_CASE("A row of haptic.csv has a value under every name") {
   CHECK(cell(names, row, "device_x_m") == "0.1");
   CHECK(cell(names, row, "proxy_z_m") == "-0.25");
   CHECK(cell(names, row, "force_y_N") == "2.5");
+  CHECK(cell(names, row, "torque_x_N_m") == "-0.0625");
+  CHECK(cell(names, row, "torque_y_N_m") == "0.03125");
+  CHECK(cell(names, row, "torque_z_N_m") == "0.015625");
   CHECK(cell(names, row, "transient_z_N") == "0.125");
   CHECK(cell(names, row, "fade") == "0.5");
+  CHECK(cell(names, row, "coupling") == "0.75");
+  CHECK(cell(names, row, "energy_J") == "-0.25");
+  CHECK(cell(names, row, "generated_J") == "0.001953125");
   CHECK(cell(names, row, "touch_how") == "held");
 }
 

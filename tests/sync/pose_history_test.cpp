@@ -95,6 +95,18 @@ TEST_CASE("A report that is overtaken changes nothing, and another process that 
   CHECK(h.at(404).how == How::kExact);
 }
 
+TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on from nothing before") {
+  Heard h;
+  REQUIRE(h.at(200).how == How::kExact);
+  h.history.forget();
+  CHECK(h.at(200).how == How::kNone);
+  h.history.push(head_at(404 * kMs), host_time(405 * kMs));
+  CHECK(h.at(404).how == How::kExact);
+  const auto before = h.at(402);  // between two reports, had the first of them not been forgotten
+  CHECK(before.how == How::kHeld);
+  CHECK(error_m(before, 404) < 1e-9);
+}
+
 TEST_CASE("A log that is replayed speaks of another time: it is read by arrival") {
   PoseHistory history(kRun);
   for (std::int64_t t = 0; t <= 200 * kMs; t += 4 * kMs) {

@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "sync/decode.h"
-#include "sync/identity.h"
 #include "test_scene.h"
 #include "tests/grey_png.h"
 
@@ -45,28 +43,11 @@ TEST_CASE("Upwards in the picture is along v") {
 TEST_CASE("A damaged or missing height map is said once and leaves the others") {
   scene_t scene = test::empty_scene();
   const std::vector<std::uint8_t> good = test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
-  const auto hash = [](const std::vector<std::uint8_t>& b) { return sync::fnv1a_64(b.data(), b.size()); };
-  for (const std::int64_t asset : {hash(good), hash(bad), hash(bad), std::int64_t{12345}, std::int64_t{0}})
-    scene.materials.push_back(test::rough(asset, 1, 1, 0.001));
-  scene.material_count = 5;
-  sync::BusOptions options;
-  options.memory = true;
-  sync::Bus bus(sync::Identity::fresh("test", 1), options);
-  sync::SceneSender sender(bus, {{asset_ref_t::SCENE, "scene", sync::encode(scene)},
-                                 {asset_ref_t::IMAGE, "good.png", good},
-                                 {asset_ref_t::IMAGE, "bad.png", bad}});
-  sync::SceneReceiver receiver(bus);
-  sync::HostTime now = sync::host_time(1);
-  for (int ms = 0; ms < 300; ++ms, now += sync::Nanoseconds(1'000'000)) {
-    sender.poll(now);
-    bus.drain(now);
-    receiver.poll(now);
-  }
-  REQUIRE(receiver.scene());
+  for (const std::int64_t asset : {1, 2, 2, 12345, 0}) scene.materials.push_back(test::rough(asset, 1, 1, 0.001));
   std::vector<std::string> trouble;
-  const HeightMaps maps = height_maps_of(receiver, trouble);
+  const HeightMaps maps = height_maps_of(scene, {{1, good}, {2, bad}}, trouble);
   CHECK(maps.size() == 1);
-  CHECK(maps.contains(hash(good)));
+  CHECK(maps.contains(1));
   REQUIRE(trouble.size() == 2);
   CHECK_THAT(trouble[0], Catch::Contains("it is no PNG file; it is drawn smooth"));
   CHECK_THAT(trouble[1], Catch::Contains("it was not sent"));

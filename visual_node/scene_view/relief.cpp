@@ -4,16 +4,17 @@
 #include <stdexcept>
 
 namespace tactus::visual {
-HeightMaps height_maps_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble) {
+
+HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
+                          std::vector<std::string>& trouble) {
   HeightMaps maps;
-  if (!scenes.scene()) return maps;
   std::set<std::int64_t> tried{0};  // 0: smooth
-  for (const material_def_t& material : scenes.scene()->materials) {
+  for (const material_def_t& material : scene.materials) {
     if (!tried.insert(material.bump_asset).second) continue;
-    const sync::Asset* asset = scenes.asset(material.bump_asset);
+    const auto picture = pictures.find(material.bump_asset);
     try {
-      if (!asset) throw std::runtime_error("it was not sent");
-      maps.emplace(material.bump_asset, read_height_map(asset->bytes));
+      if (picture == pictures.end()) throw std::runtime_error("it was not sent");
+      maps.emplace(material.bump_asset, read_height_map(picture->second));
     } catch (const std::exception& e) {
       trouble.push_back("the bump of material " + material.name + " cannot be read: " + e.what() +
                         "; it is drawn smooth");

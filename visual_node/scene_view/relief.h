@@ -4,16 +4,17 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <tactus/scene_t.hpp>
 #include <vector>
 
 #include "lcmtypes/relief.h"
-#include "sync/scene_exchange.h"
+#include "sync/scene_pictures.h"
 
 namespace tactus::visual {
 
 using HeightMaps = std::map<std::int64_t, HeightMap>;  // by content hash
 
-// Of the scene that the receiver holds. One sentence in `trouble` for each that is not there or damaged.
-HeightMaps height_maps_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble);
+// One sentence in `trouble` for each that is not there or damaged.
+HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures, std::vector<std::string>& trouble);
 
 }  // namespace tactus::visual

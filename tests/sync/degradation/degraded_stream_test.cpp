@@ -101,6 +101,50 @@ TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") 
   CHECK(std::abs(static_cast<int>(pages.size()) - 100) < 5 * std::sqrt(50));
 }
 
+TEST_CASE(
+    "A profile that comes between the pages of a snapshot drops those that are still to come, and no others") {
+  Stack stack;
+  DegradedSnapshots<contact_frame_t> frames;
+  for (int ms = 0; ms < 10; ++ms)
+    for (int page = 0; page < 3; ++page) {
+      if (ms == 5 && page == 1) {
+        stack = stack_of("gain=\"0.5\"");
+        frames.change_profile();
+      }
+      frames.push(page_at(ms, page, 3, 3 * ms + page), arrival(ms), stack, nullptr);
+    }
+  std::map<std::int64_t, int> pages;
+  while (const auto m = frames.pop(arrival(10))) {
+    const std::int64_t ms = m->first.header.sim_time_ns / kMs;
+    ++pages[ms];
+    CHECK(m->first.contacts.at(0).normal_force_N == Approx(ms <= 5 ? ms : 0.5 * static_cast<double>(ms)));
+  }
+  REQUIRE(pages.size() == 10);
+  for (const auto& [ms, n] : pages) CHECK(n == (ms == 5 ? 1 : 3));
+}
+
+TEST_CASE("What a tool reports while the world stands still is late and lost each by itself") {
+  const bool late = GENERATE(true, false);
+  Stack stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
+  DegradedSnapshots<tool_state_t> tools;
+  int came = 0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    tool_state_t m{};
+    m.header = header(ms, ms);
+    m.header.sim_time_ns = 7 * kMs;
+    m.buttons = ms;
+    tools.push(m, arrival(ms), stack, nullptr);
+    while (const auto out = tools.pop(arrival(ms))) {
+      ++came;
+      if (late) CHECK(out->first.buttons == ms - 40);
+    }
+  }
+  if (late)
+    CHECK(came == 960);
+  else
+    CHECK(std::abs(came - 500) < 5 * std::sqrt(250));
+}
+
 TEST_CASE("An event is decided on once: what is lost is not brought back by its repetitions") {
   Stack stack = stack_of("loss=\"40%\"");
   DegradedEvents degraded;

@@ -1,0 +1,202 @@
+// Surfaces that scenes leave behind, and a callback that may still read them: they go once it has let go of them,
+// and never before.
+#include "audio_node/scrape_line.h"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "tests/audio_node/bench.h"
+#include "tests/audio_node/waves.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using namespace tactus::audio::test;
+
+namespace {
+
+// What is heard of them is not louder; and what is heard of freed ones is.
+constexpr float kLoudest = 0.1f;
+
+// As the surfaces of a scene; freed they become so steep that a callback which reads them is heard.
+ScrapeLine::Surfaces poisoned_when_freed() {
+  auto* surfaces = new HeardSurfaces;
+  auto relief = std::make_shared<Relief>(make_relief(waves(), rough()));
+  surfaces->by_material.push_back({relief, nullptr});
+  static std::vector<std::shared_ptr<Relief>> graveyard;  // memory that is never used again
+  return {surfaces, [relief](const HeardSurfaces* gone) {
+            for (Eigen::Vector2f& slope : relief->slopes) slope.setConstant(1e6f);
+            graveyard.push_back(relief);
+            delete gone;
+          }};
+}
+
+// A loop and a callback in one thread, by turns.
+struct Line {
+  std::unique_ptr<Bench> bench = std::make_unique<Bench>();
+  ScrapeLine line{bench->crossing};
+
+  // Of the contact `id`, heard from now, or so much later.
+  bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
+    Scrape s;
+    s.id = id;
+    s.at = sync::host_time(bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)));
+    s.relief = surfaces->by_material[0].relief.get();
+    s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1;
+    s.level = 0.005f, s.left = s.right = 1;
+    return line.submit(s);
+  }
+  // Something was heard, and nothing of what was freed.
+  bool sound() const {
+    float loudest = 0;
+    for (const float x : bench->left) loudest = std::max(loudest, std::abs(x));
+    return loudest > 0 && loudest < kLoudest;
+  }
+};
+
+constexpr int kBlock = 128;
+
+}  // namespace
+
+TEST_CASE("Surfaces of a scene that is over go when their last scrape has died away, and not before") {
+  Line l;
+  auto first = poisoned_when_freed();
+  const std::weak_ptr<const HeardSurfaces> watched = first;
+  l.line.change(first);
+  REQUIRE(l.scrape(first));
+  first.reset();
+  l.bench->play(kBlock);
+  l.line.change(nullptr);
+  int blocks = 0;
+  while (l.bench->renderer.scraping() && blocks++ < 1000) {
+    CHECK(l.line.take_unread().empty());
+    REQUIRE_FALSE(watched.expired());
+    l.bench->play(kBlock);
+  }
+  CHECK(blocks > 10);  // it was heard for 30 ms at least
+  CHECK(l.line.take_unread().size() == 1);
+  CHECK(watched.expired());
+  CHECK(l.sound());
+}
+
+TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time") {
+  Line l;
+  const auto first = poisoned_when_freed(), second = poisoned_when_freed();
+  l.line.change(first);
+  REQUIRE(l.scrape(first, 1, 4800));  // heard in 100 ms
+  l.line.change(second);
+  REQUIRE(l.scrape(second, 2, 4800));  // waits behind it
+  l.line.change(nullptr);
+  for (int n = 0; n < 4800; n += kBlock) {
+    l.bench->play(kBlock);
+    REQUIRE(l.line.take_unread().empty());
+  }
+  for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
+  CHECK(l.line.take_unread().size() == 2);
+  CHECK(l.sound());
+}
+
+TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at once, the one before it later") {
+  Line l;
+  const auto first = poisoned_when_freed(), second = poisoned_when_freed(), third = poisoned_when_freed();
+  l.line.change(first);
+  REQUIRE(l.scrape(first));
+  l.bench->play(kBlock);
+  l.line.change(second);
+  l.line.change(third);
+  const auto unread = l.line.take_unread();
+  REQUIRE(unread.size() == 1);
+  CHECK(unread[0] == second);
+  // The same contact goes on in the new scene: its voice then reads the new surfaces alone.
+  REQUIRE(l.scrape(third));
+  l.bench->play(kBlock);
+  const auto later = l.line.take_unread();
+  REQUIRE(later.size() == 1);
+  CHECK(later[0] == first);
+}
+
+TEST_CASE(
+    "While the callback stands still nothing that it may read goes, and what waits is bounded by the queue") {
+  Line l;
+  const auto heard = poisoned_when_freed();
+  l.line.change(heard);
+  REQUIRE(l.scrape(heard));
+  l.bench->play(kBlock);
+  std::size_t freed = 0;
+  for (int scene = 0; scene < 3000; ++scene) {
+    auto next = poisoned_when_freed();
+    l.line.change(next);
+    l.scrape(next, scene);
+    freed += l.line.take_unread().size();
+  }
+  // All but those with a scrape in the queue, the one that sounds and the present one.
+  CHECK(freed == 3000 + 1 - l.bench->crossing.scrapes.capacity() - 1 - 1);
+  SECTION("until it goes on") {
+    l.line.change(nullptr);
+    for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
+    freed += l.line.take_unread().size();
+    CHECK(freed == 3001);
+    CHECK(l.sound());
+  }
+  SECTION("or its stream is given up, and another goes on where it was") {
+    l.line.change(nullptr);
+    l.bench->renderer.abandon();
+    freed += l.line.take_unread().size();
+    CHECK(freed == 3001);
+    const auto fresh = poisoned_when_freed();
+    l.line.change(fresh);
+    REQUIRE(l.scrape(fresh));
+    l.line.change(nullptr);
+    auto another = std::make_unique<Renderer>(l.bench->crossing, RendererDef{});
+    std::vector<float> block(2 * kBlock);
+    another->render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(l.bench->left.size())), {}, {}});
+    CHECK(l.line.take_unread().empty());
+    another->abandon();
+    CHECK(l.line.take_unread().size() == 1);
+  }
+}
+
+TEST_CASE(
+    "Whatever loop and callback do, in two threads, nothing that is freed is heard, and all is freed in the end") {
+  Line l;
+  std::atomic<bool> done{false};
+  std::atomic<std::size_t> played{0};
+  float loudest = 0;
+  std::thread callback([&] {
+    std::vector<float> block(2 * kBlock);
+    // Until long after the last scrape.
+    for (int quiet = 0; quiet < 100; quiet = done ? quiet + 1 : 0, played += kBlock) {
+      l.bench->renderer.render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(played)), {}, {}});
+      for (const float x : block) loudest = std::max(loudest, std::abs(x));
+      std::this_thread::yield();
+    }
+  });
+  std::mt19937 random(6);
+  std::size_t freed = 0;
+  constexpr std::size_t kScenes = 400;
+  for (std::size_t scene = 0; scene < kScenes; ++scene) {
+    auto surfaces = poisoned_when_freed();
+    l.line.change(surfaces);
+    const Relief* relief = surfaces->by_material[0].relief.get();
+    surfaces.reset();
+    for (int i = 0; i < 50; ++i) {
+      Scrape s;
+      s.id = static_cast<std::int64_t>(random() % 5);
+      s.at = sync::host_time(l.bench->time_ns(played + random() % 1000));
+      s.relief = relief;
+      s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1, s.level = 0.02f, s.left = s.right = 1;
+      l.line.submit(s);
+      freed += l.line.take_unread().size();
+      std::this_thread::yield();
+    }
+  }
+  l.line.change(nullptr);
+  done = true;
+  callback.join();
+  CHECK(loudest > 0);
+  CHECK(loudest < kLoudest);
+  CHECK(freed + l.line.take_unread().size() == kScenes);
+}

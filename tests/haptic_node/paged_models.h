@@ -1,0 +1,55 @@
+// Touch models of several pages, as the simulation sends them, that say which step they are of.
+#pragma once
+
+#include <cstdint>
+#include <tactus/touch_model_t.hpp>
+#include <vector>
+
+#include "sim_node/publish/touch_pages.h"
+
+namespace tactus::haptic::test {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+
+// A model whose every plane and book names its step.
+inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t books) {
+  touch_model_t m{};
+  m.header.incarnation = 5;
+  m.header.run_id = 1;
+  m.header.sim_time_ns = m.header.publish_time_ns = step * kMs;
+  m.clock = {step * kMs, step * kMs, 1};
+  for (std::size_t i = 0; i < planes; ++i) {
+    touch_plane_t p{};
+    p.contact_id = step * 1000 + static_cast<std::int64_t>(i);
+    m.planes.push_back(p);
+  }
+  for (std::size_t i = 0; i < books; ++i) {
+    touch_applied_t a{};
+    a.contact_id = step * 1000 + static_cast<std::int64_t>(i);
+    m.applied.push_back(a);
+  }
+  return m;
+}
+
+// As the publisher numbers them.
+inline std::vector<touch_model_t> pages_of(const touch_model_t& whole, std::int64_t& seq) {
+  std::vector<touch_model_t> out;
+  touch_model_t scratch{};
+  sim::each_touch_page(whole, scratch, [&](touch_model_t& page) {
+    page.header.seq = seq++;
+    out.push_back(page);
+  });
+  return out;
+}
+
+inline bool is_whole(const touch_model_t& m, std::int64_t step, std::size_t planes, std::size_t books) {
+  bool good = m.page == 0 && m.pages == 1 && m.planes.size() == planes && m.applied.size() == books &&
+              m.plane_count == static_cast<int>(planes) && m.applied_count == static_cast<int>(books);
+  for (std::size_t i = 0; good && i < planes; ++i)
+    good = m.planes[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
+  for (std::size_t i = 0; good && i < books; ++i)
+    good = m.applied[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
+  return good;
+}
+
+}  // namespace tactus::haptic::test

@@ -1,0 +1,190 @@
+// A profile on touch models of several pages, from the bus to what the hand gets: each model is felt whole or not
+// at all.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "haptic_node/touch_input.h"
+#include "sync/degradation/degraded_stream.h"
+#include "tests/haptic_node/paged_models.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+constexpr std::size_t kPlanes = 20, kBooks = 3;  // three pages
+
+sync::Stack stack_of(const std::string& attributes) {
+  return {sync::parse_profile("<profile><degrade modality=\"haptic\" " + attributes + "/></profile>", "p.xml"),
+          "haptic",
+          {}};
+}
+
+// The way of the touch models as in the node's loop. A tick comes between the pages of each model: the last of
+// them arrive a tick later.
+struct TouchWay {
+  sync::Stack stack;
+  sync::DegradedSnapshots<touch_model_t> degraded;
+  TouchInput input{0, 1};
+  std::vector<touch_model_t> late;  // pages that come with the next tick
+  std::int64_t seq = 0;
+
+  // One tick; what the hand gets new, or null.
+  const touch_model_t* tick(std::int64_t ms, const touch_model_t& said) {
+    const sync::HostTime now = sync::host_time(ms * kMs);
+    const auto arrive = [&](touch_model_t page) { degraded.push(std::move(page), now, stack, nullptr); };
+    for (const touch_model_t& page : late) arrive(page);
+    late = pages_of(said, seq);
+    arrive(late.front());
+    late.erase(late.begin());
+    // As Sense does for a servo loop, whose news waits.
+    const sync::HostTime lets = now - stack.presentation_delay(sync::sim_time(ms * kMs));
+    while (const auto m = degraded.pop(lets)) input.push(m->first, m->second);
+    return input.take();
+  }
+};
+
+touch_model_t model_at(std::int64_t ms) {
+  touch_model_t m = whole_model(ms, kPlanes, kBooks);
+  for (std::size_t i = 0; i < m.planes.size(); ++i) {
+    m.planes[i].stiffness_N_m = 1000;
+    // For a deadband: one plane, of another page each time, moves every 10 ms.
+    const bool moves = ms % 10 == 0 && i == static_cast<std::size_t>(ms / 10) % kPlanes;
+    m.planes[i].contact_id = static_cast<std::int64_t>(i);
+    m.planes[i].velocity_m_s.x = moves ? 1 : 0;
+  }
+  return m;
+}
+
+// Every plane of one step, with the same stiffness; or, where nothing is felt, none.
+bool whole(const touch_model_t& m, bool zero) {
+  const std::size_t planes = zero ? 0 : kPlanes;
+  bool good = m.pages == 1 && m.planes.size() == planes && m.plane_count == static_cast<int>(planes) &&
+              m.applied.size() == kBooks;
+  for (std::size_t i = 0; good && i < planes; ++i)
+    good = m.planes[i].contact_id == static_cast<std::int64_t>(i) &&
+           m.planes[i].stiffness_N_m == m.planes[0].stiffness_N_m;
+  for (std::size_t i = 0; good && i < kBooks; ++i)
+    good = m.applied[i].contact_id == m.header.sim_time_ns / kMs * 1000 + static_cast<std::int64_t>(i);
+  return good;
+}
+
+struct Case {
+  std::string profile;
+  double share, tolerance;  // of the models that come through
+  int least_ms, most_ms;    // how late
+};
+
+}  // namespace
+
+TEST_CASE("Whatever a profile does to touch models of several pages, the hand gets whole ones, newer and newer") {
+  // Without a profile a model is whole a tick after it was said. Shares to five standard deviations of 2000 draws.
+  const Case c = GENERATE(
+      Case{"delay=\"40ms\"", 1, 0, 41, 41}, Case{"delay=\"40ms network\"", 1, 0, 40, 40},
+      Case{"rate=\"100Hz\"", 0.1, 0.002, 1, 1}, Case{"rate=\"100Hz\" delay=\"30ms network\"", 0.1, 0.002, 30, 30},
+      Case{"loss=\"30%\"", 0.7, 0.05, 1, 1}, Case{"loss=\"30% burst=5\"", 0.7, 0.15, 1, 1},
+      // Three pages, each by itself.
+      Case{"wire_loss=\"5%\"", std::pow(0.95, 3), 0.04, 1, 1},
+      Case{"wire_loss=\"5%\" loss=\"20%\" delay=\"10ms network\"", 0.8 * std::pow(0.95, 3), 0.06, 10, 10},
+      Case{"jitter=\"3ms normal\"", 0.6, 0.4, 1, 30}, Case{"jitter=\"5ms uniform order=free\"", 0.5, 0.5, 1, 30},
+      Case{"reorder=\"20% by=5ms\"", 0.8, 0.05, 1, 5}, Case{"duplicate=\"20%\"", 1, 0, 1, 1},
+      Case{"deadband=\"10% velocity\"", 0.2, 0.01, 1, 1},
+      Case{"deadband=\"10% velocity\" wire_loss=\"5%\" delay=\"20ms\"", 0.3, 0.25, 21, 30},
+      Case{"gain=\"0.5 force\" delay=\"7ms\"", 1, 0, 8, 8}, Case{"conceal=\"zero\" loss=\"30%\"", 1, 0, 1, 1});
+  CAPTURE(c.profile);
+  TouchWay way;
+  way.stack = stack_of(c.profile);
+  std::int64_t newest_ns = -1;
+  int came = 0;
+  constexpr int kTicks = 2000;
+  for (std::int64_t ms = 0; ms < kTicks; ++ms) {
+    const touch_model_t* m = way.tick(ms, model_at(ms));
+    if (!m) continue;
+    const std::int64_t late_ms = ms - m->header.sim_time_ns / kMs;
+    CAPTURE(ms, late_ms, m->planes.size());
+    REQUIRE((whole(*m, false) || (c.profile.starts_with("conceal") && whole(*m, true))));
+    REQUIRE(m->header.sim_time_ns > newest_ns);
+    REQUIRE(late_ms >= c.least_ms);
+    REQUIRE(late_ms <= c.most_ms);
+    newest_ns = m->header.sim_time_ns;
+    ++came;
+  }
+  CHECK(std::abs(static_cast<double>(came) / (kTicks - c.least_ms) - c.share) <= c.tolerance);
+}
+
+TEST_CASE("A freeze begins and ends with a whole model, and its zero is one without planes") {
+  const bool zero = GENERATE(false, true);
+  TouchWay way;
+  way.stack = stack_of(std::string("from=\"100ms\" until=\"200ms\" freeze=\"") + (zero ? "zero\"" : "hold\""));
+  for (std::int64_t ms = 0; ms < 300; ++ms) {
+    const bool frozen = ms - 1 >= 100 && ms - 1 < 200;
+    const touch_model_t* m = way.tick(ms, model_at(ms));
+    CAPTURE(ms, zero);
+    REQUIRE((m != nullptr) == (ms >= 1 && (zero || !frozen)));
+    if (!m) continue;
+    REQUIRE(m->header.sim_time_ns == (ms - 1) * kMs);
+    REQUIRE(whole(*m, frozen));
+  }
+}
+
+TEST_CASE("A profile that comes between the pages of a model splits none: that model is dropped") {
+  const std::string before =
+      GENERATE("", "gain=\"0.25 force\"", "delay=\"5ms network\"", "deadband=\"10% velocity\"");
+  const std::string after =
+      GENERATE("", "gain=\"0.5 force\"", "freeze=\"zero\"", "off=\"true\"", "delay=\"3ms network\"");
+  CAPTURE(before, after);
+  TouchWay way;
+  if (!before.empty()) way.stack = stack_of(before);
+  bool zero = false;
+  int came = 0;
+  for (std::int64_t ms = 0; ms < 60; ++ms) {
+    if (ms == 30) {
+      way.stack = after.empty() ? sync::Stack() : stack_of(after);
+      way.degraded.change_profile();
+    }
+    const touch_model_t* m = way.tick(ms, model_at(ms));
+    if (!m) continue;
+    CAPTURE(ms);
+    CHECK(m->header.sim_time_ns != 29 * kMs);
+    zero = m->planes.empty();
+    REQUIRE(whole(*m, zero));
+    ++came;
+  }
+  CHECK(came > 30);  // also behind a deadband, which lets 6 of 30 through
+  CHECK(zero == (after == "freeze=\"zero\"" || after == "off=\"true\""));
+}
+
+TEST_CASE("While the world stands still each look of the hand at it is decided on by itself") {
+  constexpr std::int64_t kStands_ms = 100;
+  TouchWay way;
+  SECTION("a network delay makes each as late as before") {
+    way.stack = stack_of("delay=\"40ms network\"");
+    for (std::int64_t ms = 0; ms < 500; ++ms) {
+      touch_model_t said = model_at(std::min(ms, kStands_ms));
+      said.header.publish_time_ns = ms * kMs, said.clock.host_ns = ms * kMs;
+      for (touch_plane_t& p : said.planes) p.body = static_cast<std::int32_t>(ms);  // the hand goes on
+      const touch_model_t* m = way.tick(ms, said);
+      CAPTURE(ms);
+      REQUIRE((m != nullptr) == (ms >= 40));
+      if (!m) continue;
+      for (const touch_plane_t& p : m->planes) REQUIRE(p.body == ms - 40);
+    }
+  }
+  SECTION("a loss takes its share of them, and of each all pages") {
+    way.stack = stack_of("loss=\"50%\"");
+    int came = 0;
+    for (std::int64_t ms = 0; ms < 1100; ++ms) {
+      touch_model_t said = model_at(std::min(ms, kStands_ms));
+      said.header.publish_time_ns = ms * kMs, said.clock.host_ns = ms * kMs;
+      for (touch_plane_t& p : said.planes) p.body = static_cast<std::int32_t>(ms);
+      const touch_model_t* m = way.tick(ms, said);
+      if (!m) continue;
+      for (const touch_plane_t& p : m->planes) REQUIRE(p.body == ms - 1);
+      if (ms > kStands_ms) ++came;
+    }
+    CHECK(std::abs(came - 500) < 5 * std::sqrt(250));
+  }
+}
