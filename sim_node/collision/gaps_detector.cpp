@@ -1,13 +1,16 @@
 // Every pair of shapes, with gaps: closed forms for balls and planes, faces and nearest points for convex shapes,
 // triangle by triangle for meshes, and the three layers for meshes against meshes and boxes.
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/detector.h"
 #include "sim_node/collision/gaps/convex_pair.h"
+#include "sim_node/collision/gaps/mesh_nearest.h"
 #include "sim_node/collision/gaps/mesh_pair.h"
+#include "sim_node/collision/nearest_first.h"
 
 namespace tactus::sim {
 namespace {
@@ -16,10 +19,6 @@ using Eigen::Isometry3d;
 
 // As of the detector "layers".
 constexpr double kMargin = 0.2;
-// A pair that leads straight out of a triangle's face is one of something over it: cosine.
-constexpr double kStraight = 1 - 1e-9;
-// Of the distance: something tilted by 26 degrees over a face, as far as a step may turn it; design.
-constexpr double kMuchNearer = 0.9;
 
 bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
 
@@ -31,12 +30,15 @@ struct Shape {
   ClosestSurface surface;
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const ContactMesh> layers;
+  std::shared_ptr<const gaps::NormalCones> cones = nullptr;
 };
 
-class GapsDetector : public Detector {
+class GapsDetector : public Detector, public FindsNearestFirst {
  public:
   GapsDetector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees)
-      : trees_(std::move(trees)), contact_(options) {}
+      : trees_(std::move(trees)),
+        contact_(options),
+        as_it_is_(options.mode == ContactMode::kComplete && options.remover == DuplicateRemover::kHashed) {}
 
   DetectorAbilities abilities() const override {
     return {.name = "gaps",
@@ -81,6 +83,24 @@ class GapsDetector : public Detector {
       ordered(sa, pose_a, sb, pose_b, reach_m, out);
     if (!swapped) return;
     for (PointPair& p : out) swap_sides(p);
+  }
+
+  void prepare_nearest_first(int a, int b) override {
+    Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    if (!as_it_is_ || !has_triangles(sa.kind) || !has_triangles(sb.kind)) return;
+    for (Shape* s : {&sa, &sb}) {
+      auto& cones = cones_[s->layers.get()];
+      if (!cones) cones = std::make_shared<const gaps::NormalCones>(s->layers->tree);
+      s->cones = cones;
+    }
+  }
+
+  bool nearest_first(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
+                     NearestFirst& to, std::vector<PointPair>& room) override {
+    const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    if (!sa.cones || !sb.cones) return false;
+    nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m, to, room);
+    return true;
   }
 
  protected:
@@ -154,39 +174,20 @@ class GapsDetector : public Detector {
       const Triangle &of_a = a.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_a)],
                      &of_b = b.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_b)];
       if (p.pierced)
-        gaps::part(moved(of_a, at), moved(of_b, pose_b), p);
-      else if (!is_contact(a, at, of_a, b, pose_b, of_b, p))
+        gaps::part(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), p);
+      else if (!gaps::is_contact({*a.tree, at, of_a}, {*b.tree, pose_b, of_b}, p))
         continue;
       if (box) p.triangle_a = -1;
       out.push_back(p);
     }
   }
 
-  // What lies over a face is one, unless it leads away from what is much nearer; what lies between edges, when
-  // nothing around is nearer at all.
-  static bool is_contact(const Shape& a, const Isometry3d& pose_a, const Triangle& of_a, const Shape& b,
-                         const Isometry3d& pose_b, const Triangle& of_b, const PointPair& p) {
-    const bool over_a = std::abs((pose_a.linear() * of_a.normal).dot(p.normal)) > kStraight,
-               over_b = std::abs((pose_b.linear() * of_b.normal).dot(p.normal)) > kStraight;
-    const double share = over_a || over_b ? kMuchNearer : 1;
-    const auto around = [share](const Shape& s, const Isometry3d& pose, const Eigen::Vector3d& from,
-                                const Eigen::Vector3d& on) {
-      const Isometry3d back = pose.inverse(Eigen::Isometry);
-      return gaps::nearest_around(*s.tree, back * from, back * on, share);
-    };
-    return (over_a || around(a, pose_a, p.on_b_m, p.on_a_m)) && (over_b || around(b, pose_b, p.on_a_m, p.on_b_m));
-  }
-
-  static Triangle moved(const Triangle& t, const Isometry3d& pose) {
-    Triangle m = t;
-    for (Eigen::Vector3d& v : m.v) v = pose * v;
-    m.normal = pose.linear() * t.normal;
-    return m;
-  }
-
   std::shared_ptr<MeshTrees> trees_;
   MeshContact contact_;
+  gaps::MeshNearest nearest_;
+  bool as_it_is_;  // no other way of layers 2 and 3 is wanted, for comparison
   std::vector<Shape> shapes_;
+  std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one a mesh, as its tree
   std::vector<SurfacePlane> planes_;
   MeshContactResult found_;
 };

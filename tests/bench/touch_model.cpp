@@ -1,6 +1,7 @@
-// What the touch model of a ball tool costs: on one fine mesh, and with many meshes in the scene.
+// What the touch model of a tool costs: of a ball on one fine mesh, and with many meshes in the scene; of a box, a capsule
+// and a mesh that touch one mesh or lie in the corner of three.
 //
-//   bin/touch_model [--json FILE]
+//   bin/touch_model [--steps N] [--only NAME] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -10,6 +11,7 @@
 
 #include "sim_node/behaviour/tool_touch.h"
 #include "sim_node/scene/triangles.h"
+#include "tests/bench/touch_shapes.h"
 #include "tests/sim_node/collision/meshes.h"
 #include "tests/sim_node/small_worlds.h"
 
@@ -85,8 +87,11 @@ double quantile(std::vector<double> x, double q) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string json;
-  CLI::App app{"What the touch model of a ball tool costs."};
+  std::string json, only;
+  int steps = 200;
+  CLI::App app{"What the touch model of a tool costs."};
+  app.add_option("--steps", steps, "of each row of a tool with a shape")->check(CLI::Range(1, 100'000));
+  app.add_option("--only", only, "the rows of a tool with a shape whose scene and tool hold that, as \"bowl.obj mesh\"");
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
   std::vector<Scene> scenes;
@@ -120,6 +125,21 @@ int main(int argc, char** argv) {
                 static_cast<double>(s.planes) / kSteps);
     out[s.name] = {{"median_us", quantile(s.us, 0.5)}, {"p99_us", quantile(s.us, 0.99)}};
   }
+  std::printf("\ntools with a shape, %d steps a row, time of the processor; triangles: of the scene, in the ball around the tool and its margin\n"
+              "%-26s %-13s %6s %10s %10s %10s %10s\n",
+              steps, "us", "tool", "m/s", "triangles", "median", "p99", "planes");
+  shape_rows(TACTUS_SOURCE_DIR "/sim_node/scenes", steps, only, [&](const ShapeRow& r) {
+    std::printf("%-26s %-13s %6.1f %10.0f %10.1f %10.1f %10.1f\n", r.scene.c_str(), r.tool.c_str(), r.speed_m_s, r.triangles,
+                r.median_us, r.p99_us, r.planes);
+    std::fflush(stdout);
+    out["shapes"].push_back({{"scene", r.scene},
+                             {"tool", r.tool},
+                             {"speed_m_s", r.speed_m_s},
+                             {"triangles", r.triangles},
+                             {"planes", r.planes},
+                             {"median_us", r.median_us},
+                             {"p99_us", r.p99_us}});
+  });
   if (!json.empty()) std::ofstream(json) << out.dump(2) << "\n";
   return 0;
 }

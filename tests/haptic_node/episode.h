@@ -62,7 +62,7 @@ struct EpisodeResult {
 
 EpisodeResult run_episode(const EpisodeDef& def, bool timed = false);
 
-// That of the settings, a finger tip, a hand, an arm: orders of magnitude of what is published, see there.
+// That of the settings, a finger tip, a hand, an arm: as published where a number was found, see there.
 struct HandKind {
   const char* name;
   HandImpedance impedance;

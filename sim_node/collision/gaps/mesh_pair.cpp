@@ -28,8 +28,17 @@ AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
 
 }  // namespace
 
+double least_around(double distance_m, double share) {
+  return share * distance_m - std::max(kOn_m, 1e-6 * distance_m);
+}
+
+bool leads_out(const Vector3d& face_normal, const Vector3d& pair_normal) {
+  constexpr double kStraight = 1 - 1e-9;  // cosine
+  return std::abs(face_normal.dot(pair_normal)) > kStraight;
+}
+
 bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh, double share) {
-  const double distance = (from - on_mesh).norm(), least = share * distance - std::max(kOn_m, 1e-6 * distance);
+  const double least = least_around((from - on_mesh).norm(), share);
   const Vector3d on(kOn_m, kOn_m, kOn_m);
   bool nearest = true;
   mesh.each_within({on_mesh - on, on_mesh + on},
@@ -77,6 +86,24 @@ void plane_mesh(const Isometry3d& plane_pose, const TriangleTree& mesh, const Is
     p.triangle_b = number;
     out.push_back(p);
   });
+}
+
+bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p) {
+  const bool over_a = leads_out(a.pose.linear() * a.triangle.normal, p.normal),
+             over_b = leads_out(b.pose.linear() * b.triangle.normal, p.normal);
+  const double share = share_of(over_a, over_b);
+  const auto around = [share](const MeshSide& s, const Vector3d& from, const Vector3d& on) {
+    const Isometry3d back = s.pose.inverse(Eigen::Isometry);
+    return nearest_around(s.mesh, back * from, back * on, share);
+  };
+  return (over_a || around(a, p.on_b_m, p.on_a_m)) && (over_b || around(b, p.on_a_m, p.on_b_m));
+}
+
+Triangle moved(const Triangle& t, const Isometry3d& pose) {
+  Triangle m = t;
+  for (Vector3d& v : m.v) v = pose * v;
+  m.normal = pose.linear() * t.normal;
+  return m;
 }
 
 void part(const Triangle& a, const Triangle& b, PointPair& pair) {

@@ -1,5 +1,6 @@
 // A tool with a shape among bodies: which places it may meet, and that it follows them.
 #include <catch2/catch.hpp>
+#include <numeric>
 #include <set>
 
 #include "sim_node/behaviour/simulation.h"
@@ -118,4 +119,43 @@ TEST_CASE("The contact of a corner begins when it meets the floor and ends when 
   CHECK(begins == 2);
   CHECK(hits == 2);
   CHECK(ends == 2);
+}
+
+TEST_CASE("A tool on more places than a touch model holds has the nearest 49, in order, and the same ones every time") {
+  // Eighty balls under a box, each less than the gap of a touch away from it, the nearest ones anywhere among them.
+  constexpr int kBalls = 80;
+  const auto gap_m = [](int ball) { return 1e-6 * (1 + ball * 37 % kBalls); };
+  const auto touched = [&](bool backwards, std::vector<std::uint8_t>& bytes) {
+    WorldDef w = empty_world(0);
+    for (int k = 0; k < kBalls; ++k) {
+      const int ball = backwards ? kBalls - 1 - k : k;
+      add_ball(w, 0, 0.003, {0.008 * (ball % 10), 0.008 * (ball / 10), -0.003 - gap_m(ball)});
+      w.bodies.back().name = std::to_string(ball);
+    }
+    const Vector3d place(0.036, 0.028, 0.0101);
+    Simulation s(with_tool(w, tool_def_t::BOX, {0.1, 0.1, 0.02}, place), {});
+    s.start(1);
+    std::vector<int> balls;
+    for (int i = 0; i < 5; ++i) {
+      s.step(std::vector{state(place, Eigen::Quaterniond::Identity(), sync::to_ns(s.now()), i)});
+      const touch_model_t& m = s.touch_models()[0];
+      REQUIRE(m.planes.size() == 49);
+      CHECK(m.plane_count == 49);
+      bytes.resize(bytes.size() + static_cast<std::size_t>(m.getEncodedSize()));
+      m.encode(bytes.data(), static_cast<int>(bytes.size()) - m.getEncodedSize(), m.getEncodedSize());
+      balls.clear();
+      for (const touch_plane_t& p : m.planes)
+        balls.push_back(std::stoi(w.bodies[static_cast<std::size_t>(p.body)].name));
+    }
+    return balls;
+  };
+  std::vector<int> nearest(kBalls);
+  std::iota(nearest.begin(), nearest.end(), 0);
+  std::sort(nearest.begin(), nearest.end(), [&](int x, int y) { return gap_m(x) < gap_m(y); });
+  nearest.resize(49);
+  std::vector<std::uint8_t> once, again, backwards;
+  CHECK(touched(false, once) == nearest);
+  CHECK(touched(false, again) == nearest);
+  CHECK(once == again);
+  CHECK(touched(true, backwards) == nearest);
 }

@@ -1,0 +1,112 @@
+#include "sim_node/collision/gaps/facing_pairs.h"
+
+#include <Eigen/Geometry>
+
+namespace tactus::sim::gaps {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+// As of LeafPairs: rounding of a test in float per metre of the coordinates.
+constexpr double kRounding = 4e-6;
+
+struct Motion {  // from one tree's frame to the other's
+  Matrix3f rotation;
+  Vector3f shift;
+  Motion(const Isometry3d& to_from, const ObbTree& from, const ObbTree& to)
+      : rotation(to_from.linear().cast<float>()), shift((to_from * from.origin() - to.origin()).cast<float>()) {}
+};
+
+// A ball around a box of a tree, with what is known of its normals.
+struct Ball {
+  Vector3f centre;
+  float radius;
+  Vector3f axis, face;  // of its cone; of a triangle, its normal
+  float cosine, sine;
+  bool leaf;
+};
+
+Ball ball_of(const ObbTree& tree, const NormalCones& cones, int node, int lane) {
+  const WideNode& n = tree.nodes()[static_cast<std::size_t>(node)];
+  const NormalCone& c = cones.of(node, lane);
+  return {{n.centre[0][lane], n.centre[1][lane], n.centre[2][lane]},
+          n.size[lane],
+          c.axis,
+          {n.axis[2][0][lane], n.axis[2][1][lane], n.axis[2][2][lane]},
+          c.cosine,
+          c.sine,
+          n.child[lane] < 0};
+}
+
+void move(const Motion& m, Ball& b) {
+  b.centre = m.rotation * b.centre + m.shift;
+  b.axis = m.rotation * b.axis;
+  b.face = m.rotation * b.face;
+}
+
+// Whether a way that begins in one ball and ends in the other, `way` between their middles and off by no more than
+// r, may lead within the cone. Of a triangle whose face it is to leave straight, the cone is none but its normal.
+bool within(const Ball& b, const Vector3f& way, float squared, float r) {
+  const float high = std::abs(way.dot(b.axis)), wide2 = squared - high * high, most = r + high * b.sine;
+  return wide2 * b.cosine * b.cosine <= most * most;
+}
+bool straight(const Ball& b, const Vector3f& way, float squared, float r) {
+  const float high = way.dot(b.face);
+  return squared - high * high <= r * r;
+}
+
+// A pair is over a's face, over b's, or nearest of all around it on both.
+bool may_meet(const Ball& a, const Ball& b, float reach, float slack) {
+  const Vector3f way = b.centre - a.centre;
+  const float squared = way.squaredNorm(), r = a.radius + b.radius + slack, far = reach + r;
+  if (squared > far * far) return false;
+  const bool in_a = within(a, way, squared, r), in_b = within(b, way, squared, r);
+  if (in_a && in_b) return true;
+  return (in_a && (!a.leaf || straight(a, way, squared, r))) ||
+         (in_b && (!b.leaf || straight(b, way, squared, r)));
+}
+
+}  // namespace
+
+void FacingPairs::find(const Mesh& a, const Mesh& b, double reach_m, std::vector<std::pair<int, int>>& out) {
+  out.clear();
+  if (a.tree.empty() || b.tree.empty()) return;
+  const Isometry3d b_from_a = b.pose.inverse(Eigen::Isometry) * a.pose;
+  const Motion to_b(b_from_a, a.tree, b.tree), to_a(b_from_a.inverse(Eigen::Isometry), b.tree, a.tree);
+  const double apart = (b_from_a * a.tree.origin() - b.tree.origin()).norm();
+  const double size = a.tree.radius_m() + b.tree.radius_m() + reach_m;
+  if (apart > size) return;
+  const float reach = static_cast<float>(reach_m), slack = static_cast<float>(kRounding * (apart + size));
+  const auto &nodes_a = a.tree.nodes(), &nodes_b = b.tree.nodes();
+  open_.clear();
+  open_.push_back({{0, 0}, {0, 0}});
+  while (!open_.empty()) {
+    const Step s = open_.back();
+    open_.pop_back();
+    const WideNode &na = nodes_a[static_cast<std::size_t>(s.a.node)],
+                   &nb = nodes_b[static_cast<std::size_t>(s.b.node)];
+    const int child_a = na.child[s.a.lane], child_b = nb.child[s.b.lane];
+    if (child_a < 0 && child_b < 0) {
+      out.emplace_back(~child_a, ~child_b);
+      continue;
+    }
+    const bool open_a = child_b < 0 || (child_a >= 0 && na.size[s.a.lane] > nb.size[s.b.lane]);
+    Ball fixed =
+        open_a ? ball_of(b.tree, b.cones, s.b.node, s.b.lane) : ball_of(a.tree, a.cones, s.a.node, s.a.lane);
+    move(open_a ? to_a : to_b, fixed);
+    const int child = open_a ? child_a : child_b;
+    const int count = (open_a ? nodes_a : nodes_b)[static_cast<std::size_t>(child)].count;
+    for (int lane = 0; lane < count; ++lane) {
+      if (open_a) {
+        if (may_meet(ball_of(a.tree, a.cones, child, lane), fixed, reach, slack))
+          open_.push_back({{child, lane}, s.b});
+      } else if (may_meet(fixed, ball_of(b.tree, b.cones, child, lane), reach, slack)) {
+        open_.push_back({s.a, {child, lane}});
+      }
+    }
+  }
+}
+
+}  // namespace tactus::sim::gaps

@@ -1,0 +1,34 @@
+// Which triangles of two meshes may hold a pair of points that is a contact: within reach of each other, and such
+// that the way from one to the other leads out of one of them as its normals do.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <utility>
+#include <vector>
+
+#include "sim_node/collision/gaps/normal_cones.h"
+
+namespace tactus::sim::gaps {
+
+class FacingPairs {
+ public:
+  struct Mesh {
+    const ObbTree& tree;
+    const NormalCones& cones;
+    const Eigen::Isometry3d& pose;
+  };
+  // (triangle of a, triangle of b) into `out`, cleared first. Deterministic. Realtime-safe once the lists have
+  // grown.
+  void find(const Mesh& a, const Mesh& b, double reach_m, std::vector<std::pair<int, int>>& out);
+
+ private:
+  struct Slot {
+    int node, lane;
+  };
+  struct Step {
+    Slot a, b;
+  };
+  std::vector<Step> open_;
+};
+
+}  // namespace tactus::sim::gaps

@@ -1,0 +1,110 @@
+#include "sim_node/collision/gaps/mesh_nearest.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sim_node/collision/gaps/mesh_pair.h"
+#include "sim_node/collision/layers/pair_features.h"
+
+namespace tactus::sim::gaps {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using layer2::Heights;
+using layer2::Sides;
+
+namespace {
+
+// The gap of a pair that is none of a contact, but stands for the others at its place.
+constexpr double kNone_m = std::numeric_limits<double>::infinity();
+
+bool nearer_on(const Triangle& t, const Vector3d& from, double least_m) {
+  if (t.normal.isZero()) return false;
+  return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < least_m * least_m;
+}
+
+Triangle in_frame_of_b(const Triangle& t, const Isometry3d& motion) {
+  Triangle m = moved(t, motion);
+  for (int i = 0; i < 3; ++i) m.inward[i] = motion.linear() * t.inward[i];
+  return m;
+}
+
+}  // namespace
+
+void marked_pairs(const Triangle& a, const Triangle& b, double tol, std::vector<PointPair>& out) {
+  const Heights over_b = layer2::heights(a, b);
+  if (layer2::out_of_reach(over_b, tol)) return;
+  const Heights over_a = layer2::heights(b, a);
+  if (layer2::out_of_reach(over_a, tol)) return;
+  const Sides in_b = layer2::sides(a, b), in_a = layer2::sides(b, a);
+  if (layer2::out_of_reach(in_b, tol) || layer2::out_of_reach(in_a, tol)) return;
+  const auto add = [&](const PointPair& p) {
+    out.push_back(p);
+    const bool out_of_a = leads_out(a.normal, p.normal), out_of_b = leads_out(b.normal, p.normal);
+    const double least = least_around((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
+    if (least > 0 &&
+        ((!out_of_a && nearer_on(a, p.on_b_m, least)) || (!out_of_b && nearer_on(b, p.on_a_m, least))))
+      out.back().gap_m = kNone_m;
+  };
+  layer2::vertices_over(a, over_b, in_b, b, true, tol, add);
+  layer2::vertices_over(b, over_a, in_a, a, false, tol, add);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t i1 = (i + 1) % 3;
+    if (layer2::beyond(over_b[i], over_b[i1], tol)) continue;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t j1 = (j + 1) % 3;
+      if (layer2::beyond(over_a[j], over_a[j1], tol) || layer2::beyond(in_b[i][j], in_b[i1][j], tol) ||
+          layer2::beyond(in_a[j][i], in_a[j1][i], tol))
+        continue;
+      layer2::between_edges(a, i, b, j, tol, add);
+    }
+  }
+  const auto always = [&](const PointPair& p) { out.push_back(p); };
+  layer2::piercings(a, over_b, b, true, always);
+  layer2::piercings(b, over_a, a, false, always);
+}
+
+void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to,
+                       std::vector<PointPair>& pairs) {
+  pairs.clear();
+  facing_.find({a.layers.tree, a.cones, a.pose}, {b.layers.tree, b.cones, b.pose}, reach_m, leaves_);
+  const auto& of_a = a.layers.tree.triangles();
+  const auto& of_b = b.layers.tree.triangles();
+  const Isometry3d b_from_a = b.pose.inverse(Eigen::Isometry) * a.pose;
+  Triangle ta;
+  int last = -1;
+  for (const auto& [i, j] : leaves_) {
+    if (i != last) ta = in_frame_of_b(of_a[static_cast<std::size_t>(i)], b_from_a);
+    last = i;
+    const std::size_t first = pairs.size();
+    marked_pairs(ta, of_b[static_cast<std::size_t>(j)], reach_m, pairs);
+    for (std::size_t k = first; k < pairs.size(); ++k) pairs[k].triangle_a = i, pairs[k].triangle_b = j;
+  }
+  layer3_.remove_hashed(pairs);
+  const auto triangles = [&](const PointPair& p) {
+    return std::pair<const Triangle&, const Triangle&>(of_a[static_cast<std::size_t>(p.triangle_a)],
+                                                       of_b[static_cast<std::size_t>(p.triangle_b)]);
+  };
+  turns_.clear();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    PointPair& p = pairs[k];
+    if (p.gap_m == kNone_m) continue;
+    p.on_a_m = b.pose * p.on_a_m;
+    p.on_b_m = b.pose * p.on_b_m;
+    p.normal = b.pose.linear() * p.normal;
+    const bool parted = p.pierced;
+    if (parted) part(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), p);
+    turns_.push_back({p.gap_m, static_cast<std::uint32_t>(k), parted});
+  }
+  std::sort(turns_.begin(), turns_.end(),
+            [](const Turn& x, const Turn& y) { return x.gap_m != y.gap_m ? x.gap_m < y.gap_m : x.pair < y.pair; });
+  for (const Turn& t : turns_) {
+    const PointPair& p = pairs[t.pair];
+    if (to.known(p)) continue;
+    if (!t.parted && !is_contact({a.tree, a.pose, triangles(p).first}, {b.tree, b.pose, triangles(p).second}, p))
+      continue;
+    if (!to.take(p)) return;
+  }
+}
+
+}  // namespace tactus::sim::gaps

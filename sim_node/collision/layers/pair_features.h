@@ -1,0 +1,66 @@
+// Which features of two triangles may face each other within a tolerance, and what is quickly told of them:
+// vertices over faces, and edges that go through faces.
+#pragma once
+
+#include <algorithm>
+
+#include "sim_node/collision/layers/point_pairs.h"
+
+namespace tactus::sim::layer2 {
+
+// Of each vertex of one triangle [i] inside each edge [j] of the other, in the plane of that; zero where it has
+// none.
+using Sides = std::array<Heights, 3>;
+
+inline Sides sides(const Triangle& of, const Triangle& over) {
+  Sides s;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) s[i][j] = (of.v[i] - over.v[j]).dot(over.inward[j]);
+  return s;
+}
+
+// A triangle whose vertices are all on one side of a plane and further away than the tolerance touches nothing in
+// it.
+inline bool out_of_reach(const Heights& h, double tolerance_m) {
+  const auto [low, high] = std::minmax({h[0], h[1], h[2]});
+  return low > tolerance_m || high < -tolerance_m;
+}
+
+// The same for the planes that stand on the other's edges, with all of that on their inner side.
+inline bool out_of_reach(const Sides& s, double tolerance_m) {
+  for (std::size_t j = 0; j < 3; ++j)
+    if (std::max({s[0][j], s[1][j], s[2][j]}) < -tolerance_m) return true;
+  return false;
+}
+
+// Both ends on one side and further away than the tolerance.
+inline bool beyond(double from, double to, double tolerance_m) {
+  return std::min(from, to) > tolerance_m || std::max(from, to) < -tolerance_m;
+}
+
+// Calls add(pair) for the vertices of `of` over the face.
+template <class Add>
+void vertices_over(const Triangle& of, const Heights& h, const Sides& s, const Triangle& face, bool of_a,
+                   double tolerance_m, Add&& add) {
+  if (face.normal.isZero()) return;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(h[i]) <= tolerance_m && s[i][0] >= 0 && s[i][1] >= 0 && s[i][2] >= 0)
+      add(over_face(of.v[i], face, h[i], of_a));
+}
+
+// Calls add(pair) for the edges of `of` that pass from one side of the face to the other through it.
+template <class Add>
+void piercings(const Triangle& of, const Heights& h, const Triangle& face, bool of_a, Add&& add) {
+  if (face.normal.isZero()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (!((h[i] < 0 && h[j] > 0) || (h[i] > 0 && h[j] < 0))) continue;
+    const Eigen::Vector3d at = of.v[i] + (of.v[j] - of.v[i]) * (h[i] / (h[i] - h[j]));
+    if (!in_prism(at, face)) continue;
+    PointPair p = over_face(at, face, 0, of_a);
+    p.pierced = true;
+    add(p);
+  }
+}
+
+}  // namespace tactus::sim::layer2

@@ -1,0 +1,31 @@
+#include "sim_node/collision/nearest_first.h"
+
+#include <algorithm>
+
+#include "sim_node/collision/detector.h"
+
+namespace tactus::sim {
+
+using Eigen::Isometry3d;
+
+void nearest_first_of_all(Detector& detector, int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b,
+                          double reach_m, NearestFirst& to, std::vector<PointPair>& room) {
+  detector.query(a, pose_a, b, pose_b, reach_m, room);
+  std::stable_sort(room.begin(), room.end(),
+                   [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
+  for (const PointPair& p : room)
+    if (!to.known(p) && !to.take(p)) return;
+}
+
+void prepare_nearest_first(Detector& detector, int a, int b) {
+  if (auto* quicker = dynamic_cast<FindsNearestFirst*>(&detector)) quicker->prepare_nearest_first(a, b);
+}
+
+void nearest_first(Detector& detector, int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b,
+                   double reach_m, NearestFirst& to, std::vector<PointPair>& room) {
+  auto* quicker = dynamic_cast<FindsNearestFirst*>(&detector);
+  if (quicker && quicker->nearest_first(a, pose_a, b, pose_b, reach_m, to, room)) return;
+  nearest_first_of_all(detector, a, pose_a, b, pose_b, reach_m, to, room);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,22 @@
+// What the touch model of a tool with a shape costs a step: over bumps, in a bowl, in a hole, and in the corner of
+// three meshes.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace tactus::sim::test {
+
+struct ShapeRow {
+  std::string scene, tool;
+  double speed_m_s = 0;  // that the device tells of: the margin of the model grows with it
+  double triangles = 0;  // of the scene that meet the ball around the tool with its margin; on average
+  double planes = 0;     // on average
+  double median_us = 0, p99_us = 0;
+};
+
+// scenes: the folder of the scenes' own meshes. done: gets each row as it is ready. The tool touches in every
+// step.
+void shape_rows(const std::string& scenes, int steps, const std::function<void(const ShapeRow&)>& done);
+
+}  // namespace tactus::sim::test
