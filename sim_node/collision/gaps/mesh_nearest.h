@@ -39,7 +39,9 @@ class MeshNearest {
 };
 
 // What complete_contact() finds, without the types; a pair that leads from where one of these two triangles is
-// nearer itself, which is none of a contact, has an infinite gap. Both in one frame. Appends.
-void marked_pairs(const Triangle& a, const Triangle& b, double tolerance_m, std::vector<PointPair>& out);
+// nearer itself, which is none of a contact, has an infinite gap. Nothing when the two cannot hold a contact by
+// how far ways to what is nearest may lean (NormalCones). Both in one frame. Appends.
+void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tolerance_m,
+                  std::vector<PointPair>& out);
 
 }  // namespace tactus::sim::gaps
