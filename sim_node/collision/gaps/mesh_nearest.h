@@ -21,6 +21,7 @@ class MeshNearest {
     const NormalCones& cones;
     const Eigen::Isometry3d& pose;
   };
+  explicit MeshNearest(Isa isa) : facing_(isa) {}
   // The same contacts as all pairs of the three layers of which is_contact() says yes, to within rounding, but it
   // is asked only of those that `to` does not know by then. `room` is used. Deterministic. Realtime-safe once the
   // lists have grown.
