@@ -38,6 +38,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
   GapsDetector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees)
       : trees_(std::move(trees)),
         contact_(options),
+        nearest_(options.isa),
         as_it_is_(options.mode == ContactMode::kComplete && options.remover == DuplicateRemover::kHashed) {}
 
   DetectorAbilities abilities() const override {

@@ -15,8 +15,9 @@ struct ShapeRow {
   double median_us = 0, p99_us = 0;
 };
 
-// scenes: the folder of the scenes' own meshes. done: gets each row as it is ready. The tool touches in every
-// step.
-void shape_rows(const std::string& scenes, int steps, const std::function<void(const ShapeRow&)>& done);
+// scenes: the folder of the scenes' own meshes. only: what "scene tool" has to hold. done: gets each row as it is
+// ready. The tool touches in every step.
+void shape_rows(const std::string& scenes, int steps, const std::string& only,
+                const std::function<void(const ShapeRow&)>& done);
 
 }  // namespace tactus::sim::test

@@ -1,6 +1,7 @@
 #include "sim_node/collision/gaps/facing_pairs.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 
 namespace tactus::sim::gaps {
 namespace {
@@ -40,6 +41,19 @@ Ball ball_of(const ObbTree& tree, const NormalCones& cones, int node, int lane) 
           n.child[lane] < 0};
 }
 
+// The box itself, in the other tree's frame.
+void move(const Motion& m, const WideNode& n, int lane, BoxQuery& q) {
+  for (int k = 0; k < 3; ++k) {
+    q.centre[k] = m.shift[k];
+    for (int i = 0; i < 3; ++i) q.centre[k] += m.rotation(k, i) * n.centre[i][lane];
+    q.half[k] = n.half[k][lane] + q.grow;
+    for (int j = 0; j < 3; ++j) {
+      q.axis[j][k] = 0;
+      for (int i = 0; i < 3; ++i) q.axis[j][k] += m.rotation(k, i) * n.axis[j][i][lane];
+    }
+  }
+}
+
 void move(const Motion& m, Ball& b) {
   b.centre = m.rotation * b.centre + m.shift;
   b.axis = m.rotation * b.axis;
@@ -70,6 +84,11 @@ bool may_meet(const Ball& a, const Ball& b, float reach, float slack) {
 
 }  // namespace
 
+FacingPairs::FacingPairs(Isa isa)
+    : overlap_(isa == Isa::kAvx512 ? overlap_avx512
+               : isa == Isa::kAvx2 ? overlap_avx2
+                                   : overlap_baseline) {}
+
 void FacingPairs::find(const Mesh& a, const Mesh& b, double reach_m, std::vector<std::pair<int, int>>& out) {
   out.clear();
   if (a.tree.empty() || b.tree.empty()) return;
@@ -79,6 +98,9 @@ void FacingPairs::find(const Mesh& a, const Mesh& b, double reach_m, std::vector
   const double size = a.tree.radius_m() + b.tree.radius_m() + reach_m;
   if (apart > size) return;
   const float reach = static_cast<float>(reach_m), slack = static_cast<float>(kRounding * (apart + size));
+  BoxQuery query;
+  query.slack = slack;
+  query.grow = reach / 2 + slack;
   const auto &nodes_a = a.tree.nodes(), &nodes_b = b.tree.nodes();
   open_.clear();
   open_.push_back({{0, 0}, {0, 0}});
@@ -97,8 +119,13 @@ void FacingPairs::find(const Mesh& a, const Mesh& b, double reach_m, std::vector
         open_a ? ball_of(b.tree, b.cones, s.b.node, s.b.lane) : ball_of(a.tree, a.cones, s.a.node, s.a.lane);
     move(open_a ? to_a : to_b, fixed);
     const int child = open_a ? child_a : child_b;
-    const int count = (open_a ? nodes_a : nodes_b)[static_cast<std::size_t>(child)].count;
-    for (int lane = 0; lane < count; ++lane) {
+    if (open_a)
+      move(to_a, nb, s.b.lane, query);
+    else
+      move(to_b, na, s.a.lane, query);
+    for (unsigned hit = overlap_((open_a ? nodes_a : nodes_b)[static_cast<std::size_t>(child)], query); hit;
+         hit &= hit - 1) {
+      const int lane = std::countr_zero(hit);
       if (open_a) {
         if (may_meet(ball_of(a.tree, a.cones, child, lane), fixed, reach, slack))
           open_.push_back({{child, lane}, s.b});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/collision/gaps/normal_cones.h"
+#include "sim_node/collision/layers/isa.h"
 
 namespace tactus::sim::gaps {
 
@@ -17,6 +18,7 @@ class FacingPairs {
     const NormalCones& cones;
     const Eigen::Isometry3d& pose;
   };
+  explicit FacingPairs(Isa isa);
   // (triangle of a, triangle of b) into `out`, cleared first. Deterministic. Realtime-safe once the lists have
   // grown.
   void find(const Mesh& a, const Mesh& b, double reach_m, std::vector<std::pair<int, int>>& out);
@@ -28,6 +30,7 @@ class FacingPairs {
   struct Step {
     Slot a, b;
   };
+  OverlapTest overlap_;
   std::vector<Step> open_;
 };
 

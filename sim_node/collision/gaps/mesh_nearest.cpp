@@ -18,6 +18,9 @@ namespace {
 // The gap of a pair that is none of a contact, but stands for the others at its place.
 constexpr double kNone_m = std::numeric_limits<double>::infinity();
 
+// A way that leads straight out of a face, by leads_out(), is beside it by less than that share of its length.
+constexpr double kStraight = 1e-4;
+
 bool nearer_on(const Triangle& t, const Vector3d& from, double least_m) {
   if (t.normal.isZero()) return false;
   return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < least_m * least_m;
@@ -31,13 +34,18 @@ Triangle in_frame_of_b(const Triangle& t, const Isometry3d& motion) {
 
 }  // namespace
 
-void marked_pairs(const Triangle& a, const Triangle& b, double tol, std::vector<PointPair>& out) {
+void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tol,
+                  std::vector<PointPair>& out) {
   const Heights over_b = layer2::heights(a, b);
   if (layer2::out_of_reach(over_b, tol)) return;
   const Heights over_a = layer2::heights(b, a);
   if (layer2::out_of_reach(over_a, tol)) return;
   const Sides in_b = layer2::sides(a, b), in_a = layer2::sides(b, a);
-  if (layer2::out_of_reach(in_b, tol) || layer2::out_of_reach(in_a, tol)) return;
+  // A pair is nearest of all around it on both, or leads straight out of the face of one.
+  const auto off = [](const Sides& s, double by_m) { return layer2::out_of_reach(s, by_m); };
+  if ((off(in_b, lean_b * tol) || off(in_a, lean_a * tol)) && off(in_b, kStraight * tol) &&
+      off(in_a, kStraight * tol))
+    return;
   const auto add = [&](const PointPair& p) {
     out.push_back(p);
     const bool out_of_a = leads_out(a.normal, p.normal), out_of_b = leads_out(b.normal, p.normal);
@@ -77,7 +85,7 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirs
     if (i != last) ta = in_frame_of_b(of_a[static_cast<std::size_t>(i)], b_from_a);
     last = i;
     const std::size_t first = pairs.size();
-    marked_pairs(ta, of_b[static_cast<std::size_t>(j)], reach_m, pairs);
+    marked_pairs(ta, a.cones.lean(i), of_b[static_cast<std::size_t>(j)], b.cones.lean(j), reach_m, pairs);
     for (std::size_t k = first; k < pairs.size(); ++k) pairs[k].triangle_a = i, pairs[k].triangle_b = j;
   }
   layer3_.remove_hashed(pairs);

@@ -21,6 +21,7 @@ class MeshNearest {
     const NormalCones& cones;
     const Eigen::Isometry3d& pose;
   };
+  explicit MeshNearest(Isa isa) : facing_(isa) {}
   // The same contacts as all pairs of the three layers of which is_contact() says yes, to within rounding, but it
   // is asked only of those that `to` does not know by then. `room` is used. Deterministic. Realtime-safe once the
   // lists have grown.
@@ -39,7 +40,9 @@ class MeshNearest {
 };
 
 // What complete_contact() finds, without the types; a pair that leads from where one of these two triangles is
-// nearer itself, which is none of a contact, has an infinite gap. Both in one frame. Appends.
-void marked_pairs(const Triangle& a, const Triangle& b, double tolerance_m, std::vector<PointPair>& out);
+// nearer itself, which is none of a contact, has an infinite gap. Nothing when the two cannot hold a contact by
+// how far ways to what is nearest may lean (NormalCones). Both in one frame. Appends.
+void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tolerance_m,
+                  std::vector<PointPair>& out);
 
 }  // namespace tactus::sim::gaps

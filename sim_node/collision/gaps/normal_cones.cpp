@@ -24,6 +24,7 @@ constexpr double kLeastHeight_m = 1e-5;
 struct Wide {  // axis and half angle
   Vector3d axis{0, 0, 1};
   double rad = 4;
+  double lean = 1;  // of a triangle
 };
 
 double angle(const Vector3d& x, const Vector3d& y) { return std::atan2(x.cross(y).norm(), x.dot(y)); }
@@ -82,7 +83,11 @@ std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
         parts.push_back({near.normal, kSlack_rad});
       }
     }
-    cones.push_back(known ? around(parts) : Wide{});
+    Wide& cone = cones.emplace_back(known ? around(parts) : Wide{});
+    if (!known) continue;
+    double most = 0;
+    for (const Wide& p : parts) most = std::max(most, angle(p.axis, triangles[t].normal) + kSlack_rad);
+    if (most < M_PI / 2) cone.lean = std::sin(most);
   }
   return cones;
 }
@@ -91,6 +96,7 @@ std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
 
 NormalCones::NormalCones(const ObbTree& tree) : cones_(tree.nodes().size() * kLanes) {
   const std::vector<Wide> leaves = of_triangles(tree.triangles());
+  for (const Wide& w : leaves) leans_.push_back(w.lean);
   std::vector<Wide> of_node(tree.nodes().size());
   std::vector<Wide> parts;
   // Children come after their parents.

@@ -22,8 +22,13 @@ class NormalCones {
     return cones_[static_cast<std::size_t>(node) * kLanes + static_cast<std::size_t>(lane)];
   }
 
+  // Sine of the angle by which a way to what is nearest may lean from the triangle's own normal; 1 where nothing
+  // is known.
+  double lean(int triangle) const { return leans_[static_cast<std::size_t>(triangle)]; }
+
  private:
   std::vector<NormalCone> cones_;
+  std::vector<double> leans_;
 };
 
 }  // namespace tactus::sim::gaps
