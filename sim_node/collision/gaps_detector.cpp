@@ -100,7 +100,8 @@ class GapsDetector : public Detector, public FindsNearestFirst {
                      NearestFirst& to, std::vector<PointPair>& room) override {
     const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!sa.cones || !sb.cones) return false;
-    nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m, to, room);
+    nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m,
+                  to, room);
     return true;
   }
 
