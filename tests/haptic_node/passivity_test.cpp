@@ -121,6 +121,27 @@ TEST_CASE(
   CHECK(until < (held ? 150 : 30));
 }
 
+TEST_CASE("What is made while the factor falls is reckoned with before it falls") {
+  // A hand slides a light body over a table that holds it with 0.15 N, until nobody tells of it any more: it then
+  // presses on a surface that stays where it was, and the body runs away.
+  Ports ports(0.05, 400);
+  double v = 0, in = 0, hand_J = 0, body_J = 0, most_J = 0;
+  const auto slide = [&](bool told) {
+    const double body_m = v * kDt;
+    hand_J += ports.force * 1.2e-4;
+    body_J += -ports.force * body_m;
+    most_J = std::max(most_J, body_J - hand_J);
+    in += 1.2e-4 + (told ? body_m : 0.0);
+    ports.tick(in, -1.2e-4, body_m, told);
+    v = std::min(0.0, v - (ports.force - 0.15) / 0.05 * kDt);
+  };
+  for (int k = 0; k < 200; ++k) slide(true);
+  for (int k = 0; k < 60; ++k) slide(false);
+  CHECK(ports.passivity.factor() < 0.05);
+  CAPTURE(most_J);
+  CHECK(most_J < 0.0005);
+}
+
 TEST_CASE("After a while apart an episode begins anew, and what the simulation knows from before is not counted") {
   Ports ports(1);
   for (int k = 0; k < 30; ++k) ports.tick(1e-4 * k, -1e-4, 0);
