@@ -129,7 +129,7 @@ TEST_CASE("A body that comes gives no more than its motion") {
   }
 }
 
-TEST_CASE("One that came counts as on its way back when nothing was told of it for a while: it may swing") {
+TEST_CASE("One that came may swing, and counts as on its way back when nothing was told of it for a while") {
   Pushed body{0.2, nothing, 1, 3};
   body.down_m_s = -0.2;
   double off_J = 0;
