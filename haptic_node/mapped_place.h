@@ -7,6 +7,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/bump.h"
+#include "lcmtypes/relief.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
@@ -21,10 +22,14 @@ struct MappedPlace {
   // What is felt of the maps, from tick to tick; set by Reliefs.
   bool known = false, jumped = false;
   BumpAxes axes;
-  Eigen::Vector2d at{0, 0};  // in repetitions of the relief
-  double height_m = 0;
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();  // world: the direction of the force less the normal
-  double height_lag_m = 0;                         // what is left of a jump, and goes to zero
+  Eigen::Vector2d at{0, 0};                                  // in repetitions of the relief
+  const Relief* raised_by = nullptr;                         // whose height is felt
+  Eigen::Vector3d looked_at_body = Eigen::Vector3d::Zero();  // where it was looked up, m
+  double map_height_m = 0;                                   // there, no steeper than is felt
+  double height_m = 0;                                       // felt
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();            // world: the direction of the force less the normal
+  double height_lag_m = 0;                                   // what is left of a jump, and goes to zero
+  double height_lag_speed_m_s = 0;                           // at this speed
   Eigen::Vector3d lean_lag = Eigen::Vector3d::Zero();
 
   // Of a plane that has just been told; normal: as it was told, world, unit.

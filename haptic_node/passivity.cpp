@@ -11,12 +11,6 @@ namespace {
 constexpr double kApart_s = 0.2;
 // From a tick to the step that applies its force and back, beyond the age of the touch model: a step and a tick.
 constexpr double kWay_s = 0.002;
-// How fast the estimate of what holds a body follows; a few models of 30 Hz are not averaged, nor is the noise of
-// one step believed.
-constexpr double kHeld_s = 0.02;
-// For so long it is believed that what held a body still does; then it counts as free. Longer than a period of 30
-// Hz, shorter than the 50 ms after which a touch model is lost.
-constexpr double kTrust_s = 0.04;
 // So many books are kept while nothing is felt on them. Design: several times what a touch model tells of.
 constexpr std::size_t kMostBooks = 32;
 // What was dissipated counts as credit up to here, so that old friction does not pay for a new oscillation.
@@ -52,40 +46,30 @@ Passivity::Book& Passivity::add(std::int64_t contact_id) {
   return b;
 }
 
-void Passivity::hear(Book& b, const touch_plane_t& plane, const touch_applied_t& applied, std::int64_t sim_ns) {
-  const Eigen::Vector3d normal = to_eigen(plane.normal), velocity = to_eigen(plane.velocity_m_s);
-  const double mass_kg = plane.effective_mass_kg;
-  if (b.told_ns >= 0 && sim_ns > b.told_ns) {
-    // Newton: what the body's motion changed by, less the push, is what others did.
-    const double dt = 1e-9 * static_cast<double>(sim_ns - b.told_ns);
-    const double others_N_s =
-        normal.dot(mass_kg * (velocity - b.velocity) - (to_eigen(applied.impulse_N_s) - b.applied_N_s));
-    b.held_N += (1 - std::exp(-dt / kHeld_s)) * (std::clamp(others_N_s / dt, 0.0, limits_.force_N) - b.held_N);
-  }
-  b.told_ns = sim_ns;
-  b.mass_kg = mass_kg;
-  b.normal = normal;
-  b.velocity = velocity;
-}
-
 void Passivity::hear(const touch_model_t& fresh) {
   for (const touch_applied_t& a : fresh.applied) {
     if (!finite(a)) continue;
     Book* b = find(a.contact_id);
     if (!b) b = &add(a.contact_id);
+    const Eigen::Vector3d impulse_N_s = to_eigen(a.impulse_N_s);
     if (!b->told) {
       b->told = true;
       // More than can have been given since it was first felt here: the simulation knows it from before.
-      const Eigen::Vector3d impulse = to_eigen(a.impulse_N_s);
-      if (impulse.norm() > 1.5 * b->given_N_s.norm()) {
+      if (impulse_N_s.norm() > 1.5 * b->unseen.given_N_s().norm()) {
         b->before_J = a.energy_J;
-        b->given_N_s = b->applied_N_s = impulse;
+        b->unseen.settle(impulse_N_s);
       }
     }
-    for (const touch_plane_t& p : fresh.planes)
-      if (p.contact_id == a.contact_id && finite(p)) hear(*b, p, a, fresh.header.sim_time_ns);
     b->energy_J = a.energy_J;
-    b->applied_N_s = to_eigen(a.impulse_N_s);
+    const auto plane = std::find_if(fresh.planes.begin(), fresh.planes.end(), [&](const touch_plane_t& p) {
+      return p.contact_id == a.contact_id && finite(p);
+    });
+    if (plane == fresh.planes.end())
+      b->unseen.tell(impulse_N_s);
+    else
+      b->unseen.tell({fresh.header.sim_time_ns, plane->effective_mass_kg, to_eigen(plane->normal),
+                      to_eigen(plane->velocity_m_s), impulse_N_s},
+                     limits_.force_N);
   }
 }
 
@@ -106,25 +90,11 @@ void Passivity::note(std::span<const FeltForce> forces, std::span<const Surface>
   }
 }
 
-// What the body was given since it told last, J.
-double Passivity::unseen_J(const Book& b, double window_s) const {
-  if (b.told_ns < 0 || b.idle_s > window_s) return 0;
-  Eigen::Vector3d p = b.given_N_s - b.applied_N_s;
-  const double size = p.norm(), most_N_s = limits_.force_N * (window_s + kWay_s);
-  if (size > most_N_s) p *= most_N_s / size;  // a part was never applied
-  double work_J = p.dot(b.velocity);
-  const double pushed = std::max(0.0, -p.dot(b.normal)), held = b.held_N * std::min(window_s, kTrust_s);
-  // What it gives is its own motion, until the push has turned it round.
-  if (work_J < 0) work_J = std::min(0.0, work_J + pushed * pushed / (2 * b.mass_kg));
-  return work_J + pushed * std::max(0.0, pushed - held) / (2 * b.mass_kg);
-}
-
 void Passivity::begin_episode() {
   hand_J_ = settled_J_ = wasted_J_ = credit_J_ = 0;
   for (Book& b : books_) {
     b.before_J = b.energy_J;
-    b.given_N_s = b.applied_N_s;
-    b.held_N = 0;
+    b.unseen.settle();
   }
 }
 
@@ -144,13 +114,16 @@ void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, 
   const bool moved = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt;
   const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kFastest_rad_s * dt;
   const double window_s = std::max(0.0, age_s) + kWay_s;
-  double bodies_J = 0;
+  double bodies_J = 0, generating_W = 0;
   for (Book& b : books_) {
-    b.given_N_s += dt * b.force_N;
+    b.unseen.give(b.force_N, dt);
     if (moved) hand_J_ -= b.force_N.dot(moved_m);
     if (turned) hand_J_ -= b.torque_N_m.dot(turned_rad);
     b.idle_s += dt;
-    bodies_J += b.energy_J - b.before_J + unseen_J(b, window_s);
+    bodies_J += b.energy_J - b.before_J;
+    if (b.idle_s <= window_s) bodies_J += b.unseen.energy_J(window_s, limits_.force_N);
+    generating_W += b.force_N.dot(b.unseen.velocity());
+    if (moved && dt > 0) generating_W -= b.force_N.dot(moved_m) / dt;
   }
   const double stored_J = coupling.energy_J;
 
@@ -162,7 +135,12 @@ void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, 
   wasted_J_ += beyond_J;
   credit_J_ -= beyond_J;
   const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
-  const double wanted = stored_J > allowed_J ? allowed_J / stored_J : 1.0;
+  double wanted = 1;
+  if (stored_J > allowed_J) {
+    // On the way from factor to wanted so much is still made: half of what the force of now would.
+    const double falling_J = 0.5 / kFall_1_s * std::max(0.0, generating_W);
+    wanted = stored_J > falling_J ? std::max(0.0, allowed_J - factor_ * falling_J) / (stored_J - falling_J) : 0.0;
+  }
   factor_ = std::clamp(wanted, std::max(0.0, factor_ - kFall_1_s * dt), std::min(1.0, factor_ + kRise_1_s * dt));
   forget_the_idle();
 }

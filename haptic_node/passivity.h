@@ -3,9 +3,8 @@
 //
 // Port of the device: force on the hand times its motion, known at once. Port of the bodies: the work that the
 // simulation did on them (touch_applied_t), known as late as the touch model. What they were given since is
-// estimated: the impulse p that they have not told of, at their last speed v and as far as nothing seemed to hold
-// them, does v p + p^2 / 2m; a body that comes towards the hand gives no more than its motion. So a fan, a falling
-// ball or a swing given back pays for what the hand gets, at the latest when it tells.
+// estimated (unseen_work.h). So a fan, a falling ball or a swing given back pays for what the hand gets, at the
+// latest when it tells.
 //
 //   credit = what the hand and the bodies gave, less what they were given; below zero: generated
 //
@@ -24,6 +23,7 @@
 
 #include "haptic_node/contact_book.h"
 #include "haptic_node/surfaces.h"
+#include "haptic_node/unseen_work.h"
 
 namespace tactus::haptic {
 
@@ -68,25 +68,17 @@ class Passivity {
   static constexpr double kMostTold_J = 1e6;
   struct Book {
     std::int64_t contact_id = 0;
-    Eigen::Vector3d force_N = Eigen::Vector3d::Zero();      // on the body, now
-    Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();   // the opposite of what is felt of it
-    Eigen::Vector3d given_N_s = Eigen::Vector3d::Zero();    // to the body, as felt
-    Eigen::Vector3d applied_N_s = Eigen::Vector3d::Zero();  // of that, as the simulation told
+    Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the body, now
+    Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the opposite of what is felt of it
+    UnseenWork unseen;
     double energy_J = 0, before_J = 0;  // told; of that before the episode or its first mention
     double idle_s = 0;                  // without a force
     bool told = false;
-    // As told last.
-    std::int64_t told_ns = -1;
-    double mass_kg = 0;
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), velocity = Eigen::Vector3d::Zero();
-    double held_N = 0;  // with which others seemed to hold it against the push
   };
   Book* find(std::int64_t contact_id);
   Book& add(std::int64_t contact_id);
-  void hear(Book& book, const touch_plane_t& plane, const touch_applied_t& applied, std::int64_t sim_ns);
   void forget_the_idle();
   void begin_episode();
-  double unseen_J(const Book& book, double window_s) const;
 
   PassivityLimits limits_;
   std::vector<Book> books_;

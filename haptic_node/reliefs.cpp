@@ -15,6 +15,9 @@ namespace {
 constexpr int kMostSteps = 8;
 // In pixels; a hand that went so far in a tick was put there.
 constexpr double kLeap = 64;
+// Faster over a surface than a hand that feels (as in rendering.cpp): another point of the tool or of the surface
+// is the nearest now, and no slope led from one to the other.
+constexpr double kFastestHand_m_s = 5;
 
 // Where a place of the body frame lies in a relief.
 Vector2d repetitions(const Relief& relief, const BumpAxes& axes, const Vector3d& place_body) {
@@ -26,9 +29,9 @@ double towards(double from, double to, double most) { return from + std::clamp(t
 
 }  // namespace
 
-ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s) {
+ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s, double recovery_speed_m_s) {
   const bool both = bump == "both";
-  return {both || bump == "height", both || bump == "normal", steepest, recovery_time_s};
+  return {both || bump == "height", both || bump == "normal", steepest, recovery_time_s, recovery_speed_m_s};
 }
 
 void Reliefs::set_maps(std::shared_ptr<const SurfaceMaps> maps) {
@@ -52,17 +55,37 @@ Vector3d Reliefs::place(const Surface& s, const ToolPlace& tool) {
   return s.mapped.point_body + s.mapped.turn.transpose() * (tool.touched(s) - s.point);
 }
 
-void Reliefs::raise(Surface& s, const Relief& relief, const Vector3d& place_body, double kept) const {
+void Reliefs::raise(Surface& s, const Relief& relief, const ToolPlace& tool, const Vector3d& place_body,
+                    double dt) const {
   MappedPlace& m = s.mapped;
   const BumpAxes axes = bump_axes(m.normal_body);
   // Where the body turns so far that another projection of the map is nearest, the map jumps; the hand is led
   // over.
   m.jumped = m.known && axes.across != m.axes.across;
   m.axes = axes;
-  const double height_m =
-      height_share_ > 0 ? height_share_ * relief.height_m(repetitions(relief, axes, place_body)) : 0;
-  m.height_lag_m = kept * (m.jumped ? m.height_m - height_m : m.height_lag_m);
-  m.height_m = height_m + m.height_lag_m;
+  const bool by_height = height_share_ > 0;
+  const double map_m = by_height ? relief.height_m(repetitions(relief, axes, place_body)) : 0;
+  const double room_m = s.normal.dot(tool.position) - s.offset_m;  // between the proxy and the smooth surface
+  const Vector3d way = place_body - m.looked_at_body;
+  const double way_m = (way - way.dot(m.normal_body) * m.normal_body).norm();  // along it: the height itself moves
+  m.looked_at_body = place_body;
+  if (m.raised_by != (by_height ? &relief : nullptr) || m.jumped || way_m > kFastestHand_m_s * dt) {
+    m.raised_by = by_height ? &relief : nullptr;
+    m.map_height_m = map_m;
+    const double height_m = height_share_ * map_m;
+    // One that is new yields as far as it would push the proxy; one that was felt goes on from there.
+    m.height_lag_m = m.known ? m.height_m - height_m : std::min(0.0, std::max(0.0, room_m) - height_m);
+    m.height_lag_speed_m_s = std::max(def_.recovery_speed_m_s, std::abs(m.height_lag_m) / def_.recovery_time_s);
+  } else {
+    double rise_m = map_m - m.map_height_m;
+    const double most = std::max(def_.steepest * way_m, def_.recovery_speed_m_s * dt);
+    // Not pressed it may go as it is, as long as it stays under the proxy.
+    rise_m = s.depth_m > 0 ? std::clamp(rise_m, -most, most)
+                           : std::min(rise_m, std::max(most, room_m - m.map_height_m));
+    m.map_height_m += rise_m;
+  }
+  m.height_lag_m = towards(m.height_lag_m, 0, m.height_lag_speed_m_s * dt);
+  m.height_m = height_share_ * m.map_height_m + m.height_lag_m;
   s.offset_m += m.height_m;
 }
 
@@ -93,7 +116,7 @@ void Reliefs::look(std::span<Surface> surfaces, const ToolPlace& tool, double dt
       s.friction_static = factor * s.mapped.friction_static;
       s.friction_dynamic = factor * s.mapped.friction_dynamic;
     }
-    if (maps->relief) raise(s, *maps->relief, at, kept_);
+    if (maps->relief) raise(s, *maps->relief, tool, at, dt);
   }
 }
 

@@ -7,7 +7,11 @@
 //
 // The normal is the picture's (lcmtypes/relief.h). It is continuous over the map, so the force is. Neither method
 // stores energy as a true relief does: who presses harder downhill than uphill is given the difference; the limits
-// of energy and power hold. Pure.
+// of energy and power hold.
+//
+// Both are felt up to the same slope: the force leans no further, and under pressure a height rises and falls no
+// faster than the way over the surface times that slope. What appears over the proxy, or jumps, yields as surfaces
+// do. Pure.
 #pragma once
 
 #include <memory>
@@ -21,11 +25,12 @@ namespace tactus::haptic {
 
 struct ReliefDef {
   bool height = false, normal = true;
-  double steepest = 1;             // slopes are felt up to this, so the force leans by at most atan of it
-  double recovery_time_s = 0.015;  // in which a method, a map that has come, or another side of a body sets in
+  double steepest = 1;              // slopes are felt up to this, so the force leans by at most atan of it
+  double recovery_time_s = 0.015;   // in which a method, a map that has come, or another side of a body sets in
+  double recovery_speed_m_s = 0.1;  // a height that changes more slowly is followed at once
 };
 // of the setting `bump`: none, height, normal or both.
-ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s);
+ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s, double recovery_speed_m_s);
 
 class Reliefs {
  public:
@@ -45,7 +50,8 @@ class Reliefs {
  private:
   // Where it is touched, in the frame of its body, m.
   static Eigen::Vector3d place(const Surface& s, const ToolPlace& tool);
-  void raise(Surface& s, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
+  void raise(Surface& s, const Relief& relief, const ToolPlace& tool, const Eigen::Vector3d& place_body,
+             double dt) const;
   void tilt(MappedPlace& m, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
   Eigen::Vector2d slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const;
 

@@ -25,7 +25,9 @@ SurfaceLimits surface_limits(const Settings& s) {
 CouplingLimits coupling_limits(const Settings& s) {
   return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
 }
-ReliefDef reliefs_of(const Settings& s) { return relief_def(s.bump, s.bump_steepest, s.recovery_time_s); }
+ReliefDef reliefs_of(const Settings& s) {
+  return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
+}
 PassivityLimits passivity_limits(const Settings& s) { return {s.generated_limit_J, s.force_limit_N}; }
 TransientShape transient_shape(const Settings& s) {
   return {s.transient_gain,

@@ -167,6 +167,22 @@ TEST_CASE("Touch that is degraded gives a hand and a body at most 1 mJ that nobo
   }
 }
 
+TEST_CASE("Long losses while a body swings, or runs away from the hand, neither make energy nor end touch") {
+  // Each once made more than 1 mJ, swayed on, or left nothing to push with.
+  const auto run = [](Act act, double mass_kg, std::size_t hand, unsigned seed) {
+    EpisodeDef def;
+    def.act = act, def.mass_kg = mass_kg, def.seed = seed;
+    def.network = {"30 % lost in bursts", 0, 1000, true};
+    def.hand = hand_kinds()[hand].impedance;
+    return run_episode(def);
+  };
+  constexpr std::size_t kFinger = 1, kArm = 3;
+  CHECK(run(Act::kTap, 1, kArm, 2).generated_mJ <= 1);
+  CHECK(run(Act::kTap, 0.2, kArm, 7).generated_mJ <= 1);
+  CHECK_FALSE(run(Act::kPress, 1, kFinger, 2).cycles());
+  CHECK(run(Act::kPush, 0.05, kArm, 8).pushed_m > 0.5 * kPush_m);
+}
+
 TEST_CASE("Without a disturbance the controller leaves the coupling as it is") {
   for (const double mass_kg : {0.0, 0.05, 0.2, 1.0})
     for (const HandKind& hand : hand_kinds()) {

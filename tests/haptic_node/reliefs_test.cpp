@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kWave_m = 0.02, kHigh_m = 0.001, kRadius_m = 0.005;
 
-// Waves along u of 20 mm, 1 mm high; a friction map of two halves along u, black then white.
-std::shared_ptr<const SurfaceMaps> waves(bool relief = true, bool friction = false) {
+// Waves along u, of 20 mm and 1 mm high; a friction map of two halves along u, black then white.
+std::shared_ptr<const SurfaceMaps> waves(double high_m = kHigh_m, double wave_m = kWave_m, bool friction = false) {
   HeightMap map{64, 4, 65535, {}};
   for (int i = 0; i < 64 * 4; ++i)
     map.levels.push_back(static_cast<std::uint16_t>(
@@ -24,11 +24,11 @@ std::shared_ptr<const SurfaceMaps> waves(bool relief = true, bool friction = fal
   HeightMap halves{64, 4, 1, {}};
   for (int i = 0; i < 64 * 4; ++i) halves.levels.push_back(i % 64 >= 32);
   material_def_t m{};
-  m.bump_size_u_m = m.bump_size_v_m = kWave_m, m.bump_height_m = kHigh_m;
+  m.bump_size_u_m = m.bump_size_v_m = wave_m, m.bump_height_m = high_m;
   m.friction_size_u_m = m.friction_size_v_m = 0.1, m.friction_black = 0.25, m.friction_white = 2.25;
   auto maps = std::make_shared<SurfaceMaps>();
   maps->by_material.resize(1);
-  if (relief) maps->by_material[0].relief = std::make_shared<const Relief>(make_relief(map, m));
+  if (high_m > 0) maps->by_material[0].relief = std::make_shared<const Relief>(make_relief(map, m));
   if (friction) maps->by_material[0].friction = std::make_shared<const FrictionMap>(halves, m);
   return maps;
 }
@@ -218,10 +218,130 @@ TEST_CASE("However steep a map, the force leans by no more than the steepest slo
   }
 }
 
+TEST_CASE("A surface that is first told of when its relief stands over the proxy yields, and nothing else does") {
+  const Vector3d place(0.005, 0, 0);  // the top of a wave, 1 mm high
+  Settings s = settled("height");
+  Bench bench(s);
+  bench.renderer.set_maps(waves());
+  touch_model_t m;
+  const auto tick = [&](int ms, double under_m, bool told) {
+    // A wall far away keeps the touch model from being lost.
+    m = model(ms, {plane(3, {-1, 0, 0}, Vector3d::UnitX())});
+    if (told) m.planes.push_back(mapped(7, place)), m.plane_count = 2;
+    return bench.tick(ms, place + Vector3d(0, 0, kRadius_m - under_m), &m).force_N.z();
+  };
+  int ms = 0;
+  SECTION("where the tool is above the smooth surface and under the relief") {
+    for (; ms < 100; ++ms) CHECK(tick(ms, -0.0003, false) == 0);
+    double last = 0, worst = 0;
+    for (; ms < 116; ++ms) {
+      const double force = tick(ms, -0.0003, true);
+      worst = std::max(worst, force - last);
+      last = force;
+    }
+    // 0.7 mm of relief over the proxy in 15 ms, at 1 N/mm.
+    CHECK(worst < 0.1 * 1.05);
+    CHECK(worst < 0.7 / 5);
+    CHECK(last == Approx(0.7).margin(0.003));
+  }
+  SECTION("where the hand comes from outside, it is felt as it is from the first tick on") {
+    // As a smooth surface is that is so much higher.
+    Bench smooth(s);
+    touch_plane_t high = plane(7, {place.x(), 0, height(place.x())}, Vector3d::UnitZ());
+    double worst = 0, force = 0;
+    for (; ms < 200; ++ms) {
+      const double under_m = -0.003 + 2e-5 * ms;
+      force = tick(ms, under_m, ms >= 100);
+      m.planes.back() = ms >= 100 ? high : m.planes.back();
+      worst = std::max(
+          worst, std::abs(force - smooth.tick(ms, place + Vector3d(0, 0, kRadius_m - under_m), &m).force_N.z()));
+    }
+    CHECK(force > 1.5);
+    CHECK(worst < 0.003);
+  }
+}
+
+TEST_CASE(
+    "By heights the force changes no faster than the steepest slope that is felt lets it, and to the same end") {
+  // 6 mm high on waves of 20 mm: the slope is up to 0.94, of which 0.5 are felt.
+  Settings s = settled("height");
+  s.bump_steepest = 0.5;
+  s.force_limit_N = 30, s.slew_limit_N_s = 100000;
+  s.energy_limit_J = 10;
+  const double speed_m_s = GENERATE(0.05, 0.2, 0.5);
+  CAPTURE(speed_m_s);
+  Bench bench(s);
+  bench.renderer.set_maps(waves(6 * kHigh_m));
+  double last = 0, worst = 0, least = 1e9, most = 0;
+  touch_model_t m;
+  Vector3d at = Vector3d::Zero();
+  int ms = 0;
+  const auto tick = [&] {
+    m = model(ms, {mapped(7, at)});
+    const double force = bench.tick(ms, at + Vector3d(0, 0, kRadius_m - 0.002), &m).force_N.z();
+    ++ms;
+    return force;
+  };
+  for (int i = 0; i < 200; ++i) last = tick();
+  for (int i = 0; i < static_cast<int>(0.2 / speed_m_s * 1000); ++i) {
+    at.x() += speed_m_s * 1e-3;
+    const double force = tick();
+    worst = std::max(worst, std::abs(force - last));
+    least = std::min(least, force), most = std::max(most, force);
+    last = force;
+  }
+  // Of the way of a tick half, or 0.1 mm; at 1 N/mm.
+  CHECK(worst < 1.001 * std::max(0.5 * speed_m_s, 0.1));
+  // The waves are still felt, slow ones in full (0.1 mm a tick is a slope of 2 there).
+  CHECK(most - least > (speed_m_s < 0.1 ? 5.8 : 2));
+  for (int i = 0; i < 200; ++i) last = tick();
+  CHECK(last == Approx(1000 * (0.002 + 6 * height(at.x()))).margin(0.02));
+}
+
+TEST_CASE("Who presses harder downhill than uphill is given no more than the limits of energy and power") {
+  // By normals the surface stores nothing: 3 mm deeper over 12 mm down, wave after wave, would be given for ever.
+  const auto stroke = [](const Settings& s) {
+    Bench bench(s);
+    bench.renderer.set_maps(waves(12 * kHigh_m, 2 * kWave_m));
+    constexpr double kSpeed_m_s = 0.3, kTurn_m = 0.1, kPress_m_s = 0.3, kFastest_m_s = 0.5;
+    Vector3d last_place(0, 0, kRadius_m), last_force = Vector3d::Zero();
+    double given_J = 0, most_J = 0, x = 0, way = 1, press_m = 0;
+    touch_model_t m;
+    for (int ms = 0; ms < 4000; ++ms) {
+      if (std::abs(x) > kTurn_m) way = x > 0 ? -1 : 1;
+      x += way * kSpeed_m_s * 1e-3;
+      const bool downhill = way * std::cos(M_PI * x / kWave_m) < 0;
+      press_m += std::clamp((downhill ? 0.005 : 0.002) - press_m, -kPress_m_s * 1e-3, kPress_m_s * 1e-3);
+      const Vector3d place(x, 0, kRadius_m - press_m);
+      given_J += last_force.dot(place - last_place);
+      most_J = std::max(most_J, given_J);
+      last_place = place;
+      m = model(ms, {mapped(7, {x, 0, 0})});
+      const Vector3d f = bench.tick(ms, place, &m).force_N;
+      REQUIRE(f.norm() <= s.force_limit_N + 1e-9);
+      REQUIRE((f - last_force).norm() <= s.slew_limit_N_s * 1e-3 + 1e-9);
+      last_force = f;
+      // As of models that lie (hostile_test.cpp): what a force that is drawn back still gives comes on top.
+      const double drawn_back_s = s.force_limit_N / s.slew_limit_N_s + 0.002;
+      REQUIRE(given_J <= s.energy_limit_J + s.power_limit_W * (ms + 1) * 1e-3 +
+                             s.force_limit_N * kFastest_m_s * drawn_back_s);
+    }
+    return most_J;
+  };
+  Settings s = settled("normal");
+  s.energy_limit_J = 0.05, s.power_limit_W = 0.01;
+  const double limited_J = stroke(s);
+  s.energy_limit_J = 10, s.power_limit_W = 50;
+  CAPTURE(limited_J);
+  CHECK(limited_J > 0.025);
+  // That the hand is hostile.
+  CHECK(stroke(s) > 5 * 0.09);
+}
+
 TEST_CASE("A friction map multiplies the friction of its surface where it is touched") {
   const double x = GENERATE(0.025, 0.075);  // the middles of black and white
   Bench bench(settled("none"));
-  bench.renderer.set_maps(waves(false, true));
+  bench.renderer.set_maps(waves(0, kWave_m, true));
   // Slides at 20 mm/s, 2 mm deep; the pair has 0.2.
   touch_model_t m;
   Vector3d f = Vector3d::Zero();
