@@ -5,8 +5,9 @@
 //        TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
-// Losing CONTACT_EVENTS lets what sounds die away; losing the sound card is reported, and the card is tried again.
-// The loop never waits for another node, the card's callback never for the loop.
+// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends scrapes, losing WORLD_STATE leaves bodies turned as they
+// were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
+// callback never for the loop.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -36,7 +37,7 @@ const sync::Declaration kAudio{.node = "audio_node",
                                .rate_Hz = 1000,
                                .fifo_priority = 45,
                                .about = "Sounds the hits of the scene through a sound card.",
-                               .inputs = {channels::kContactEvents, channels::kContacts},
+                               .inputs = {channels::kContactEvents, channels::kContacts, channels::kWorldState},
                                .presents = "the DAC time of its first sample",
                                .late = audio::kLate,
                                .degradable = {"dropout"}};
@@ -174,11 +175,12 @@ int main(int argc, char** argv) try {
     sense.publish(now);
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
-    node.set_state(!impacts                                     ? node_health_t::WAITING
-                   : !plays                                     ? node_health_t::OUTPUT_LOST
-                   : sense.newest_arrival() == sync::HostTime{} ? node_health_t::READY
-                   : now - sense.newest_arrival() > kInputLost  ? node_health_t::INPUT_LOST
-                                                                : node_health_t::RUNNING,
+    const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);
+    node.set_state(!impacts                    ? node_health_t::WAITING
+                   : !plays                    ? node_health_t::OUTPUT_LOST
+                   : heard == sync::HostTime{} ? node_health_t::READY
+                   : now - heard > kInputLost  ? node_health_t::INPUT_LOST
+                                               : node_health_t::RUNNING,
                    output.note());
     node.set_quality(output.quality(), static_cast<int>(audio::kQualities.size()));
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());

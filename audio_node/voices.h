@@ -62,6 +62,9 @@ class Voices {
     float gain = 1;
   };
   struct Voice {
+    Voice() {
+      for (auto* all : {&re, &im, &pole_re, &pole_im, &response}) all->fill(Lanes::Zero());
+    }
     std::int64_t id = -1;
     int groups = 0;  // of the body
     // Groups that are rendered; those from `kept` on fade, then they are at rest until the voice is struck anew.

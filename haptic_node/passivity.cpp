@@ -23,6 +23,12 @@ constexpr double kFall_1_s = 200, kRise_1_s = 1;
 // As in safety.cpp: faster than a hand can be; the device jumped, no work is done.
 constexpr double kFastest_m_s = 40, kFastest_rad_s = 100;
 
+// As surfaces clamp it: who says that he comes faster than anything gives no credit for that.
+Eigen::Vector3d slow_enough(const Eigen::Vector3d& velocity, double most_m_s) {
+  const double speed = velocity.norm();
+  return speed > most_m_s ? Eigen::Vector3d(velocity * (most_m_s / speed)) : velocity;
+}
+
 bool finite(const touch_applied_t& a) { return to_eigen(a.impulse_N_s).allFinite() && std::isfinite(a.energy_J); }
 bool finite(const touch_plane_t& p) {
   return to_eigen(p.velocity_m_s).allFinite() && to_eigen(p.normal).allFinite() &&
@@ -61,14 +67,15 @@ void Passivity::hear(const touch_model_t& fresh) {
       }
     }
     b->energy_J = a.energy_J;
-    const auto plane = std::find_if(fresh.planes.begin(), fresh.planes.end(), [&](const touch_plane_t& p) {
+    // Told twice, the last counts, as for the surfaces.
+    const auto plane = std::find_if(fresh.planes.rbegin(), fresh.planes.rend(), [&](const touch_plane_t& p) {
       return p.contact_id == a.contact_id && finite(p);
     });
-    if (plane == fresh.planes.end())
+    if (plane == fresh.planes.rend())
       b->unseen.tell(impulse_N_s);
     else
       b->unseen.tell({fresh.header.sim_time_ns, plane->effective_mass_kg, to_eigen(plane->normal),
-                      to_eigen(plane->velocity_m_s), impulse_N_s},
+                      slow_enough(to_eigen(plane->velocity_m_s), limits_.speed_m_s), impulse_N_s},
                      limits_.force_N);
   }
 }
@@ -124,6 +131,7 @@ void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, 
     if (b.idle_s <= window_s) bodies_J += b.unseen.energy_J(window_s, limits_.force_N);
     generating_W += b.force_N.dot(b.unseen.velocity());
     if (moved && dt > 0) generating_W -= b.force_N.dot(moved_m) / dt;
+    if (turned && dt > 0) generating_W -= b.torque_N_m.dot(turned_rad) / dt;
   }
   const double stored_J = coupling.energy_J;
 

@@ -29,7 +29,8 @@ namespace tactus::haptic {
 
 struct PassivityLimits {
   double allowance_J = 0.0005;
-  double force_N = 8;  // no force on a body is larger
+  double force_N = 8;     // no force on a body is larger
+  double speed_m_s = 10;  // no body is faster
 };
 
 // What the springs of the coupling to bodies that move hold at their full stiffness.

@@ -74,7 +74,9 @@ void Reliefs::raise(Surface& s, const Relief& relief, const ToolPlace& tool, con
     m.map_height_m = map_m;
     const double height_m = height_share_ * map_m;
     // One that is new yields as far as it would push the proxy; one that was felt goes on from there.
-    m.height_lag_m = m.known ? m.height_m - height_m : std::min(0.0, std::max(0.0, room_m) - height_m);
+    const double under_proxy_m = std::max(0.0, room_m) - height_m;
+    m.height_lag_m = m.known ? m.height_m - height_m : std::min(0.0, under_proxy_m);
+    if (s.depth_m <= 0) m.height_lag_m = std::min(m.height_lag_m, std::max(0.0, under_proxy_m));
     m.height_lag_speed_m_s = std::max(def_.recovery_speed_m_s, std::abs(m.height_lag_m) / def_.recovery_time_s);
   } else {
     double rise_m = map_m - m.map_height_m;

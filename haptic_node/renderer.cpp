@@ -28,7 +28,9 @@ CouplingLimits coupling_limits(const Settings& s) {
 ReliefDef reliefs_of(const Settings& s) {
   return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
 }
-PassivityLimits passivity_limits(const Settings& s) { return {s.generated_limit_J, s.force_limit_N}; }
+PassivityLimits passivity_limits(const Settings& s) {
+  return {s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
+}
 TransientShape transient_shape(const Settings& s) {
   return {s.transient_gain,
           s.transient_limit_N,

@@ -55,16 +55,18 @@ void UnseenWork::give(const Eigen::Vector3d& force_N, double dt) {
 
 void UnseenWork::advance(double push_N, double dt) {
   const bool trusted = since_s_ < kTrust_s;
-  double held_N = trusted ? held_N_ : 0.0;
+  double held_N = trusted ? held_N_ : std::min(held_N_, 0.0);
   since_s_ += dt;
-  // One that came may swing, and be on its way back.
-  if (trusted && since_s_ >= kTrust_s) speed_m_s_ += 2 * std::max(0.0, told_.normal.dot(told_.velocity));
+  if (trusted && since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
   if (speed_m_s_ < 0) held_N = std::min(held_N, 0.0);
   double next = speed_m_s_ + (push_N - held_N) / told_.mass_kg * dt;
   if (speed_m_s_ >= 0) next = std::max(0.0, next);
   work_J_ += push_N * dt * 0.5 * (speed_m_s_ + next);
   speed_m_s_ = next;
 }
+
+// One that came may swing: so much faster it then goes along with the push.
+double UnseenWork::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
 
 // Those of the last window_s, as far back as they add up to what is unseen; what is missing came before them.
 void UnseenWork::play(double window_s, double unseen_N_s) {
@@ -79,6 +81,7 @@ void UnseenWork::play(double window_s, double unseen_N_s) {
   }
   since_s_ = std::max(0.0, window_s - time_s);
   speed_m_s_ = -told_.normal.dot(told_.velocity);
+  if (since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
   work_J_ = missing_N_s * (speed_m_s_ + 0.5 * missing_N_s / told_.mass_kg);
   speed_m_s_ += missing_N_s / told_.mass_kg;
   for (std::size_t back = first; back-- > 0;) {

@@ -8,8 +8,9 @@
 //   h  with which others held it against the push lately; below zero: drew it away
 //
 // Rather too much is taken for given than too little: what holds the body stops it and does not drive it back, and
-// it comes towards the hand by its own motion alone. After a while nothing is believed to hold it any more, and
-// one that came may have swung and be on its way back. Along the surface it moves on as it was told. Pure.
+// it comes towards the hand by its own motion alone. After a while nothing is believed to hold it any more (what
+// draws it away still may), and one that came may have swung and be on its way back. Along the surface it moves on
+// as it was told. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,6 +56,7 @@ class UnseenWork {
   };
   void play(double window_s, double unseen_N_s);
   void advance(double push_N, double dt);
+  double on_its_way_back_m_s() const;
 
   std::array<Push, 128> pushes_{};
   std::size_t newest_ = 0, count_ = 0;

@@ -76,10 +76,7 @@ class DegradedSnapshots {
     note_newest(m);
     const SimTime time = sim_time(m.header.sim_time_ns);
     if constexpr (requires { m.pages; })
-      if (m.pages > 1) {
-        arriving_ = snapshot_key(m);
-        if (arriving_ == split_) return;
-      }
+      if (m.pages > 1 && of_two_profiles(m)) return;
     if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
     if (stack.lost_on_wire(wire_key(m), time)) return;
     if constexpr (requires { m.pages; })
@@ -88,10 +85,10 @@ class DegradedSnapshots {
     const Verdict v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
   }
-  // From now on another profile decides. The snapshot whose pages are just arriving was begun under the one
-  // before: what is still to come of it is dropped, so that nobody puts halves of two profiles together.
+  // From now on another profile decides. The snapshots whose pages are just arriving were begun under the one
+  // before: what is still to come of them is dropped, so that nobody puts halves of two profiles together.
   void change_profile() {
-    split_ = arriving_;
+    for (auto& [stream, pages] : arriving_) pages.split = pages.arrived < pages.of;
     gathering_.clear();
   }
   // The next message that is let through by now, and when it arrived.
@@ -106,6 +103,26 @@ class DegradedSnapshots {
   // Pages of a snapshot are told within the time to the next; of so many some may be on their way at once.
   static constexpr std::size_t kGathering = 4;
   using Gathered = std::map<std::int32_t, std::pair<Message, HostTime>>;  // by page
+
+  // The pages of the snapshot of a stream that arrived last.
+  struct Arriving {
+    std::uint64_t key = 0;
+    int arrived = 0, of = 0;
+    bool split = false;
+  };
+  // More streams than there are tools and groups are of false messages.
+  static constexpr std::size_t kStreams = 64;
+
+  // Whether it belongs to a snapshot that was begun under another profile. While the world stands still the same
+  // snapshot comes again and again, and begins anew with its first page.
+  bool of_two_profiles(const Message& m) {
+    if (arriving_.size() >= kStreams && !arriving_.contains(stream_of(m))) arriving_.clear();
+    Arriving& now = arriving_[stream_of(m)];
+    const std::uint64_t key = snapshot_key(m);
+    if (now.key != key || m.page == 0) now = {key, 0, m.pages, false};
+    ++now.arrived;
+    return now.split;
+  }
 
   void put(Message m, HostTime arrival, const Verdict& v, Stack& stack) {
     if (v.dropped()) {
@@ -180,7 +197,7 @@ class DegradedSnapshots {
 
   Waiting<Message> waiting_;
   std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
-  std::optional<std::uint64_t> arriving_, split_;             // keys of snapshots of several pages
+  std::map<std::uint64_t, Arriving> arriving_;                // by stream
   std::map<std::uint64_t, Verdict> verdicts_;
   std::deque<std::uint64_t> order_;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;

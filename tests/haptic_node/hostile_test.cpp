@@ -3,6 +3,7 @@
 // 4 kHz.
 #include <catch2/catch.hpp>
 #include <limits>
+#include <map>
 #include <random>
 
 #include "haptic_node/devices/virtual_hand.h"
@@ -18,7 +19,8 @@ namespace {
 // A source of lies: every number may be as large, as small or as wrong as a number can be.
 struct Liar {
   std::mt19937 random;
-  bool finite;  // only what may be valid
+  bool finite;                              // only what may be valid
+  std::map<std::int64_t, bool> moves = {};  // whether a surface did when it was told of last
 
   int below(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
   double number() {
@@ -54,6 +56,7 @@ struct Liar {
     const auto positive = [&](double x) { return finite ? std::clamp(std::abs(x), 1e-30, 9e8) : x; };
     // Every third stands still, for all that it says: what moves the controller of passivity soon lets go of.
     p.effective_mass_kg = below(3) == 0 ? 1e10f : static_cast<float>(positive(number()));
+    moves[p.contact_id] = p.effective_mass_kg < 1e9f;
     p.stiffness_N_m = static_cast<float>(positive(number()));
     p.damping_N_s_m = static_cast<float>(positive(number()));
     p.friction_static = static_cast<float>(positive(number()));
@@ -110,7 +113,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
   hand.begin(host_ms(0));
   Vector3d last_force = Vector3d::Zero(), last = Vector3d::Zero();
   double given_J = 0, fastest_m_s = 0;
-  int pressed = 0, let_in = 0, outside = 0;
+  int pressed = 0, on_moving = 0, let_in = 0, outside = 0;
   const int ticks = static_cast<int>(2 * rate_Hz);
   for (int i = 0; i < ticks; ++i) {
     const double ms = 1e3 * i / rate_Hz;
@@ -142,10 +145,14 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     REQUIRE(out.state.coupling <= 1);
     REQUIRE(std::isfinite(out.state.generated_J));
     pressed += out.force_N.norm() > 0.1;
+    on_moving += std::any_of(
+        out.state.constraints.begin(), out.state.constraints.end(),
+        [&](const tool_constraint_t& c) { return to_eigen(c.force_N).norm() > 0.1 && liar.moves[c.contact_id]; });
     last_force = out.force_N;
   }
-  // That it was pressed at all, and that lies did get in.
+  // That it was pressed at all, on what moves too, and that lies did get in.
   CHECK(pressed > ticks / 50);
+  CHECK(on_moving > ticks / 50);
   if (finite) CHECK(let_in > ticks / 20);
 }
 

@@ -113,6 +113,8 @@ TEST_CASE("Who is drawn away from the hand while it pushes is given more than a 
   Pushed body{1, [](double, double) { return -2.0; }, 2, 200};
   for (int ms = 0; ms < 200; ++ms) body.step(0.5);
   for (int ms = 0; ms < 38; ++ms) CHECK(std::abs(body.step(2)) < 2e-5);
+  // Also when nothing has been told of it for long.
+  for (int ms = 38; ms < 70; ++ms) CHECK(body.step(2) > -2e-5);
 }
 
 TEST_CASE("A body that comes gives no more than its motion") {

@@ -123,6 +123,54 @@ TEST_CASE(
   for (const auto& [ms, n] : pages) CHECK(n == (ms == 5 ? 1 : 3));
 }
 
+TEST_CASE("A profile that comes between the pages of two streams of one channel splits neither") {
+  Stack stack;
+  DegradedSnapshots<contact_frame_t> frames;
+  const auto push = [&](int ms, int page, std::int8_t group) {
+    contact_frame_t m = page_at(ms, page, 3, 6 * ms + page);
+    m.group = group;
+    frames.push(m, arrival(ms), stack, nullptr);
+  };
+  for (int ms = 0; ms < 10; ++ms)
+    for (int page = 0; page < 3; ++page)
+      for (const std::int8_t group : {contact_frame_t::OTHER, contact_frame_t::TOOL}) {
+        if (ms == 5 && page == 1 && group == contact_frame_t::TOOL) {
+          stack = stack_of("gain=\"0.5\"");
+          frames.change_profile();
+        }
+        push(ms, page, group);
+      }
+  std::map<std::pair<std::int64_t, int>, std::vector<double>> forces;
+  while (const auto m = frames.pop(arrival(10)))
+    forces[{m->first.header.sim_time_ns / kMs, m->first.group}].push_back(
+        static_cast<double>(m->first.contacts.at(0).normal_force_N));
+  REQUIRE(forces.size() == 20);
+  for (const auto& [of, pages] : forces) {
+    CHECK(pages.size() == (of.first != 5 ? 3u : of.second == contact_frame_t::OTHER ? 2u : 1u));
+    for (const double force : pages)
+      CHECK(force == Approx(of.first <= 5 ? static_cast<double>(of.first) : 0.5 * static_cast<double>(of.first)));
+  }
+}
+
+TEST_CASE(
+    "While the world stands still the same snapshot comes again, and the first whole one under another profile is "
+    "let through") {
+  const bool between_pages = GENERATE(true, false);
+  Stack stack = stack_of("off=\"true\"");
+  DegradedSnapshots<contact_frame_t> frames;
+  for (int k = 0; k < 10; ++k)
+    for (int page = 0; page < 3; ++page) {
+      if (k == 5 && page == (between_pages ? 1 : 0)) {
+        stack = Stack();
+        frames.change_profile();
+      }
+      frames.push(page_at(7, page, 3, 3 * k + page), arrival(7 + k), stack, nullptr);
+    }
+  int came = 0;
+  while (const auto m = frames.pop(arrival(20))) came += m->first.contacts.empty() ? 0 : 1;  // off shows none
+  CHECK(came == (between_pages ? 4 : 5) * 3);
+}
+
 TEST_CASE("What a tool reports while the world stands still is late and lost each by itself") {
   const bool late = GENERATE(true, false);
   Stack stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
