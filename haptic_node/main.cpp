@@ -5,6 +5,7 @@
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths and materials
 //                                     and the pictures of their relief and friction
 //        DEVICE_STATE                  of a device that another program drives
+//        DEVICE_FORCE                  of others: a device that two command is lost
 //        SETTING                       changes of its settings while it runs
 //   out  TOOL_STATE                    every tick
 //        DEVICE_FORCE                  to that program, every tick
@@ -62,6 +63,7 @@ int main(int argc, char** argv) try {
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
   auto& device_states = node.bus().queue<device_state_t>(channels::kDeviceState, 64);
+  auto& device_forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
   haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
   haptic::Choice choice;
   haptic::Quality quality(given.settings);
@@ -141,6 +143,11 @@ int main(int argc, char** argv) try {
       if (session) session->push(m->message, m->arrival);
     while (const auto m = device_states.pop())
       if (session) session->push(m->message, m->arrival);
+    // What others of this run command; a replayed log commands nothing.
+    const sync::Identity& me = node.bus().identity();
+    while (const auto m = device_forces.pop())
+      if (session && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
+        session->push(m->message, m->arrival);
     // One a tick: whoever moves a slider takes no more of a tick than that.
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
@@ -160,7 +167,7 @@ int main(int argc, char** argv) try {
     node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->device_lost())
-      node.set_state(node_health_t::OUTPUT_LOST, "the device does not answer: the force is zero");
+      node.set_state(node_health_t::OUTPUT_LOST, "the device does not answer, or two hold it: the force is zero");
     else if (points)
       node.set_state(node_health_t::RUNNING, "points, and does not touch");
     else if (session->heard() && session->lost())

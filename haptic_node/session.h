@@ -48,6 +48,7 @@ class Session {
   void set_maps(std::shared_ptr<const SurfaceMaps> maps) { renderer_.set_maps(std::move(maps)); }
 
   void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
+  void push(const device_force_t& others, sync::HostTime arrival) { device_->hear(others, arrival); }
   // After a step: what a program that drives the device must be told; null: nothing.
   device_force_t* tell() { return device_->tell(); }
 

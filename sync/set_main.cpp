@@ -55,7 +55,8 @@ int main(int argc, char** argv) try {
     if (!reply)
       throw std::runtime_error(
           "no \"" + sync::printable(node) +
-          "\" answers on this bus; the live table names the nodes. Run it inside the cluster: scripts/set");
+          "\" that changes settings while it runs answers; docs/settings.md says which settings are live, "
+          "scripts/attach watch which nodes there are");
     if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
     std::cout << sync::printable(reply->text) << std::endl;
   }

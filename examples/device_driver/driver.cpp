@@ -60,6 +60,12 @@ struct Forces {
 
 int main(int argc, char** argv) {
   const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
+  if (argument(1, "").starts_with("-")) {
+    std::cout << "Usage: device_driver [NAME [GROUP [PORT [RUN]]]]\nDrives the device NAME (arm) for haptic_node "
+                 "--device "
+                 "external:NAME until it is ended; inside a running cluster: scripts/attach device_driver NAME\n";
+    return argument(1, "") == "--help" ? 0 : 1;
+  }
   Forces forces{argument(1, "arm")};
   // ttl=0: nothing leaves this machine.
   lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");

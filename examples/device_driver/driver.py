@@ -78,6 +78,9 @@ def first_state(name, run):
 
 
 def main():
+    if sys.argv[1:] and sys.argv[1].startswith("-"):
+        print(__doc__)
+        sys.exit(0 if sys.argv[1] == "--help" else 1)
     name, group, port, run = (sys.argv[1:] + ["arm", "239.255.76.67", "7667", "1"][len(sys.argv) - 1:])[:4]
     bus, hardware, state = Bus(group, int(port)), Hardware(), first_state(name, int(run))
     force_n, good_until = 0.0, 0.0

@@ -45,6 +45,8 @@ class Device {
 
   // What programs on the bus say of devices that they drive; it is for the one of that name.
   virtual void hear(const device_state_t&, sync::HostTime /*arrival*/) {}
+  // What other processes tell such programs: a device is held by one.
+  virtual void hear(const device_force_t&, sync::HostTime /*arrival*/) {}
   // What such a program must be told after each write; null: nothing. Valid until the next call of this object.
   virtual device_force_t* tell() { return nullptr; }
 };

@@ -36,6 +36,10 @@ void External::hear(const device_state_t& state, sync::HostTime arrival) {
   heard_ = arrival;
 }
 
+void External::hear(const device_force_t& others, sync::HostTime arrival) {
+  if (others.device == name_) contradicted_ = arrival;
+}
+
 bool External::lost(sync::HostTime now) const {
   return !newest_ || newest_->state != device_state_t::ANSWERS || now - heard_ > stale_after_ ||
          (contradicted_ && now - *contradicted_ < stale_after_);

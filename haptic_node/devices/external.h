@@ -23,6 +23,9 @@ class External : public Device {
   // Of the states of this name, the newest of one program counts. Two programs that speak at once, and a pose that
   // leaps, are contradictions.
   void hear(const device_state_t& state, sync::HostTime arrival) override;
+  // Of another process. Two that hold one device would shake it from the force of the one to that of the other:
+  // for both of them it is lost as long as that lasts.
+  void hear(const device_force_t& others, sync::HostTime arrival) override;
   DeviceState read(sync::HostTime now) override;
   using Device::write;
   void write(const Wrench& wrench) override;

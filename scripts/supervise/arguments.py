@@ -175,7 +175,10 @@ def devices(words, without, tools):
     """The nodes themselves check what the devices are."""
     if words and hands.FIRST in without:
         raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
-    return hands.devices(words, tools)
+    try:
+        return hands.devices(words, tools)
+    except ValueError as error:
+        raise Refusal(f"haptic_node: {error}") from None
 
 
 def settings(words, others):

@@ -36,12 +36,22 @@ def processes(names):
 
 
 def devices(words, names):
-    """{tool or "": spec} of --device words: SPEC is the first tool's, TOOL=SPEC that of the tool of this name."""
-    chosen = {}
+    """{tool or "": spec} of --device words: SPEC is the first tool's, TOOL=SPEC that of the tool of this name. ValueError, with one
+    sentence, where a tool is not there or gets two, or two tools get the device of one program."""
+    chosen, held = {}, {}
     for word in words:
         tool, equals, spec = word.partition("=")
-        if equals and tool in names:
-            chosen["" if tool == names[0] else tool] = spec
-        else:
-            chosen[""] = word
+        if not (equals and tool in names):
+            # The first = of a device without a tool comes after its kind: playback:FILE,scale=2
+            if equals and not re.search(r"[:,]", tool) and names:
+                raise ValueError(f'--device {word}: the scene has no tool "{tool}"; it has {", ".join(names)}')
+            tool, spec = (names[0] if names else ""), word
+        key = "" if not names or tool == names[0] else tool
+        if key in chosen:
+            raise ValueError(f"--device {word}: the tool {tool} has a device already; name one")
+        chosen[key] = spec
+        kind, _, name = spec.partition(":")
+        name = name.partition(",")[0]
+        if kind == "external" and held.setdefault(name, tool) != tool:
+            raise ValueError(f"--device {word}: {held[name]} holds external:{name} already; two would shake it between them")
     return chosen

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -74,6 +76,9 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
     const double s = parse_quantity(part.substr(equals + 1), "s");
     if (std::abs(s) > kLongest_s)
       throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
+    // 50 is meant as milliseconds more often than as what it would be.
+    if (s != 0 && std::isdigit(static_cast<unsigned char>(part.back())))
+      throw std::invalid_argument("the asynchrony \"" + part + "\" has no unit; write it as " + part + "ms or " + part + "s");
     soa[part.substr(0, equals)] = from_seconds(s);
   }
   return soa;

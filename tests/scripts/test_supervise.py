@@ -146,6 +146,14 @@ class Hands(Folders):
         self.assertEqual(["virtual_hand"], self.after(commands["haptic_node"], "--device"))
         self.assertEqual([], self.after(commands["haptic_node_b"], "--device"))
 
+    def test_a_tool_that_is_not_there_gets_two_devices_or_shares_that_of_another_program_is_refused(self):
+        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "has a device already"),
+                            (["external:e", "a=external:f"], "has a device already"),
+                            (["a=external:e,offset=0/0/1", "b=external:e"], "a holds external:e already")):
+            with self.assertRaises(arguments.Refusal) as refused:
+                self.of("a", "b", words=[w for word in words for w in ("--device", word)])
+            self.assertIn(said, str(refused.exception))
+
     def test_a_setting_of_haptic_node_is_one_of_every_hand_but_its_own_comes_last(self):
         _, commands = self.of("a", "b", "c", words=["--set", "haptic_node_b.force_limit=2", "--set", "haptic_node.force_limit=3"])
         self.assertEqual(["force_limit=3"], self.after(commands["haptic_node"], "--set"))

@@ -85,6 +85,17 @@ TEST_CASE("Two drivers that speak of one device at once lose it, until only one 
   }
 }
 
+TEST_CASE("A device that another process commands too is lost for as long as it does") {
+  External device = arm();
+  device_force_t others{};
+  for (int ms = 0; ms < 300; ++ms) {
+    device.hear(said(ms, 0.1), at_ms(ms));
+    others.device = ms < 100 ? "leg" : "arm";
+    if (ms < 200) device.hear(others, at_ms(ms));
+    CHECK(device.read(at_ms(ms)).lost == (ms >= 100 && ms < 249));
+  }
+}
+
 TEST_CASE("A pose that leaps is not believed until it has made sense for a while") {
   External device = arm();
   for (int ms = 0; ms < 100; ++ms) {
