@@ -5,11 +5,10 @@
 #include <array>
 #include <vector>
 
+#include "audio_node/bank/ring.h"
 #include "audio_node/strike.h"
 
 namespace tactus::audio {
-
-inline constexpr int kMaxBlock = 64;  // frames that are rendered at once
 
 // How much may sound at a time.
 struct VoiceLimits {
