@@ -75,7 +75,8 @@ TEST_CASE("A string device knows where its grip is, to its encoders, wherever th
 
 TEST_CASE("The velocity is smooth when the grip is slow and prompt when it is fast") {
   Rig rig("desktop", [](double ms) {
-    return GripPose{Vector3d(ms < 500 ? ms * 1e-5 : 0.005 + (ms - 500) * 3e-4, 0, 0), {}};
+    return GripPose{Vector3d(ms < 500 ? ms * 1e-5 : 0.005 + (ms - 500) * 3e-4, 0, 0),
+                    Eigen::Quaterniond::Identity()};
   });
   double worst = 0;
   for (int ms = 0; ms < 700; ++ms) {
@@ -107,7 +108,9 @@ TEST_CASE("A hand on strings feels the force that is written, a few time constan
 }
 
 TEST_CASE("Beyond the workspace force fades to nothing, and comes back") {
-  Rig rig("desktop", [](double ms) { return GripPose{Vector3d(0, 0, 0.16 - 0.00016 * std::abs(ms - 1000)), {}}; });
+  Rig rig("desktop", [](double ms) {
+    return GripPose{Vector3d(0, 0, 0.16 - 0.00016 * std::abs(ms - 1000)), Eigen::Quaterniond::Identity()};
+  });
   const Vector3d force(3, 0, 0);
   double last = 0;
   for (int ms = 0; ms <= 2000; ++ms) {
@@ -127,7 +130,8 @@ TEST_CASE("Beyond the workspace force fades to nothing, and comes back") {
 TEST_CASE("A string that hangs through while the hand is snatched away is no blow") {
   // 9 m/s along the edge: strings at 55 degrees to it get shorter at 5 m/s, faster than a motor winds.
   Rig rig("desktop", [](double ms) {
-    return GripPose{Vector3d(ms < 20 ? -0.03 : std::min(0.03, -0.03 + (ms - 20) * 9e-3), 0, 0), {}};
+    return GripPose{Vector3d(ms < 20 ? -0.03 : std::min(0.03, -0.03 + (ms - 20) * 9e-3), 0, 0),
+                    Eigen::Quaterniond::Identity()};
   });
   bool slack = false;
   for (int ms = 0; ms < 200; ++ms) {
