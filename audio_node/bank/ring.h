@@ -6,8 +6,8 @@
 //   v <- c v - k u + g force,   u <- u + v,   c = r^2,  k = 1 + r^2 - 2 r cos w
 //
 // whose poles are r e^(+-i w). That is the direct two-pole with the difference of its two samples for a state: at
-// low frequencies its coefficients lose nothing in single precision (those of the direct form lie near 2 and 1,
-// and 40 Hz at 48 kHz would be off by 0.2 %). Its velocity v is what is heard.
+// low frequencies its coefficients lose nothing in single precision (those of the direct form lie near 2 and 1:
+// rounding the first may put 40 Hz at 48 kHz off by 0.1 %). Its velocity v is what is heard.
 #pragma once
 
 #include <optional>

@@ -10,6 +10,7 @@
 
 #include "haptic_node/renderer.h"
 #include "sim_node/behaviour/tool_touch.h"
+#include "tests/bench/touch_loop.h"
 
 namespace tactus::bench {
 
@@ -23,7 +24,7 @@ class StrokeLoop {
         per_step_(static_cast<std::int64_t>(settings.rate_Hz / 1000)),
         touch_(world, 0, stiff(), ids_, trees),
         safety_(haptic::safety_limits(settings)),
-        renderer_(scene_of(world), 0, settings, safety_) {
+        renderer_(test::scene_of(world), 0, settings, safety_) {
     for (const sim::BodyDef& b : world.bodies) {
       sim::BodyMotion m;
       m.position_m = m.centre_m = b.pose.translation();
@@ -70,15 +71,6 @@ class StrokeLoop {
   static sim::Settings stiff() {
     sim::Settings s;
     s.touch_stiffness_N_m = kStiffness_N_m;
-    return s;
-  }
-  static scene_t scene_of(const sim::WorldDef& world) {
-    scene_t s{};
-    s.step_ns = 1'000'000;
-    s.bodies.resize(world.bodies.size());
-    s.body_count = static_cast<std::int32_t>(s.bodies.size());
-    s.tools = world.tools;
-    s.tool_count = static_cast<std::int32_t>(s.tools.size());
     return s;
   }
   std::int64_t time_ns() const { return std::llround(1e9 * static_cast<double>(ticks_) / rate_Hz_); }

@@ -54,19 +54,7 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
         ((!out_of_a && nearer_on(a, p.on_b_m, least)) || (!out_of_b && nearer_on(b, p.on_a_m, least))))
       out.back().gap_m = kNone_m;
   };
-  layer2::vertices_over(a, over_b, in_b, b, true, tol, add);
-  layer2::vertices_over(b, over_a, in_a, a, false, tol, add);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t i1 = (i + 1) % 3;
-    if (layer2::beyond(over_b[i], over_b[i1], tol)) continue;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t j1 = (j + 1) % 3;
-      if (layer2::beyond(over_a[j], over_a[j1], tol) || layer2::beyond(in_b[i][j], in_b[i1][j], tol) ||
-          layer2::beyond(in_a[j][i], in_a[j1][i], tol))
-        continue;
-      layer2::between_edges(a, i, b, j, tol, add);
-    }
-  }
+  layer2::vertices_and_edges(a, over_b, in_b, b, over_a, in_a, tol, add);
   const auto always = [&](const PointPair& p) { out.push_back(p); };
   layer2::piercings(a, over_b, b, true, always);
   layer2::piercings(b, over_a, a, false, always);

@@ -48,6 +48,26 @@ void vertices_over(const Triangle& of, const Heights& h, const Sides& s, const T
       add(over_face(of.v[i], face, h[i], of_a));
 }
 
+// Calls add(pair) for the vertices of each over the face of the other, and for edges that face each other. over_b:
+// of a's vertices over b; in_b: within b's edges.
+template <class Add>
+void vertices_and_edges(const Triangle& a, const Heights& over_b, const Sides& in_b, const Triangle& b,
+                        const Heights& over_a, const Sides& in_a, double tolerance_m, Add&& add) {
+  vertices_over(a, over_b, in_b, b, true, tolerance_m, add);
+  vertices_over(b, over_a, in_a, a, false, tolerance_m, add);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t i1 = (i + 1) % 3;
+    if (beyond(over_b[i], over_b[i1], tolerance_m)) continue;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t j1 = (j + 1) % 3;
+      if (beyond(over_a[j], over_a[j1], tolerance_m) || beyond(in_b[i][j], in_b[i1][j], tolerance_m) ||
+          beyond(in_a[j][i], in_a[j1][i], tolerance_m))
+        continue;
+      between_edges(a, i, b, j, tolerance_m, add);
+    }
+  }
+}
+
 // Calls add(pair) for the edges of `of` that pass from one side of the face to the other through it.
 template <class Add>
 void piercings(const Triangle& of, const Heights& h, const Triangle& face, bool of_a, Add&& add) {
