@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
+#include "audio_node/peak.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -17,6 +17,9 @@ constexpr double kAirDensity_kg_m3 = 1.21;
 constexpr double kSoundSpeed_m_s = 343;
 // What no sound may depend on: values beyond these are not of this world.
 constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
+// FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
+constexpr std::size_t kMicroCollisions = 4;
+constexpr double kMicroWithin_s = 0.015;
 // Louder than the reference by 12 dB at most: the limiter is for surprises, not for every blow.
 constexpr double kMostAboveReference = 4;  // design
 
@@ -25,20 +28,6 @@ constexpr double kMostAboveReference = 4;  // design
 double radiation_m(double frequency_Hz, double radius_m) {
   const double ka = 2 * pi * frequency_Hz * radius_m / kSoundSpeed_m_s;
   return radius_m * ka * ka / std::sqrt(4 + ka * ka * ka * ka);
-}
-
-Resonators resonators_of(const BodySound& sound, double rate_Hz) {
-  Resonators r;
-  for (const Mode& mode : sound.modes) {
-    const double w = 2 * pi * mode.frequency_Hz, d = mode.damping_1_s;
-    const auto pole = std::exp(std::complex<double>(-d, std::sqrt(w * w - d * d)) / rate_Hz);
-    const auto i = static_cast<std::size_t>(r.count++);
-    r.pole_re[i] = static_cast<float>(pole.real());
-    r.pole_im[i] = static_cast<float>(pole.imag());
-    r.response[i] = static_cast<float>(mode.gain / sound.mass_kg * kAirDensity_kg_m3 * kSoundSpeed_m_s *
-                                       radiation_m(mode.frequency_Hz, sound.radius_m));
-  }
-  return r;
 }
 
 // The shape that stands for a body: the largest that it collides with.
@@ -71,13 +60,11 @@ double pulse_spectrum(double frequency_Hz, double length_s) {
   return std::abs(std::sin(pi * x) / (pi * x * (1 - x * x)));
 }
 
-StereoGain stereo_gain(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
+Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
   const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
-  const double r = std::max(p.norm(), nearest_m);
-  const double level = std::hypot(p.x(), p.y());
-  const double to_left = level > 1e-9 ? p.y() / level : 0;  // sine of the azimuth
-  const double angle = (1 - to_left) * pi / 4;
-  return {std::cos(angle) / r, std::sin(angle) / r};
+  const double r = p.norm();
+  return {r > 1e-9 ? Eigen::Vector3f((p / r).cast<float>()) : Eigen::Vector3f::UnitX(),
+          static_cast<float>(std::max(r, nearest_m))};
 }
 
 Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
@@ -86,10 +73,18 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
   for (const material_def_t& m : scene.materials) materials_.push_back(elastic(m));
   const auto add = [&](const body_def_t& body, const shape_def_t* shape, int material_index) {
     const auto extent = shape && shape->kind == shape_def_t::MESH ? mesh(shape->mesh_hash) : std::nullopt;
-    Voice v{body_sound(body, shape, material(material_index), extent, settings), {}};
+    Voice v{body_sound(body, shape, material(material_index), extent, settings), {}, {}, {}};
+    if (body.is_static) v.stands = to_eigen(body.pose);
     // Nearer to half the rate a resonator would sound as another.
     std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
-    v.resonators = resonators_of(v.sound, rate_Hz);
+    for (const Mode& mode : v.sound.modes) {
+      const double lost = mode.damping_1_s / (2 * pi);
+      const ModeStep step =
+          mode_step(std::sqrt(mode.frequency_Hz * mode.frequency_Hz - lost * lost), mode.damping_1_s, rate_Hz);
+      v.resonators.add(step);
+      v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
+                           kSoundSpeed_m_s * radiation_m(mode.frequency_Hz, v.sound.radius_m));
+    }
     return v;
   };
   for (const body_def_t& body : scene.bodies) {
@@ -109,7 +104,6 @@ const Impacts::Voice& Impacts::voice(int id) const {
   return id >= 0 && static_cast<std::size_t>(id) < voices_.size() ? voices_[static_cast<std::size_t>(id)]
                                                                   : unknown_;
 }
-const BodySound& Impacts::body(int id) const { return voice(id).sound; }
 
 Elastic Impacts::material(int index) const {
   return index >= 0 && static_cast<std::size_t>(index) < materials_.size()
@@ -117,12 +111,23 @@ Elastic Impacts::material(int index) const {
              : Elastic{};
 }
 
-// Peak pressure at 1 m by the modes: all start in phase, so their amplitudes are summed.
-double Impacts::peak_Pa(const Voice& v, double impulse_N_s, double length_s) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(v.resonators.count); ++i)
-    sum += static_cast<double>(v.resonators.response[i]) * pulse_spectrum(v.sound.modes[i].frequency_Hz, length_s);
-  return impulse_N_s * sum;
+PerMode Impacts::gains(int body, const std::optional<BodyPlace>& place) const {
+  const Voice& v = voice(body);
+  PerMode gains{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.resonators.count); ++i) {
+    const Mode& mode = v.sound.modes[i];
+    gains[i] = static_cast<float>(v.radiated[i] * (place ? gain_at(v.sound, mode, *place) : mode.gain));
+  }
+  return gains;
+}
+
+std::optional<BodyPlace> Impacts::on_body(int body, const Eigen::Vector3d& point_m,
+                                          const Eigen::Vector3d& direction, const PoseOf& pose) const {
+  std::optional<Eigen::Isometry3d> lies = voice(body).stands;
+  if (!lies && pose) lies = pose(body);
+  if (!lies || !lies->matrix().allFinite() || !point_m.allFinite() || !(direction.norm() > 0.5))
+    return std::nullopt;
+  return BodyPlace{lies->inverse() * point_m, lies->linear().transpose() * direction.normalized()};
 }
 
 // Peak pressure at 1 m of the click that a body makes because the impact accelerates it as a whole (acceleration
@@ -133,7 +138,33 @@ double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s
   return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
 }
 
-Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled) const {
+// Hard bodies meet again and again in the first 15 ms, in step with their first four modes; the model of van den
+// Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard: the blow is over before the slowest of
+// them has swung back. The share of the impulse that they carry is theirs; what is left is the blow.
+ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const {
+  const auto in_samples = [&](double s) { return std::max(1, static_cast<int>(std::lround(s * rate_Hz_))); };
+  ForcePulse pulse = one_hump(in_samples(length_s));
+  std::vector<double> frequencies;
+  for (const Voice* v : {&a, &b})
+    for (std::size_t i = 0; i < std::min<std::size_t>(v->sound.modes.size(), kMicroCollisions); ++i)
+      frequencies.push_back(v->sound.modes[i].frequency_Hz);
+  std::sort(frequencies.begin(), frequencies.end());
+  if (frequencies.empty() || length_s > 0.5 / frequencies.front()) return pulse;
+  std::vector<double> after_s;
+  for (const double f : frequencies)
+    if (1 / f > 2 * length_s && 1 / f < kMicroWithin_s) after_s.push_back(1 / f);
+  // The latest first: of the lowest modes.
+  after_s.resize(std::min<std::size_t>(after_s.size(), kMicroCollisions));
+  const auto share = static_cast<float>(settings_.micro_collisions);
+  for (std::size_t i = 0; i < after_s.size(); ++i) {
+    const float each = share / static_cast<float>(after_s.size());
+    pulse[i + 1] = {in_samples(after_s[i]), pulse[0].samples, each};
+    pulse[0].share -= each;
+  }
+  return pulse;
+}
+
+Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose) const {
   const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
   const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
   const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
@@ -149,28 +180,29 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled) c
   Strike strike;
   strike.event_id = event.event_id;
   strike.scheduled = scheduled;
-  strike.pulse_samples = std::max(1, static_cast<int>(std::lround(length_s * rate_Hz_)));
-  double peak = 0;
-  for (const Voice* v : bodies) peak += peak_Pa(*v, impulse, length_s) + click_Pa(v->sound, impulse, length_s);
-  // Full scale per Pa: the reference pressure becomes the reference level, others follow with a smaller exponent.
-  const double pressure = std::max(peak, 1e-9), relative = pressure / settings_.reference_pressure_Pa;
-  const double level =
-      settings_.reference_level * std::min(kMostAboveReference, std::pow(relative, settings_.loudness_exponent));
-  const double scale = settings_.gain * level / pressure;
-  const StereoGain gain = stereo_gain(listener_, to_eigen(event.point_m), settings_.nearest_m);
-  const double peak_level = settings_.gain * level * std::max(gain.left, gain.right);
-  strike.heard_from = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
+  strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
+  const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
+  const Place place = place_of(listener_, point, settings_.nearest_m);
   // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
-  const double n = strike.pulse_samples;
-  const double steepest = strike.pulse_samples > 1 ? 2 / n * std::sin(pi / n) : 1;
+  const double n = strike.pulse[0].samples;
+  const double steepest = n > 1 ? 2 / n * std::sin(pi / n) : 1;
   for (std::size_t i = 0; i < 2; ++i) {
     StrikeSide& side = strike.sides[i];
-    side.voice = generation_ << 32 | static_cast<std::uint32_t>(ids[i]);
+    side.voice = voice_id(ids[i]);
     side.resonators = bodies[i]->resonators;
-    side.impulse = static_cast<float>(impulse * scale);
-    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) * scale / steepest);
-    side.left = static_cast<float>(gain.left), side.right = static_cast<float>(gain.right);
+    side.gains = gains(ids[i], on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
+    side.impulse = static_cast<float>(impulse);
+    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);
+    side.place = place;
   }
+  // Full scale per Pa: the reference pressure becomes the reference level, others follow with a smaller exponent.
+  const double pressure = std::max(peak_Pa(strike), 1e-9), relative = pressure / settings_.reference_pressure_Pa;
+  const double level =
+      settings_.reference_level * std::min(kMostAboveReference, std::pow(relative, settings_.loudness_exponent));
+  const auto scale = static_cast<float>(settings_.gain * level / pressure);
+  for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
+  const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);
+  strike.heard_from = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
   return strike;
 }
 

@@ -1,4 +1,4 @@
-// Turns a contact event into a strike: contact time, impulse, loudness, direction. Pure.
+// Turns a contact event into a strike: contact time, impulse, place on both bodies, loudness, direction. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,11 +20,11 @@ double contact_time_s(double effective_mass_kg, double curvature_1_m, double spe
 // Magnitude of the spectrum of a raised-cosine pulse of unit area and length T at a frequency.
 double pulse_spectrum(double frequency_Hz, double length_s);
 
-// Gains of two loudspeakers for a source: 1/r, and equal power by its azimuth. The listener looks along +x, z up.
-struct StereoGain {
-  double left, right;
-};
-StereoGain stereo_gain(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
+// Where a source in the world is for a listener who looks along +x, z up; not nearer than that.
+Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
+
+// T_world_body of a body at the time of an event, as far as anybody has said.
+using PoseOf = std::function<std::optional<Eigen::Isometry3d>(int body)>;
 
 // The sounding bodies of one scene.
 class Impacts {
@@ -37,20 +37,30 @@ class Impacts {
   // T_world_listener from the next strike on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
-  // Bodies or materials that the scene does not have sound as small wooden ones.
-  Strike strike(const contact_event_t& event, sync::HostTime scheduled) const;
+  // Bodies or materials that the scene does not have sound as small wooden ones. A body of which nobody says how
+  // it lies sounds as if it were struck anywhere.
+  Strike strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose = {}) const;
 
-  const BodySound& body(int id) const;
+  const BodySound& body(int id) const { return voice(id).sound; }
+  std::int64_t voice_id(int body) const { return generation_ << 32 | static_cast<std::uint32_t>(body); }
+  const Resonators& resonators(int body) const { return voice(body).resonators; }
+  // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
+  PerMode gains(int body, const std::optional<BodyPlace>& place) const;
+  // Where a point of the world and a direction lie on a body: by `pose`, or by the scene when it stands still.
+  std::optional<BodyPlace> on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
+                                   const PoseOf& pose) const;
 
  private:
   struct Voice {
     BodySound sound;
     Resonators resonators;
+    std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
+    std::optional<Eigen::Isometry3d> stands;  // T_world_body of one that never moves
   };
   const Voice& voice(int id) const;
   Elastic material(int index) const;
-  double peak_Pa(const Voice& voice, double impulse_N_s, double length_s) const;
   double click_Pa(const BodySound& sound, double impulse_N_s, double length_s) const;
+  ForcePulse pulse(const Voice& a, const Voice& b, double length_s) const;
 
   Settings settings_;
   double rate_Hz_;

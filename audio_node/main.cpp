@@ -1,7 +1,7 @@
 // audio_node: sounds the hits and scrapes of the scene through a sound card, each on its sample: when PLAYOUT
 // says, else at a delay of its own.
 //
-//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); WORLD_STATE, how bodies with maps are turned; SCENE;
+//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); WORLD_STATE, how bodies lie; SCENE;
 //        TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
@@ -97,6 +97,9 @@ int main(int argc, char** argv) try {
     for (const std::string& refused :
          sync::apply_settings(settings, audio::setting_fields(), kAudio.node, from_scene, options.set))
       std::cerr << refused << std::endl;
+    if (!audio::instructions_named(settings.instructions))
+      std::cerr << kAudio.node << ": this machine has no " << settings.instructions << " instructions; it computes with "
+                << audio::name(audio::available_instructions().back()) << std::endl;
     output.configure(settings);
     sense.set_own_delay(sync::from_seconds(settings.presentation_delay_s));
     sense.set_output_latency(output.latency());
@@ -139,8 +142,7 @@ int main(int argc, char** argv) try {
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
-    while (const auto m = world.pop())
-      if (!sliding || sliding->any()) bodies.push(m->message, m->arrival);
+    while (const auto m = world.pop()) bodies.push(m->message, m->arrival);
     while (const auto m = tools.pop())
       if (m->message.tool == head_tool) head.push(m->message, m->arrival);
 
@@ -152,7 +154,11 @@ int main(int argc, char** argv) try {
         // One that is lost hears from where it was.
         if (const auto ear = head.at(scheduled); head_tool >= 0 && ear.how != sync::How::kNone)
           impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
-        output.submit(impacts->strike(event, scheduled));
+        output.submit(impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
+          const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
+          if (pose.how == sync::How::kNone) return std::nullopt;
+          return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
+        }));
       }
     }
     if (const auto map = contacts.map(now); map && sliding && sliding->any()) {

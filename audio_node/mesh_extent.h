@@ -1,4 +1,4 @@
-// The size of a mesh's bounding box. Pure.
+// The size and the middle of a mesh's bounding box. Pure.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,10 @@ inline std::optional<Extent> extent_of(const mesh_t& mesh) {
       low[k] = std::min<double>(low[k], mesh.positions_m[i + k]);
       high[k] = std::max<double>(high[k], mesh.positions_m[i + k]);
     }
-  return Extent{high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+  return Extent{high[0] - low[0],
+                high[1] - low[1],
+                high[2] - low[2],
+                {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2}};
 }
 
 }  // namespace tactus::audio

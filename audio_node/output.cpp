@@ -16,7 +16,12 @@ constexpr std::size_t kMostUnsounded = 1024;
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
-         a.late_limit_s == b.late_limit_s;
+         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions;
+}
+
+// Those that this machine lacks are refused by name; the widest are used.
+Instructions instructions_of(const Settings& settings) {
+  return instructions_named(settings.instructions).value_or(available_instructions().back());
 }
 
 }  // namespace
@@ -52,7 +57,8 @@ void Output::begin_to_open(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
   const RendererDef def{settings_.sample_rate_Hz, settings_.period_frames, settings_.limiter_ceiling,
-                        late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s))};
+                        late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s)),
+                        instructions_of(settings_)};
   renderer_ = std::make_shared<Renderer>(*crossing_, def);
   ordered_.reset();
   const StreamOptions options{settings_.device,

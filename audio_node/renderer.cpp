@@ -50,7 +50,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
     : crossing_(crossing),
       rate_Hz_(def.rate_Hz),
       late_(def.late),
-      voices_(kQualities[0].voices, def.rate_Hz),
+      voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions)),
       scrapes_(def.rate_Hz),
       scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
@@ -161,7 +161,7 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const auto gain = static_cast<float>(late_.gain(lateness));
   const auto nearest = static_cast<long>(std::floor(-sync::to_seconds(lateness) * rate_Hz_ + 0.5));
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
-  for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse_samples, offset);
+  for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
   // The bodies ring on below the silence.
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));

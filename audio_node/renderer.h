@@ -25,7 +25,7 @@ struct BlockTime {
   sync::Nanoseconds used{0};  // what rendering the block before took; 0: not known
 };
 
-// The quality ladder of sound: of 64 bodies with 16 modes the steps take 0.7 and 0.35 of the time of the first.
+// The quality ladder of sound.
 inline constexpr std::array<VoiceLimits, 3> kQualities{{{64, 1}, {64, 2}, {32, 4}}};
 
 // What the node's loop wants of the callback; the newest counts.
@@ -59,6 +59,7 @@ struct RendererDef {
   int period_frames = 128;  // of one call, usually
   double ceiling = 0.9;
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
+  Instructions instructions = available_instructions().back();
 };
 
 // Same strikes, same blocks, same times: the same samples to the bit.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "audio_node/place.h"
 #include "lcmtypes/relief.h"
 #include "sync/time.h"
 
@@ -19,8 +20,8 @@ struct Scrape {
   double along_u = 0, along_v = 0;  // way over the relief per way of the sliding: 0 .. 1 in size
   double travelled_m = 0;           // along the way, m
   double speed_m_s = 0;
-  float level = 0;            // full scale per unit of slope
-  float left = 0, right = 0;  // loudspeaker gains
+  float level = 0;  // full scale per unit of slope
+  Place place;      // where it is heard from
 };
 
 }  // namespace tactus::audio

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "audio_node/pan.h"
+
 namespace tactus::audio {
 namespace {
 
@@ -63,6 +65,7 @@ void Scrapes::render(Voice& voice, float* mix, int frames, sync::HostTime first)
   const double lag_m = s.travelled_m + s.speed_m_s * since_s - voice.travelled_m;
   const double step_u = (s.u_per_s + lag_u / kFollow_s) * dt, step_v = (s.v_per_s + lag_v / kFollow_s) * dt;
   const double step_m = (s.speed_m_s + lag_m / kFollow_s) * dt;
+  const auto [left, right] = pan(s.place);
   const bool told = first - voice.heard < kSilence;
   const float wanted = told ? s.level : 0, follow = static_cast<float>(1 - std::exp(-dt / kLevel_s));
   for (int n = 0; n < frames; ++n) {
@@ -70,8 +73,8 @@ void Scrapes::render(Voice& voice, float* mix, int frames, sync::HostTime first)
     if (s.relief) slope += s.relief->slope({voice.u, voice.v}).dot(Eigen::Vector2d(s.along_u, s.along_v));
     voice.level += follow * (wanted - voice.level);
     const float sample = voice.level * static_cast<float>(slope);
-    mix[2 * n] += s.left * sample;
-    mix[2 * n + 1] += s.right * sample;
+    mix[2 * n] += left * sample;
+    mix[2 * n + 1] += right * sample;
     voice.u += step_u, voice.v += step_v, voice.travelled_m += step_m;
   }
   // The comparison also ends one that has become no number.

@@ -111,8 +111,7 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
     }
     const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
     s.level = static_cast<float>(settings_.gain * settings_.scrape_level * std::sqrt(mu * force_N * speed));
-    const StereoGain gain = stereo_gain(listener_, place_world, settings_.nearest_m);
-    s.left = static_cast<float>(gain.left), s.right = static_cast<float>(gain.right);
+    s.place = place_of(listener_, place_world, settings_.nearest_m);
     out_.push_back(s);
   }
   std::erase_if(ways_, [](const auto& way) { return !way.second.seen; });

@@ -14,7 +14,7 @@ namespace tactus::audio {
 // Elements cross by value. One thread pushes, one pops. Realtime-safe: yes, all but the constructor.
 template <class T>
 class Spsc {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(std::is_trivially_destructible_v<T>);  // owns nothing: copying it allocates nothing
 
  public:
   explicit Spsc(std::size_t at_least) : slots_(std::bit_ceil(std::max<std::size_t>(at_least, 2))) {}

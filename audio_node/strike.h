@@ -4,34 +4,47 @@
 #include <array>
 #include <cstdint>
 
+#include "audio_node/bank/ring.h"
+#include "audio_node/force_pulse.h"
+#include "audio_node/place.h"
 #include "sync/time.h"
 
 namespace tactus::audio {
 
-inline constexpr int kMaxModes = 32;
-inline constexpr int kLanes = 8;  // modes are computed in groups of so many
+inline constexpr int kMaxModes = 128;
+static_assert(kMaxModes % kModeGroup == 0);
 
-// Resonators of one body at one sample rate: the pole exp((-d + i w_d) / fs) of each mode and its response to a
-// unit impulse, Pa at 1 m per N s. Unused modes up to a multiple of kLanes are zero.
+// One number for each mode of a body; those that it does not have are 0.
+struct alignas(64) PerMode : std::array<float, kMaxModes> {};
+
+// The modes of one body at one sample rate (bank/ring.h).
 struct Resonators {
   int count = 0;
-  std::array<float, kMaxModes> pole_re{}, pole_im{}, response{};
+  PerMode damping{}, stiffness{};
+
+  // A mode more; nothing happens beyond kMaxModes.
+  void add(const ModeStep& step) {
+    if (count == kMaxModes) return;
+    const auto i = static_cast<std::size_t>(count++);
+    damping[i] = step.damping, stiffness[i] = step.stiffness;
+  }
 };
 
 // One of the two bodies of an impact.
 struct StrikeSide {
   std::int64_t voice = -1;  // the same for the same body: it is excited again without losing its state; -1: none
   Resonators resonators;
+  PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
   float impulse = 0;  // N s, scaled to full scale per Pa
   float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
-  float left = 0, right = 0;  // loudspeaker gains: distance and direction
+  Place place;        // where it is heard from
 };
 
 struct Strike {
   std::int64_t event_id = 0;
   sync::HostTime scheduled{};
-  int pulse_samples = 1;  // length of the raised-cosine force pulse
-  float heard_from = 0;   // factor on its strength below which it is too weak to be heard, by prediction
+  ForcePulse pulse = one_hump(1);
+  float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction
   std::array<StrikeSide, 2> sides;
 };
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "audio_node/pan.h"
 
 namespace tactus::audio {
 namespace {
@@ -10,17 +11,25 @@ namespace {
 // A voice weaker than this is over: -100 dBFS, below the noise of any 16-bit converter.
 constexpr float kOver = 1e-5f;
 
-// Sample i of a raised-cosine pulse of n samples whose sum is 1.
-float pulse_weight(int i, int n) {
-  if (n <= 1) return 1;
-  return (1 - std::cos(2 * std::numbers::pi_v<float> * (static_cast<float>(i) + 0.5f) / static_cast<float>(n))) /
-         static_cast<float>(n);
+// Of the squared amplitude of a mode: what falls by its damping with each sample, whatever its phase.
+float squared_amplitude(float c, float k, float v, float u) {
+  return std::max(0.f, (c * v + (1 - c - k) * u) * v + k * u * u);
+}
+
+// Sum of f over the squared amplitudes of the modes that are rendered.
+template <class Voice, class F>
+float over_modes(const Voice& v, F f) {
+  float sum = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i)
+    sum += f(squared_amplitude(v.damping[i], v.stiffness[i], v.velocity[i], v.displacement[i]));
+  return sum;
 }
 
 }  // namespace
 
-Voices::Voices(int voices, double rate_Hz)
+Voices::Voices(int voices, double rate_Hz, Ring ring)
     : limits_{voices, 1},
+      ring_(ring),
       fade_step_(static_cast<float>(1 / (kFade_s * rate_Hz))),
       voices_(static_cast<std::size_t>(voices + kFading)) {}
 
@@ -57,84 +66,100 @@ Voices::Voice& Voices::free_voice() {
   return *best;
 }
 
-int Voices::allowed(const Voice& v) const { return (v.groups + limits_.modes_of - 1) / limits_.modes_of; }
-
-void Voices::take(Voice& v, const StrikeSide& side) const {
-  v = Voice{};
-  v.id = side.voice;
-  v.groups = (std::min(side.resonators.count, kMaxModes) + kLanes - 1) / kLanes;
-  v.rendered = v.kept = allowed(v);
-  for (int g = 0; g < v.groups; ++g) {
-    const auto i = static_cast<std::size_t>(g);
-    v.re[i].setZero(), v.im[i].setZero();
-    v.pole_re[i] = Eigen::Map<const Lanes>(&side.resonators.pole_re[i * kLanes]);
-    v.pole_im[i] = Eigen::Map<const Lanes>(&side.resonators.pole_im[i * kLanes]);
-    v.response[i] = Eigen::Map<const Lanes>(&side.resonators.response[i * kLanes]);
-  }
-  v.left = side.left, v.right = side.right;
+int Voices::allowed(const Voice& v) const {
+  const int groups = v.modes / kModeGroup;
+  return (groups + limits_.modes_of - 1) / limits_.modes_of * kModeGroup;
 }
 
-void Voices::strike(const StrikeSide& side, float gain, int pulse_samples, int offset) {
-  if (side.voice < 0) return;
-  Voice* known = sounding(side.voice);
-  if (!known) {
-    leave_room(limits_.voices - 1);
-    take(*(known = &free_voice()), side);
-  }
-  Voice& v = *known;
-  v.left_to = side.left, v.right_to = side.right;
-  const auto pushes = [](const Pulse& p) { return p.samples > 0; };
-  // Modes that were cut come back at rest, with a pulse from its beginning: in the middle of one they would jump.
-  if (!v.cut.on && v.rendered < allowed(v) && std::none_of(v.pulses.begin(), v.pulses.end(), pushes))
+void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const Place& place) const {
+  v.id = id;
+  v.modes = (std::clamp(resonators.count, 0, kMaxModes) + kModeGroup - 1) / kModeGroup * kModeGroup;
+  v.rendered = v.kept = allowed(v);
+  v.cut = v.whole = {};
+  v.damping = resonators.damping, v.stiffness = resonators.stiffness;
+  v.velocity.fill(0), v.displacement.fill(0);
+  for (Pulse& p : v.pulses) p.on = false;
+  v.driven = 0;
+  v.place = place;
+  v.left = v.right = -1;
+  v.expected = v.level = 0;
+}
+
+Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, const Place& place) {
+  if (Voice* known = sounding(id)) return *known;
+  leave_room(limits_.voices - 1);
+  Voice& fresh = free_voice();
+  take(fresh, id, resonators, place);
+  return fresh;
+}
+
+// Modes that were cut come back at rest, with a force from its beginning: in the middle of one they would jump.
+void Voices::bring_back(Voice& v) const {
+  const auto pushes = [](const Pulse& p) { return p.on; };
+  if (!v.cut.on && v.rendered < allowed(v) && v.driven == 0 &&
+      std::none_of(v.pulses.begin(), v.pulses.end(), pushes))
     v.rendered = v.kept = allowed(v);
-  const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), pushes);
+}
+
+void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset) {
+  if (side.voice < 0) return;
+  Voice& v = voice_of(side.voice, side.resonators, side.place);
+  v.place = side.place;
+  bring_back(v);
+  const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), [](const Pulse& p) { return p.on; });
   if (free != v.pulses.end()) {
-    *free = {offset, std::max(1, pulse_samples), gain * side.impulse, gain * side.click, 0};
+    *free = {true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
   } else {
     v.pulses.back().impulse += gain * side.impulse;
   }
   float response = 0;
-  for (int g = 0; g < v.rendered; ++g) response += v.response[static_cast<std::size_t>(g)].sum();
-  v.expected = gain * (std::abs(side.impulse) * response + std::abs(side.click)) * std::max(side.left, side.right);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i) response += std::abs(side.gains[i]);
+  v.expected = gain * (std::abs(side.impulse) * response + std::abs(side.click));
   v.level += v.expected;
 }
 
-// Fills the force of the block and the clicks. False when no pulse is on.
-bool Voices::force(Voice& v, int frames, float* force, float* out) {
-  bool any = false;
-  std::fill(force, force + frames, 0.f);
-  for (Pulse& p : v.pulses) {
-    if (p.samples == 0) continue;
-    any = true;
-    for (int n = std::max(0, p.begin); n < frames && n <= p.begin + p.samples; ++n) {
-      const int i = n - p.begin;
-      const float weight = i < p.samples ? pulse_weight(i, p.samples) : 0;
-      force[n] += p.impulse * weight;
-      out[n] += p.click * (weight - p.weight);
-      p.weight = weight;
-    }
-    p.begin -= frames;
-    if (p.begin + p.samples < 0) p.samples = 0;
-  }
-  return any;
+void Voices::drive(const Drive& drive) {
+  if (drive.voice < 0) return;
+  Voice& v = voice_of(drive.voice, *drive.resonators, drive.place);
+  v.place = drive.place;
+  if (v.driven == kDrives) return;
+  bring_back(v);
+  v.drives[static_cast<std::size_t>(v.driven++)] = {drive.gains->data(), drive.force};
 }
 
-void Voices::resonate(Voice& v, int from, int to, int frames, const float* force, float* out) {
-  std::array<Lanes, kMaxBlock> sum;
-  for (int n = 0; n < frames; ++n) sum[static_cast<std::size_t>(n)].setZero();
-  for (int g = from; g < to; ++g) {
-    const auto i = static_cast<std::size_t>(g);
-    Lanes re = v.re[i], im = v.im[i];
-    const Lanes a = v.pole_re[i], b = v.pole_im[i], response = v.response[i];
-    for (int n = 0; n < frames; ++n) {
-      const Lanes next = a * re - b * im + response * force[n];
-      im = b * re + a * im;
-      re = next;
-      sum[static_cast<std::size_t>(n)] += re;
+// The forces of the block; the clicks go straight to `out`.
+void Voices::collect(Voice& v, int frames, Pushes& pushes, float* out) {
+  for (std::size_t i = 0; i < v.pulses.size(); ++i) {
+    Pulse& p = v.pulses[i];
+    if (!p.on) continue;
+    std::array<float, kMaxBlock>& force = pushes.forces[i];
+    std::fill(force.begin(), force.end(), 0.f);
+    for (int n = std::max(0, p.begin); n < frames && n <= p.begin + p.end; ++n) {
+      const auto k = static_cast<std::size_t>(n);
+      const float weight = weight_at(p.humps, n - p.begin);
+      force[k] = p.impulse * weight;
+      out[k] += p.click * (weight - p.weight);
+      p.weight = weight;
     }
-    v.re[i] = re, v.im[i] = im;
+    pushes.list[static_cast<std::size_t>(pushes.count++)] = {p.gains.data(), force.data()};
+    p.begin -= frames;
+    p.on = p.begin + p.end >= 0;
   }
-  for (int n = 0; n < frames; ++n) out[n] += sum[static_cast<std::size_t>(n)].sum();
+  pushes.of_blows = pushes.count > 0;
+  for (int i = 0; i < v.driven; ++i)
+    pushes.list[static_cast<std::size_t>(pushes.count++)] = v.drives[static_cast<std::size_t>(i)];
+  v.driven = 0;
+}
+
+void Voices::resonate(Voice& v, int from, int to, int frames, const Pushes& pushes, float* out) const {
+  std::array<Push, kPulses + kDrives> shifted;
+  for (int i = 0; i < pushes.count; ++i) {
+    const Push& p = pushes.list[static_cast<std::size_t>(i)];
+    shifted[static_cast<std::size_t>(i)] = {p.gains + from, p.force};
+  }
+  ring_({v.damping.data() + from, v.stiffness.data() + from, v.velocity.data() + from,
+         v.displacement.data() + from, to - from},
+        shifted.data(), pushes.count, frames, out);
 }
 
 void Voices::fade(Fade& fade, float* samples, int frames) const {
@@ -153,42 +178,46 @@ void Voices::cut(Voice& v) const {
 
 void Voices::end_cut(Voice& v) const {
   if (!v.cut.on || v.cut.gain > 0) return;
-  for (int g = v.kept; g < v.rendered; ++g)
-    v.re[static_cast<std::size_t>(g)].setZero(), v.im[static_cast<std::size_t>(g)].setZero();
+  for (int i = v.kept; i < v.rendered; ++i)
+    v.velocity[static_cast<std::size_t>(i)] = v.displacement[static_cast<std::size_t>(i)] = 0;
   v.rendered = v.kept;
   v.cut = {};
 }
 
+// Its gains go straight to where they shall be at the end of the block.
+void Voices::place(Voice& v, const float* mono, float* mix, int frames) {
+  const auto [left, right] = pan(v.place);
+  if (v.left < 0) v.left = left, v.right = right;
+  const float step_left = (left - v.left) / static_cast<float>(frames);
+  const float step_right = (right - v.right) / static_cast<float>(frames);
+  for (int n = 0; n < frames; ++n) {
+    v.left += step_left, v.right += step_right;
+    mix[2 * n] += v.left * mono[n];
+    mix[2 * n + 1] += v.right * mono[n];
+  }
+  v.left = left, v.right = right;
+}
+
 void Voices::render(Voice& v, float* mix, int frames) const {
   cut(v);
-  std::array<float, kMaxBlock> push, out{};
-  const bool pushed = force(v, frames, push.data(), out.data());
-  resonate(v, 0, v.kept, frames, push.data(), out.data());
+  std::array<float, kMaxBlock> out{};
+  Pushes pushes;
+  collect(v, frames, pushes, out.data());
+  resonate(v, 0, v.kept, frames, pushes, out.data());
   if (v.cut.on) {
     std::array<float, kMaxBlock> leaving{};
-    resonate(v, v.kept, v.rendered, frames, push.data(), leaving.data());
+    resonate(v, v.kept, v.rendered, frames, pushes, leaving.data());
     fade(v.cut, leaving.data(), frames);
     for (int n = 0; n < frames; ++n) out[static_cast<std::size_t>(n)] += leaving[static_cast<std::size_t>(n)];
     end_cut(v);
   }
   fade(v.whole, out.data(), frames);
-  const float step_left = (v.left_to - v.left) / static_cast<float>(frames);
-  const float step_right = (v.right_to - v.right) / static_cast<float>(frames);
-  for (int n = 0; n < frames; ++n) {
-    v.left += step_left, v.right += step_right;
-    mix[2 * n] += v.left * out[static_cast<std::size_t>(n)];
-    mix[2 * n + 1] += v.right * out[static_cast<std::size_t>(n)];
-  }
-  v.left = v.left_to, v.right = v.right_to;
-  v.level = 0;
-  for (int g = 0; g < v.rendered; ++g) {
-    const auto i = static_cast<std::size_t>(g);
-    v.level += (v.re[i].square() + v.im[i].square()).sqrt().sum();
-  }
-  v.level *= std::max(v.left, v.right) * v.whole.gain;
+  place(v, out.data(), mix, frames);
+  v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / v.place.distance_m * v.whole.gain;
+  const bool pushed = pushes.count > 0;
   // The comparison also ends a voice that has become no number.
   if (v.whole.gain <= 0 || (!pushed && !(v.level > kOver))) v.id = -1;
-  if (pushed) v.level += v.expected;
+  if (pushes.of_blows) v.level += v.expected;
 }
 
 void Voices::render(float* mix, int frames) {
@@ -204,10 +233,7 @@ int Voices::active() const {
 double Voices::energy() const {
   double sum = 0;
   for (const Voice& v : voices_)
-    for (int g = 0; v.id >= 0 && g < v.rendered; ++g) {
-      const auto i = static_cast<std::size_t>(g);
-      sum += static_cast<double>((v.re[i].square() + v.im[i].square()).sum());
-    }
+    if (v.id >= 0) sum += static_cast<double>(over_modes(v, [](float a2) { return a2; }));
   return sum;
 }
 

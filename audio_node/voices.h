@@ -1,7 +1,6 @@
 // The resonators of the bodies that sound just now. Pure.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -13,36 +12,47 @@ namespace tactus::audio {
 // How much may sound at a time.
 struct VoiceLimits {
   int voices = 64;
-  int modes_of =
-      1;  // of the modes of a body one in so many, the lowest, in whole groups of kLanes: its pitch stays
+  // Of the modes of a body one in so many, the lowest, in whole groups of kModeGroup: its pitch stays.
+  int modes_of = 1;
 };
 
-// A fixed number of voices, each one body. A mode is a complex one-pole (the coupled form, which keeps low
-// frequencies exact in single precision): z <- p z + response * force; its real part sounds. Striking a voice that
-// sounds adds a force pulse and leaves z alone. When all voices are in use, the weakest gives way; it fades, as
-// does all that lower limits cut. Realtime-safe: yes, all but the constructor.
+// A force on a body for as long as a contact lasts: that of the frames that are rendered next.
+struct Drive {
+  std::int64_t voice = -1;
+  const Resonators* resonators = nullptr;
+  const PerMode* gains = nullptr;  // at the place of the contact, as of a strike
+  Place place;
+  const float* force = nullptr;  // N s a sample, scaled to full scale per Pa; read until the end of that render()
+};
+
+// A fixed number of voices, each one body, whose modes ring in bank/ring.h. Striking or driving a voice that
+// sounds adds a force and leaves its state alone. When all voices are in use, the weakest gives way; it fades, as
+// does all that lower limits cut. The modes of a body are summed before it is heard from its place. Realtime-safe:
+// yes, all but the constructor.
 class Voices {
  public:
   // As many voices as no limit will exceed.
-  Voices(int voices, double rate_Hz);
+  Voices(int voices, double rate_Hz, Ring ring);
 
   // From the next render() on.
   void set_limits(const VoiceLimits& limits);
 
   // Starts a pulse for one side, `gain` as strong as it says, at `offset` frames (0 .. kMaxBlock-1) into the next
   // render().
-  void strike(const StrikeSide& side, float gain, int pulse_samples, int offset);
+  void strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset);
+  // Before each render() as long as the contact lasts. Of one body so many at a time are heard: kDrives.
+  void drive(const Drive& drive);
   // Adds `frames` <= kMaxBlock frames, left and right interleaved.
   void render(float* mix, int frames);
 
   // That sound, with those that fade.
   int active() const;
-  // Sum of |z|^2 over all modes of all voices.
+  // Sum of the squared amplitudes of all modes of all voices.
   double energy() const;
 
+  static constexpr int kDrives = 32;
+
  private:
-  using Lanes = Eigen::Array<float, kLanes, 1>;
-  static constexpr int kGroups = kMaxModes / kLanes;
   static constexpr int kPulses = 8;  // of one voice at a time; more are merged into the newest
   // Voices that fade while others sound: so many may be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
@@ -50,10 +60,13 @@ class Voices {
   static constexpr double kFade_s = 0.005;
 
   struct Pulse {
-    int begin = 0;    // frames until it starts; negative: since it did
-    int samples = 0;  // 0: free
+    bool on = false;
+    int begin = 0;  // frames until it starts; negative: since it did
+    int end = 0;    // after its start
+    ForcePulse humps{};
     float impulse = 0, click = 0;
     float weight = 0;  // at the sample before
+    PerMode gains;
   };
   // A factor that goes to 0 from when it is told to.
   struct Fade {
@@ -61,35 +74,46 @@ class Voices {
     float gain = 1;
   };
   struct Voice {
-    Voice() {
-      for (auto* all : {&re, &im, &pole_re, &pole_im, &response}) all->fill(Lanes::Zero());
-    }
     std::int64_t id = -1;
-    int groups = 0;  // of the body
-    // Groups that are rendered; those from `kept` on fade, then they are at rest until the voice is struck anew.
+    int modes = 0;  // of the body, in whole groups
+    // Modes that are rendered; those from `kept` on fade, then they are at rest until the voice is struck anew.
     int rendered = 0, kept = 0;
     Fade cut;
     Fade whole;
-    std::array<Lanes, kGroups> re, im, pole_re, pole_im, response;
-    std::array<Pulse, kPulses> pulses{};
-    float left = 0, right = 0, left_to = 0, right_to = 0;
+    PerMode damping, stiffness, velocity, displacement;
+    std::array<Pulse, kPulses> pulses;
+    std::array<Push, kDrives> drives;
+    int driven = 0;
+    Place place;
+    float left = 0, right = 0;
     float expected = 0;  // level that the last pulse will give
-    float level = 0;     // largest |z| sum of the last block; while a pulse is on, what is expected besides
+    float level = 0;  // largest sum of amplitudes of the last block; while a pulse is on, what is expected besides
+  };
+  // What pushes a voice within one block.
+  struct Pushes {
+    std::array<std::array<float, kMaxBlock>, kPulses> forces;
+    std::array<Push, kPulses + kDrives> list;
+    int count = 0;
+    bool of_blows = false;  // some are
   };
 
   Voice* sounding(std::int64_t id);
   Voice& free_voice();
+  Voice& voice_of(std::int64_t id, const Resonators& resonators, const Place& place);
   void leave_room(int at_most);
-  void take(Voice& voice, const StrikeSide& side) const;
+  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const Place& place) const;
+  void bring_back(Voice& voice) const;
   void cut(Voice& voice) const;
   int allowed(const Voice& voice) const;
   void end_cut(Voice& voice) const;
   void render(Voice& voice, float* mix, int frames) const;
   void fade(Fade& fade, float* samples, int frames) const;
-  static bool force(Voice& voice, int frames, float* force, float* out);
-  static void resonate(Voice& voice, int from, int to, int frames, const float* force, float* out);
+  static void collect(Voice& voice, int frames, Pushes& pushes, float* out);
+  void resonate(Voice& voice, int from, int to, int frames, const Pushes& pushes, float* out) const;
+  static void place(Voice& voice, const float* mono, float* mix, int frames);
 
   VoiceLimits limits_;
+  Ring ring_;
   float fade_step_;  // a sample
   std::vector<Voice> voices_;
 };

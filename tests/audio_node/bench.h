@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <complex>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "audio_node/renderer.h"
@@ -12,6 +10,8 @@
 namespace tactus::audio::test {
 
 inline constexpr double kRate = 48000;
+// Of every machine.
+inline const Ring kRing = ring(Instructions::kSse2);
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
 inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz, double damping_1_s,
@@ -21,13 +21,11 @@ inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz
   s.scheduled = sync::host_time(at_ns);
   StrikeSide& side = s.sides[0];
   side.voice = voice;
-  const auto pole = std::exp(std::complex<double>(-damping_1_s, 2 * std::numbers::pi * frequency_Hz) / kRate);
-  side.resonators.count = 1;
-  side.resonators.pole_re[0] = static_cast<float>(pole.real());
-  side.resonators.pole_im[0] = static_cast<float>(pole.imag());
-  side.resonators.response[0] = 1;
+  const ModeStep step = mode_step(frequency_Hz, damping_1_s, kRate);
+  side.resonators.add(step);
+  side.gains[0] = step.unit_gain;
   side.impulse = impulse;
-  side.left = side.right = 1;
+  side.place.direction = Eigen::Vector3f::UnitY();  // all of it to the left
   return s;
 }
 

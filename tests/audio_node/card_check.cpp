@@ -34,7 +34,7 @@ Strike impulse(std::int64_t id, sync::HostTime at) {
   s.scheduled = at;
   s.sides[0].voice = id;  // without a mode: only the click of its pulse
   s.sides[0].click = 0.5f;
-  s.sides[0].left = s.sides[0].right = 1;
+  s.sides[0].place.direction = Eigen::Vector3f::UnitY();
   return s;
 }
 

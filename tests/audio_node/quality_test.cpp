@@ -13,17 +13,15 @@ namespace {
 constexpr int kPeriod = 128;
 constexpr std::size_t kFade = 240;  // 5 ms
 
-// A body of `modes` modes, 200 Hz apart.
+// A body of `modes` modes, 200 Hz apart; the lowest group of four sounds with a quarter of them.
 StrikeSide body(std::int64_t voice, int modes, float impulse) {
   StrikeSide side = strike_of(0, voice, 200, 2, 0, impulse).sides[0];
+  side.resonators = {};
   for (int i = 0; i < modes; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const StrikeSide one = strike_of(0, voice, 200 * (i + 1), 2, 0).sides[0];
-    side.resonators.pole_re[k] = one.resonators.pole_re[0];
-    side.resonators.pole_im[k] = one.resonators.pole_im[0];
-    side.resonators.response[k] = 1.f / static_cast<float>(i + 1);
+    const ModeStep step = mode_step(200 * (i + 1), 2, kRate);
+    side.resonators.add(step);
+    side.gains[static_cast<std::size_t>(i)] = step.unit_gain / static_cast<float>(i + 1);
   }
-  side.resonators.count = modes;
   return side;
 }
 
@@ -79,11 +77,11 @@ TEST_CASE("Sound whose quality is held does not heed the time") {
 }
 
 TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") {
-  Sounding full{Voices(4, kRate)}, less{Voices(4, kRate)};
-  Sounding low{Voices(4, kRate)};  // of the lowest eight of 32 alone
-  full.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
-  less.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
-  low.voices.strike(body(1, 8, 0.1f), 1, 20, 0);
+  Sounding full{Voices(4, kRate, kRing)}, less{Voices(4, kRate, kRing)};
+  Sounding low{Voices(4, kRate, kRing)};  // of the lowest 16 of 64 alone
+  full.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
+  less.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
+  low.voices.strike(body(1, 16, 0.1f), 1, one_hump(20), 0);
   for (Sounding* s : {&full, &less, &low}) s->render(20);
   CHECK(less.left == full.left);
   less.voices.set_limits({4, 4});
@@ -98,16 +96,18 @@ TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") 
 }
 
 TEST_CASE("Modes that were cut come back with the next strike, and without a click") {
-  Sounding s{Voices(4, kRate)}, low{Voices(4, kRate)}, fresh{Voices(4, kRate)}, fresh_low{Voices(4, kRate)};
+  Sounding s{Voices(4, kRate, kRing)}, low{Voices(4, kRate, kRing)}, fresh{Voices(4, kRate, kRing)},
+      fresh_low{Voices(4, kRate, kRing)};
   s.voices.set_limits({4, 4});
-  s.voices.strike(body(1, 32, 0.1f), 1, 20, 0);
-  low.voices.strike(body(1, 8, 0.1f), 1, 20, 0);
+  s.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
+  low.voices.strike(body(1, 16, 0.1f), 1, one_hump(20), 0);
   s.render(20), low.render(20);
   s.voices.set_limits({4, 1});
   s.render(20), low.render(20);
   CHECK(s.left == low.left);
-  for (Sounding* one : {&s, &fresh}) one->voices.strike(body(1, 32, 0.1f), 1, 20, 0), one->render(1);
-  for (Sounding* one : {&low, &fresh_low}) one->voices.strike(body(1, 8, 0.1f), 1, 20, 0), one->render(1);
+  for (Sounding* one : {&s, &fresh}) one->voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0), one->render(1);
+  for (Sounding* one : {&low, &fresh_low})
+    one->voices.strike(body(1, 16, 0.1f), 1, one_hump(20), 0), one->render(1);
   const double upper = fresh.voices.energy() - fresh_low.voices.energy();
   REQUIRE(upper > 0);
   CHECK(s.voices.energy() - low.voices.energy() == Approx(upper).epsilon(1e-3));
@@ -115,12 +115,12 @@ TEST_CASE("Modes that were cut come back with the next strike, and without a cli
 
 TEST_CASE("When there are too many voices the quietest fade, the others go on") {
   const std::vector<float> impulses{0.04f, 0.01f, 0.03f, 0.02f, 0.05f};
-  Sounding s{Voices(5, kRate)}, loud{Voices(5, kRate)};
+  Sounding s{Voices(5, kRate, kRing)}, loud{Voices(5, kRate, kRing)};
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     const StrikeSide side =
         strike_of(0, static_cast<std::int64_t>(i), 200 + 31 * static_cast<double>(i), 2, 0, impulses[i]).sides[0];
-    s.voices.strike(side, 1, 1, 0);
-    if (impulses[i] > 0.025f) loud.voices.strike(side, 1, 1, 0);
+    s.voices.strike(side, 1, one_hump(1), 0);
+    if (impulses[i] > 0.025f) loud.voices.strike(side, 1, one_hump(1), 0);
   }
   s.render(10), loud.render(10);
   CHECK(s.voices.active() == 5);
@@ -134,12 +134,12 @@ TEST_CASE("When there are too many voices the quietest fade, the others go on") 
 }
 
 TEST_CASE("A strike that finds all voices in use takes the quietest, which fades while it begins") {
-  Sounding s{Voices(2, kRate)};
-  s.voices.strike(strike_of(0, 1, 300, 2, 0, 0.1f).sides[0], 1, 1, 0);
-  s.voices.strike(strike_of(0, 2, 200, 2, 0, 0.05f).sides[0], 1, 1, 0);
+  Sounding s{Voices(2, kRate, kRing)};
+  s.voices.strike(strike_of(0, 1, 300, 2, 0, 0.1f).sides[0], 1, one_hump(1), 0);
+  s.voices.strike(strike_of(0, 2, 200, 2, 0, 0.05f).sides[0], 1, one_hump(1), 0);
   s.render(10);
   // A long pulse, so that it is no jump by itself: slower than its own period it leaves little.
-  s.voices.strike(strike_of(0, 3, 250, 2, 0, 0.1f).sides[0], 1, 48, 0);
+  s.voices.strike(strike_of(0, 3, 250, 2, 0, 0.1f).sides[0], 1, one_hump(48), 0);
   CHECK(s.voices.active() == 3);
   s.render(10);
   CHECK(s.voices.active() == 2);
@@ -149,8 +149,8 @@ TEST_CASE("A strike that finds all voices in use takes the quietest, which fades
 }
 
 TEST_CASE("However many strikes come at once, the newest sound and the node stays within its voices") {
-  Sounding s{Voices(4, kRate)};
-  for (int i = 0; i < 500; ++i) s.voices.strike(strike_of(0, i, 300, 2, 0, 1e-3f).sides[0], 1, 1, 0);
+  Sounding s{Voices(4, kRate, kRing)};
+  for (int i = 0; i < 500; ++i) s.voices.strike(strike_of(0, i, 300, 2, 0, 1e-3f).sides[0], 1, one_hump(1), 0);
   s.render(1);
   CHECK(s.voices.active() <= 4 + 16);
   s.render(10);

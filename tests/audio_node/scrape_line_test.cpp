@@ -46,7 +46,7 @@ struct Line {
     s.at = sync::host_time(bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)));
     s.relief = surfaces->by_material[0].relief.get();
     s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1;
-    s.level = 0.005f, s.left = s.right = 1;
+    s.level = 0.005f, s.place.direction = Eigen::Vector3f::UnitY();
     return line.submit(s);
   }
   // Something was heard, and nothing of what was freed.
@@ -187,7 +187,8 @@ TEST_CASE(
       s.id = static_cast<std::int64_t>(random() % 5);
       s.at = sync::host_time(l.bench->time_ns(played + random() % 1000));
       s.relief = relief;
-      s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1, s.level = 0.02f, s.left = s.right = 1;
+      s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1, s.level = 0.02f,
+      s.place.direction = Eigen::Vector3f::UnitY();
       l.line.submit(s);
       freed += l.line.take_unread().size();
       std::this_thread::yield();
