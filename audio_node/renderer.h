@@ -26,7 +26,7 @@ struct BlockTime {
 };
 
 // The quality ladder of sound.
-inline constexpr std::array<VoiceLimits, 3> kQualities{{{64, 1}, {64, 2}, {32, 4}}};
+inline constexpr std::array<VoiceLimits, 3> kQualities{{{128, 1}, {64, 2}, {32, 4}}};
 
 // What the node's loop wants of the callback; the newest counts.
 struct Orders {
