@@ -180,6 +180,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   Strike strike;
   strike.event_id = event.event_id;
   strike.scheduled = scheduled;
+  strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
   strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
   const Place place = place_of(listener_, point, settings_.nearest_m);
