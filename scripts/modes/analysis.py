@@ -9,6 +9,7 @@ import esprit
 from refusal import Refusal
 
 AFTER_BLOW_S = 0.005  # design: the force pulse of a hard blow is over
+LOWEST_HZ = 20.0  # that is heard as a tone
 LONGEST_S = 4.0  # that is looked at
 WEAKEST_DB = 60.0
 LOST_MOST_DB = 26.0  # before the analysis begins: what decays faster is part of the blow; its amplitude would be guessed (design)
@@ -59,8 +60,9 @@ def loudest_at(samples, rate):
 
 def waves(poles, rate, count, start=0):
     """exp(-d t) cos(w t) and exp(-d t) sin(w t) of each pole as columns; t from `start` samples on."""
-    t = (np.arange(count) + start)[:, None] / rate
-    turning = np.exp((-poles[:, 1] + 2j * np.pi * poles[:, 0]) * t)
+    step = (-poles[:, 1] + 2j * np.pi * poles[:, 0]) / rate
+    fine, coarse = np.arange(64)[None, :, None], np.arange(start, start + count, 64)[:, None, None]
+    turning = (np.exp(step * coarse) * np.exp(step * fine)).reshape(-1, len(poles))[:count]
     return np.concatenate([turning.real, -turning.imag], axis=1)
 
 
@@ -69,8 +71,9 @@ def amplitudes(samples, rate, poles):
     count = min(len(samples), max(AMPLITUDE_SAMPLES, 8 * len(poles)))
     basis = waves(poles, rate, count)
     scale = np.linalg.norm(basis, axis=0) + 1e-300
-    # A tiny ridge: poles that nearly coincide would else share a huge amplitude of opposite signs.
-    solution = np.linalg.lstsq(basis / scale, samples[:count], rcond=1e-9)[0] / scale
+    basis /= scale
+    # Normal equations, and what poles that nearly coincide cannot tell apart left out: they would share huge amplitudes of opposite signs.
+    solution = np.linalg.pinv(basis.T @ basis, rcond=1e-11, hermitian=True) @ (basis.T @ samples[:count]) / scale
     return solution[:len(poles)] + 1j * solution[len(poles):]
 
 
@@ -80,7 +83,7 @@ def sum_of(poles, c, rate, count):
 
 def standing_out(samples, rate, poles, c):
     """Which poles rise above what is left beside them when all are taken away."""
-    count = min(len(samples), 1 << 16)
+    count = min(len(samples), 1 << 15)
     window = np.hanning(2 * count + 1)[count:-1]  # begins at its top, as decays do
     rest = samples[:count].copy()
     for at in range(0, count, 8192):  # in pieces: the basis of all samples at once would not fit into memory
@@ -120,6 +123,7 @@ def analyse(samples, rate, most_modes=64, below_Hz=16000.0, begin_s=None):
     if len(ringing) < 256 or not ringing.any():
         raise Refusal("nothing rings after the loudest moment; give a recording that goes on for at least a tenth of a second")
     poles = esprit.find_poles(ringing, rate, min(below_Hz, 0.49 * rate))
+    poles = poles[poles[:, 0] > LOWEST_HZ]
     poles = poles[poles[:, 1] * max(begins / rate, AFTER_BLOW_S) < LOST_MOST_DB / 20 * np.log(10)]
     # Twice: what does not stand out goes, and the others share what it had.
     for _ in range(2):

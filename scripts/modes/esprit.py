@@ -9,11 +9,12 @@ import numpy as np
 BAND_HZ = 1000.0  # design: some ten modes of a plate
 OVERLAP_HZ = 10.0  # a mode at an edge is found on both sides and kept once
 SAME_HZ = 1.0  # modes of two bands nearer than this, at the edge that they share, are one
-MOST_DECIMATED = 900  # samples of a band: more cost as the cube and add nothing
-MOST_ROWS = 300
+MOST_DECIMATED = 720  # samples of a band: more cost as the cube and add nothing
+MOST_ROWS = 240
 STOP_DB = 90.0
 FASTEST_1_S = 2000.0  # a decay within 3 ms is part of the blow
-ESTER_KEEP = 0.05  # design
+# A mode that dominates its band holds far better than its weaker neighbours: beyond ESTER_GOOD no better is asked for (design).
+ESTER_KEEP, ESTER_GOOD = 0.05, 100.0
 NOISE_FACTOR = 4.0  # design
 
 
@@ -72,8 +73,7 @@ def order_of(vectors, singular, most):
     if tried < 1:
         return 0
     inverse = np.array([1 / max(rotation(vectors, p)[1], 1e-12) for p in range(1, tried + 1)])
-    # Rounding sets an end to how well it can hold.
-    return 1 + int(np.nonzero(np.minimum(inverse, 1e5) >= ESTER_KEEP * min(inverse.max(), 1e5))[0][-1])
+    return 1 + int(np.nonzero(inverse >= ESTER_KEEP * min(inverse.max(), ESTER_GOOD))[0][-1])
 
 
 def poles_of_band(x, most):
