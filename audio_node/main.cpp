@@ -7,12 +7,14 @@
 //
 // Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends scrapes, losing WORLD_STATE leaves bodies turned as they
 // were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
-// callback never for the loop.
+// callback never for the loop. With --log it hears a recorded run instead of the bus and plays it into --wav, as fast as it
+// can; the same log gives the same bytes.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <thread>
 
+#include "audio_node/device/file_card.h"
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
@@ -21,6 +23,7 @@
 #include "lcmtypes/pointing.h"
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
+#include "sync/log_feed.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/pose_history.h"
@@ -47,7 +50,46 @@ constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
+constexpr sync::Nanoseconds kRingOn{1'000'000'000};      // after the end of a log (design)
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
+
+// A log in place of bus and card.
+struct Offline {
+  Offline(const std::string& log, std::string wav_path, sync::NodeOptions& options)
+      : feed(log, kAudio.rate_Hz), wav(std::move(wav_path)) {
+    options.bus = feed.bus(), options.run_id = feed.run_id(), options.realtime = "off";
+  }
+  audio::OpenCard open() {
+    return [this](const audio::StreamOptions& options, audio::Card::Render render) {
+      if (card) throw std::runtime_error("the log changes rate, period, ceiling or instructions midway; give them with --set");
+      auto made = std::make_unique<audio::FileCard>(options, wav, std::move(render));
+      card = made.get();
+      return made;
+    };
+  }
+  void say_progress(sync::HostTime now) {
+    const sync::HostTime clock = sync::host_now();
+    if (clock - said < std::chrono::seconds(1)) return;
+    said = clock;
+    std::cerr << kAudio.node << ": " << std::llround(1e2 * sync::to_seconds(now - feed.begin()) / sync::to_seconds(kRingOn + (feed.end() - feed.begin())))
+              << " % of the log" << std::endl;
+  }
+  void say_result(double rate_Hz, std::int64_t hits) const {
+    if (!card) throw std::runtime_error("the log has no scene; give one that scripts/run wrote from its beginning");
+    const double sound_s = static_cast<double>(card->frames()) / rate_Hz, took_s = sync::to_seconds(sync::host_now() - began);
+    std::cerr << kAudio.node << ": " << wav << ": " << sound_s << " s of sound, " << hits << " hits, in " << took_s << " s ("
+              << std::llround(sound_s / took_s) << " times as fast as time); its first sample was out at "
+              << sync::to_ns(*card->start()) << " ns" << std::endl;
+    if (feed.damaged_regions() > 0)
+      std::cerr << kAudio.node << ": skipped damage of the log: " << feed.damaged_regions() << " regions, "
+                << feed.damaged_bytes() << " bytes" << std::endl;
+  }
+
+  sync::LogFeed feed;
+  std::string wav;
+  const audio::FileCard* card = nullptr;
+  sync::HostTime began = sync::host_now(), said = began;
+};
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
   media_clock_t m{};
@@ -63,11 +105,16 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaP
 
 int main(int argc, char** argv) try {
   sync::NodeOptions options;
-  std::string device;
+  std::string device, log, wav;
   CLI::App app;
   options.add_to(app, kAudio);
   app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
+  app.add_option("--log", log, "renders this log of a run instead of what is on the bus, as fast as it can; needs --wav");
+  app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
   sync::parse_or_exit(app, kAudio.node, argc, argv);
+  if (!log.empty() && wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  std::optional<Offline> offline;
+  if (!log.empty()) offline.emplace(log, wav, options);
 
   audio::Settings checked;
   const auto refused =
@@ -86,7 +133,7 @@ int main(int argc, char** argv) try {
   int head_tool = -1;  // of the scene; -1: the ear stays
   sync::ContactStream contacts(node.bus().clocks());
   sync::BodyHistory bodies(node.bus().clocks());
-  audio::Output output(options.out, device, kCallbackPriority);
+  audio::Output output(options.out, device, kCallbackPriority, offline ? offline->open() : audio::OpenCard{});
   std::unique_ptr<audio::Impacts> impacts;
   std::unique_ptr<audio::Sliding> sliding;
   std::unique_ptr<audio::Sampler> sampler;
@@ -124,10 +171,11 @@ int main(int argc, char** argv) try {
     return m ? audio::extent_of(*m) : std::nullopt;
   };
   configure({});
-  const sync::HostTime started = sync::host_now();
+  const sync::HostTime started = offline ? offline->feed.begin() : sync::host_now();
+  std::int64_t hits = 0;
 
-  while (node.running()) {
-    const sync::HostTime now = node.wait();
+  while (node.running() && !(offline && offline->feed.over(kRingOn))) {
+    const sync::HostTime now = offline ? offline->feed.next(node.bus()) : node.wait();
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
@@ -144,6 +192,7 @@ int main(int argc, char** argv) try {
         return audio::read_surfaces(of, pictures);
       });
     }
+    while (offline && surfaces && !surfaces->done()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (surfaces && surfaces->done()) {
       const std::shared_ptr<const audio::HeardSurfaces> heard = surfaces->take();
       surfaces.reset();
@@ -155,10 +204,14 @@ int main(int argc, char** argv) try {
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
     if (auto unread = output.library().step(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+    while (offline && output.library().reading()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      output.library().step();
+    }
     if (sampler) sampler->play(output.library().database(), output.library().number());
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
-    const bool plays = (impacts || now - started > kOpenAnyway) && output.keep_open(now);
+    const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
@@ -169,6 +222,7 @@ int main(int argc, char** argv) try {
     if (const auto map = contacts.map(now); map && impacts) {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
+        ++hits;
         const sync::HostTime scheduled =
             sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
         // One that is lost hears from where it was.
@@ -211,6 +265,7 @@ int main(int argc, char** argv) try {
     for (const std::string& news : output.library().news()) std::cerr << kAudio.node << ": " << news << std::endl;
     if (sampler)
       for (const std::string& news : sampler->news()) std::cerr << kAudio.node << ": " << news << std::endl;
+    if (offline) offline->say_progress(now);
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
     const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);
@@ -223,6 +278,7 @@ int main(int argc, char** argv) try {
     node.set_quality(output.quality(), static_cast<int>(audio::kQualities.size()));
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());
   }
+  if (offline) offline->say_result(output.settings().sample_rate_Hz, hits);
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("audio_node", e);

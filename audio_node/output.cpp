@@ -27,13 +27,14 @@ Instructions instructions_of(const Settings& settings) {
 
 }  // namespace
 
-Output::Output(std::string folder, std::string device, int fifo_priority)
+Output::Output(std::string folder, std::string device, int fifo_priority, OpenCard open)
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
       crossing_(std::make_shared<Crossing>()),
       scrapes_(*crossing_),
-      library_(crossing_->recorded) {}
+      library_(crossing_->recorded),
+      open_(std::move(open)) {}
 
 void Output::configure(Settings settings) {
   if (!device_.empty()) settings.device = device_;
@@ -44,7 +45,10 @@ void Output::configure(Settings settings) {
 }
 
 bool Output::keep_open(sync::HostTime now) {
-  if (stream_ && stream_->alive(now)) return true;
+  if (stream_ && stream_->alive(now)) {
+    stream_->play_until(now);
+    return true;
+  }
   if (stream_) {
     trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
     close();
@@ -73,6 +77,13 @@ void Output::begin_to_open(sync::HostTime now) {
                               settings_.latency_periods,
                               folder_,
                               fifo_priority_};
+  if (open_) {
+    stream_ = open_(options, [crossing = crossing_, renderer = renderer_](float* out, int frames, const BlockTime& time) {
+      renderer->render(out, frames, time);
+    });
+    medium_ = stream_->medium();
+    return;
+  }
   opening_.emplace([options, crossing = crossing_, renderer = renderer_] {
     return std::make_unique<Stream>(options, [crossing, renderer](float* out, int frames, const BlockTime& time) {
       renderer->render(out, frames, time);

@@ -16,8 +16,9 @@ namespace tactus::audio {
 
 class Output {
  public:
-  // device: replaces the setting of that name unless empty.
-  Output(std::string folder, std::string device, int fifo_priority);
+  // device: replaces the setting of that name unless empty. open: what it plays on instead of a sound card; opened at
+  // once, and what it throws leaves keep_open().
+  Output(std::string folder, std::string device, int fifo_priority, OpenCard open = {});
 
   // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the
   // limits.
@@ -83,8 +84,9 @@ class Output {
   ScrapeLine scrapes_;             // goes after the stream, whose callback reads what it keeps
   Library library_;                // as well
   std::optional<Orders> ordered_;  // what the renderer has been told; nothing: it is new
+  OpenCard open_;  // none: a Stream
   std::optional<sync::Opening<Stream>> opening_;
-  std::unique_ptr<Stream> stream_;
+  std::unique_ptr<Card> stream_;
   std::deque<presentation_t> unsounded_;
 };
 

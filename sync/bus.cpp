@@ -108,6 +108,7 @@ std::string lcm_url(const BusOptions& o, int port) {
 
 Bus::Bus(Identity identity, const BusOptions& options)
     : identity_(std::move(identity)), maps_(identity_.run_id), connections_(std::make_unique<Connections>()) {
+  if (options.clock != 0) identity_.clock = options.clock;
   Connections& c = *connections_;
   c.realtime = c.bulk = open(lcm_url(options, options.port), identity_);
   if (options.memory) return;
@@ -179,6 +180,14 @@ void Bus::drain(HostTime now) {
     return c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) { c.hear(side, m); });
   int left = kMaxDrain;
   while (left > 0 && c.realtime->handleTimeout(0) > 0) --left;
+}
+
+void Bus::hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival) {
+  const auto hears = [&](InboxBase& inbox) {
+    if (inbox.count().channel == channel) inbox.accept(data.data(), data.size(), arrival);
+  };
+  for (const auto& inbox : inboxes_) hears(*inbox);
+  if (map_inbox_) hears(*map_inbox_);
 }
 
 void Bus::wait(Nanoseconds at_most) {

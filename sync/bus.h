@@ -6,7 +6,9 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lcmtypes/channels.h"
@@ -21,7 +23,8 @@ struct BusOptions {
   std::string group = channels::kGroup;
   int port = channels::kDefaultPort;  // bulk is the next one
   int ttl = 0;                        // 0: never leaves this machine
-  bool memory = false;                // within this process only, for tests: no network
+  bool memory = false;                // within this process only, for tests and logs: no network
+  std::int32_t clock = 0;             // of the machine that a log was recorded on; 0: this process reads its own
 };
 
 enum class Port { kRealtime, kBulk, kBoth };
@@ -53,6 +56,8 @@ class Bus {
   // Hands everything that has arrived to the inboxes, at most kMaxDrain messages, without waiting.
   void drain(HostTime now);
   static constexpr int kMaxDrain = 8192;
+  // What somebody else has received, as a recorder did: to the inboxes of that channel.
+  void hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival);
   // For processes that are driven by events: waits until something arrives, at most so long.
   void wait(Nanoseconds at_most);
 

@@ -2,50 +2,35 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
-#include "audio_node/capture.h"
+#include "audio_node/device/card.h"
 #include "audio_node/device/dac_clock.h"
 #include "audio_node/device/sound_system.h"
-#include "audio_node/renderer.h"
 #include "sync/realtime.h"
 
 struct PaStreamCallbackTimeInfo;  // of PortAudio, whose header stays in stream.cpp
 
 namespace tactus::audio {
 
-struct StreamOptions {
-  std::string device =
-      "default";  // default: a real card, else the virtual one; virtual; or part of a device's name
-  int rate_Hz = 48000;
-  int period_frames = 128;
-  double latency_periods = 2;  // asked of the card; more is safer and later
-  std::string folder = ".";    // where audio.wav goes
-  int fifo_priority = 0;       // of the callback, where the process runs under FIFO; 0: leave it
-};
-
 // One stream, from opening to closing; everything it plays is in its WAV file.
-class Stream {
+class Stream : public Card {
  public:
-  using Render = std::function<void(float* stereo, int frames, const BlockTime& time)>;
-
   // Throws std::runtime_error with one sentence. render is called in the callback's thread and must be
   // realtime-safe.
   Stream(const StreamOptions& options, Render render);
-  ~Stream();
+  ~Stream() override;
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
   // False when the card has gone or its callbacks have stopped for half a second.
-  bool alive(sync::HostTime now) const;
-  std::int64_t callbacks() const { return callbacks_.load(std::memory_order_relaxed); }
-  std::int64_t underflows() const { return underflows_.load(std::memory_order_relaxed); }
-  const std::string& card() const { return card_; }      // name for people
-  const std::string& medium() const { return medium_; }  // name of the WAV file in the folder
-  std::optional<MediaPair> next_pair();
+  bool alive(sync::HostTime now) const override;
+  std::int64_t callbacks() const override { return callbacks_.load(std::memory_order_relaxed); }
+  std::int64_t underflows() const override { return underflows_.load(std::memory_order_relaxed); }
+  const std::string& card() const override { return card_; }
+  const std::string& medium() const override { return medium_; }
+  std::optional<MediaPair> next_pair() override;
 
  private:
   struct PortAudio;  // initialised as long as it lives

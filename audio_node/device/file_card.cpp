@@ -1,0 +1,59 @@
+#include "audio_node/device/file_card.h"
+
+#include <sndfile.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace tactus::audio {
+namespace {
+
+constexpr int kChannels = 2;
+
+}  // namespace
+
+FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render render)
+    : wav_(wav),
+      render_(std::move(render)),
+      rate_Hz_(options.rate_Hz),
+      period_frames_(options.period_frames),
+      ahead_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
+      block_(static_cast<std::size_t>(options.period_frames * kChannels)),
+      file_(nullptr, sf_close) {
+  SF_INFO info{};
+  info.samplerate = options.rate_Hz;
+  info.channels = kChannels;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  file_.reset(sf_open(wav.c_str(), SFM_WRITE, &info));
+  if (!file_) throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
+  // The peak chunk holds the time of day, which would make two equal runs differ.
+  sf_command(file_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
+}
+
+FileCard::~FileCard() = default;
+
+sync::HostTime FileCard::out_at(std::int64_t frame) const {
+  const std::int64_t seconds = frame / rate_Hz_, rest = frame % rate_Hz_;
+  return *start_ + sync::Nanoseconds(seconds * 1'000'000'000 + rest * 1'000'000'000 / rate_Hz_);
+}
+
+void FileCard::play_until(sync::HostTime now) {
+  if (!start_) start_ = now;
+  while (out_at(frames()) <= now + ahead_) {
+    const sync::HostTime first = out_at(frames());
+    if (frames() >= next_pair_frame_) {
+      pair_ = {frames(), sync::to_ns(first), frames() == 0 ? MediaPair::kStart : MediaPair::kPeriodic, 0};
+      next_pair_frame_ += rate_Hz_;
+    }
+    // How long rendering took depends on the machine: not told, so the quality is full, or what the setting says.
+    render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
+    if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
+      throw std::runtime_error("cannot write on in " + wav_ + " (" + sf_strerror(file_.get()) +
+                               "); free some disk or choose another --wav");
+    ++blocks_;
+  }
+}
+
+std::optional<MediaPair> FileCard::next_pair() { return std::exchange(pair_, std::nullopt); }
+
+}  // namespace tactus::audio

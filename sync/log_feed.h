@@ -1,0 +1,53 @@
+// A log in place of the bus: hands what was recorded to the inboxes, tick by tick, at the recorder's times, so that a
+// node renders it as it would have rendered the run, as fast as it can. Pure but for the mapping of the file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tactus/log_info_t.hpp>
+
+#include "sync/bus.h"
+#include "sync/log_reader.h"
+#include "sync/summary_clock.h"
+
+namespace tactus::sync {
+
+class LogFeed {
+ public:
+  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no run that our recorder has
+  // written.
+  LogFeed(const std::string& path, double rate_Hz);
+
+  // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour would.
+  std::int64_t run_id() const { return info_.header.run_id; }
+  std::int32_t clock() const { return info_.header.clock; }
+  // That node's options: in memory, with the run and the clock of the log.
+  BusOptions bus() const;
+
+  // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of the
+  // recorder.
+  HostTime next(Bus& bus);
+  // All has been handed over, and `after` has passed since.
+  bool over(Nanoseconds after) const { return now_ >= end_ + after; }
+
+  HostTime begin() const { return begin_; }
+  HostTime end() const { return end_; }
+  // Of the whole log.
+  std::int64_t events() const { return whole_.events(); }
+  std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
+  std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
+
+ private:
+  HostTime arrival(const LogEvent& event);
+
+  MappedFile file_;
+  LogScanner whole_, scanner_;
+  SummaryClock clock_;
+  LogEvent pending_;
+  bool has_pending_ = false;
+  log_info_t info_{};
+  HostTime begin_{}, end_{}, now_{};
+  Nanoseconds period_;
+};
+
+}  // namespace tactus::sync
