@@ -14,7 +14,7 @@ namespace tactus::audio {
 // constructor.
 class Shots {
  public:
-  static constexpr int kMost = 64;  // at a time, as bodies
+  static constexpr int kMost = 64;  // impacts at a time, as bodies
 
   explicit Shots(double rate_Hz);
 
@@ -32,13 +32,18 @@ class Shots {
   static constexpr int kFading = 16;        // that give way while others sound (design)
   static constexpr double kFade_s = 0.005;  // shorter is heard as a click (design)
 
-  struct Voice {
+  struct Playing {
     Shot shot;
+    double at = 0;  // in the recording
+  };
+  // Those of one impact, summed before they are heard from its place.
+  struct Voice {
+    std::array<Playing, 4> shots;
+    bool on = false;
     std::int64_t database = 0;
     Place place;
     Ears ears;
     int begin = 0;  // frames until it starts
-    double at = 0;  // in the recording
     bool fades = false;
     float fade = 1;
     float level = 0;  // largest of the last block, as heard
@@ -46,6 +51,7 @@ class Shots {
   Voice& free_voice();
   void leave_room();
   void render(Voice& voice, float* mix, int frames) const;
+  static bool play(Playing& playing, float* out, int frames);
 
   float fade_step_;
   std::vector<Voice> voices_;
