@@ -185,6 +185,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   const double impulse = mass * speed * (1 + std::clamp(std::min(a.restitution, b.restitution), 0.0, 1.0));
   const double length_s = std::min(settings_.longest_contact_s, contact_time_s(mass, curvature, speed, a, b));
 
+  strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
   strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
   const Place place = place_of(listener_, point, settings_.nearest_m);

@@ -18,6 +18,7 @@
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/output.h"
+#include "audio_node/samples/sampler.h"
 #include "audio_node/sliding.h"
 #include "lcmtypes/pointing.h"
 #include "sync/body_history.h"
@@ -28,6 +29,7 @@
 #include "sync/pose_history.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
+#include "sync/setting_changes.h"
 
 using namespace tactus;
 
@@ -134,9 +136,20 @@ int main(int argc, char** argv) try {
   audio::Output output(options.out, device, kCallbackPriority, offline ? offline->open() : audio::OpenCard{});
   std::unique_ptr<audio::Impacts> impacts;
   std::unique_ptr<audio::Sliding> sliding;
+  std::unique_ptr<audio::Sampler> sampler;
   std::optional<sync::Opening<audio::HeardSurfaces>> surfaces;
   sync::HostTime slid_at{};
   std::int64_t scenes = 0;
+
+  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
+  sync::SettingChanges changes(options.name, options.run_id);
+  audio::Settings own;  // what scene and command line say
+  const auto change = [&](const std::string& name, const std::string& value) {
+    audio::Settings changed = output.settings();
+    sync::change_live(changed, own, audio::setting_fields(), name, value);
+    output.configure(changed);
+    if (sampler) sampler->configure(changed);
+  };
 
   // What a scene has wrong keeps its default and is said once.
   const auto configure = [&](const std::vector<setting_t>& from_scene) {
@@ -148,6 +161,7 @@ int main(int argc, char** argv) try {
       std::cerr << kAudio.node << ": this machine has no " << settings.instructions << " instructions; it computes with "
                 << audio::name(audio::available_instructions().back()) << std::endl;
     output.configure(settings);
+    own = output.settings();
     sense.set_own_delay(sync::from_seconds(settings.presentation_delay_s));
     sense.set_output_latency(output.latency());
   };
@@ -170,6 +184,7 @@ int main(int argc, char** argv) try {
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
+      sampler = std::make_unique<audio::Sampler>(*scene.scene(), output.settings());
       sliding.reset();
       output.hear(nullptr);
       surfaces.emplace([of = *scene.scene(), pictures = sync::pictures_of(scene)] {
@@ -187,6 +202,15 @@ int main(int argc, char** argv) try {
     // Of scenes that are over: tables of 200 MB take 20 ms to free.
     if (auto unread = output.take_unread(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+    if (auto unread = output.library().step(); !unread.empty())
+      std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+    while (offline && output.library().reading()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      output.library().step();
+    }
+    if (sampler) sampler->play(output.library().database(), output.library().number());
+    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
+    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
@@ -204,23 +228,32 @@ int main(int argc, char** argv) try {
         // One that is lost hears from where it was.
         if (const auto ear = head.at(scheduled); head_tool >= 0 && ear.how != sync::How::kNone)
           impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
-        output.submit(impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
+        audio::Strike strike = impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
           const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
           if (pose.how == sync::How::kNone) return std::nullopt;
           return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
-        }));
+        });
+        sampler->record(strike, event, *impacts);
+        output.submit(strike);
       }
     }
-    if (const auto map = contacts.map(now); map && sliding && sliding->any()) {
+    if (const auto map = contacts.map(now); map && sampler && (sampler->plays() || (sliding && sliding->any()))) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
-      if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone)
-        sliding->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
+      if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone) {
+        const auto listener = listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation));
+        if (sliding) sliding->hear_from(listener);
+        sampler->hear_from(listener);
+      }
       const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
       contacts.keep(sense.delay());
       bodies.keep(sense.delay());
-      for (const audio::Scrape& scrape :
-           sliding->scrapes(contacts.state_at(t).value, t, heard_at, sync::to_seconds(now - slid_at)))
-        output.submit(scrape);
+      const sync::Contacts lasting = contacts.state_at(t).value;
+      for (const audio::Rub& rub : sampler->rubs(lasting, heard_at)) output.submit(rub);
+      if (sliding)
+        for (audio::Scrape scrape : sliding->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at))) {
+          scrape.level *= sampler->modal_of(scrape.id);
+          output.submit(scrape);
+        }
       slid_at = now;
     }
     while (const auto report = output.next_report()) {
@@ -229,6 +262,9 @@ int main(int argc, char** argv) try {
     }
     while (const auto pair = output.next_pair()) publish_pair(node.bus(), output.medium(), *pair);
     sense.publish(now);
+    for (const std::string& news : output.library().news()) std::cerr << kAudio.node << ": " << news << std::endl;
+    if (sampler)
+      for (const std::string& news : sampler->news()) std::cerr << kAudio.node << ": " << news << std::endl;
     if (offline) offline->say_progress(now);
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 

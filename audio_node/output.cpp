@@ -1,5 +1,6 @@
 #include "audio_node/output.h"
 
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -32,6 +33,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
       fifo_priority_(fifo_priority),
       crossing_(std::make_shared<Crossing>()),
       scrapes_(*crossing_),
+      library_(crossing_->recorded),
       open_(std::move(open)) {}
 
 void Output::configure(Settings settings) {
@@ -39,6 +41,7 @@ void Output::configure(Settings settings) {
   if (stream_ && !same_stream(settings, settings_)) close();
   settings_ = std::move(settings);
   retry_at_ = {};
+  library_.configure(settings_);
 }
 
 bool Output::keep_open(sync::HostTime now) {
@@ -60,9 +63,12 @@ bool Output::keep_open(sync::HostTime now) {
 void Output::begin_to_open(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  const RendererDef def{settings_.sample_rate_Hz, settings_.period_frames, settings_.limiter_ceiling,
+  const RendererDef def{settings_.sample_rate_Hz,
+                        settings_.period_frames,
+                        settings_.limiter_ceiling,
                         late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s)),
-                        instructions_of(settings_)};
+                        instructions_of(settings_),
+                        [] { return sync::to_ns(sync::host_now()); }};
   renderer_ = std::make_shared<Renderer>(*crossing_, def);
   ordered_.reset();
   const StreamOptions options{settings_.device,
@@ -154,7 +160,20 @@ std::string Output::note() const {
   if (!stream_) return trouble_.empty() ? "sound card not opened yet" : trouble_;
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows";
+         " underflows" + costs();
+}
+
+std::string Output::costs() const {
+  std::string text;
+  for (std::size_t i = 0; i < crossing_->costs.size(); ++i) {
+    const std::int64_t contacts = crossing_->costs[i].contacts.load(std::memory_order_relaxed);
+    if (contacts == 0) continue;
+    const double us = 1e-3 * static_cast<double>(crossing_->costs[i].ns.load(std::memory_order_relaxed)) /
+                      static_cast<double>(contacts);
+    text +=
+        std::string(", ") + (i == 0 ? "modal " : "samples ") + std::to_string(std::lround(us)) + " us a contact";
+  }
+  return text;
 }
 
 }  // namespace tactus::audio

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "audio_node/device/stream.h"
+#include "audio_node/samples/library.h"
 #include "audio_node/scrape_line.h"
 #include "audio_node/settings.gen.h"
 #include "sync/opening.h"
@@ -40,6 +41,11 @@ class Output {
   void submit(const Scrape& scrape) {
     if (stream_) scrapes_.submit(scrape);
   }
+  void submit(const Rub& rub) {
+    if (stream_) crossing_->recorded.rubs.push(rub);
+  }
+  // The recordings that are played. What crosses must be of its newest database.
+  Library& library() { return library_; }
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
@@ -56,6 +62,8 @@ class Output {
   sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
+  // What each way of making sound costs a contact, in words; empty while nothing has sounded.
+  std::string costs() const;
   // Step of the quality ladder in use.
   int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
 
@@ -74,6 +82,7 @@ class Output {
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
   ScrapeLine scrapes_;             // goes after the stream, whose callback reads what it keeps
+  Library library_;                // as well
   std::optional<Orders> ordered_;  // what the renderer has been told; nothing: it is new
   OpenCard open_;  // none: a Stream
   std::optional<sync::Opening<Stream>> opening_;

@@ -52,6 +52,8 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       late_(def.late),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions)),
       scrapes_(def.rate_Hz),
+      recorded_(crossing.recorded, def.rate_Hz),
+      clock_ns_(def.clock_ns),
       scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz),
@@ -98,6 +100,7 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
 void Renderer::render(float* stereo, int frames, const BlockTime& time) {
   const FlushToZero guard;
   take_orders();
+  recorded_.take_databases();
   adapt(frames, time.used);
   Strike strike;
   while (crossing_.strikes.pop(strike))
@@ -106,6 +109,7 @@ void Renderer::render(float* stereo, int frames, const BlockTime& time) {
     render_some(stereo + 2 * done, std::min(kMaxBlock, frames - done),
                 {time.first_sample + samples(done), time.uncertainty, {}});
   let_go_of_scrapes();
+  recorded_.let_go(scheduler_);
 }
 
 void Renderer::abandon() {
@@ -116,6 +120,7 @@ void Renderer::abandon() {
   next_scrape_.reset();
   scrapes_.clear();
   let_go_of_scrapes();
+  recorded_.abandon(scheduler_);
 }
 
 // The block's frames are rendered now and leave the limiter kDelay frames later.
@@ -126,9 +131,17 @@ void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(stereo, stereo + 2 * frames, 0.f);
+  const std::int64_t begun = clock();
   voices_.render(stereo, frames);
+  const int scraping = scrapes_.active();
   take_scrapes(leaving.first_sample);
+  crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
   scrapes_.render(stereo, frames, leaving.first_sample);
+  const std::int64_t computed = clock();
+  const int rubs = recorded_.render(stereo, frames, leaving.first_sample);
+  crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
+  crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
+  crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < 2 * frames; ++n) stereo[n] *= open_[static_cast<std::size_t>(n / 2)];
   limiter_.process(stereo, frames);
 }
@@ -162,6 +175,10 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const auto nearest = static_cast<long>(std::floor(-sync::to_seconds(lateness) * rate_Hz_ + 0.5));
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
   for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
+  recorded_.begin(strike, gain, offset);
+  const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
+  crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
+  crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
   // The bodies ring on below the silence.
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));

@@ -9,6 +9,7 @@
 
 #include "audio_node/dropout.h"
 #include "audio_node/limiter.h"
+#include "audio_node/samples/recorded.h"
 #include "audio_node/scheduler.h"
 #include "audio_node/scrapes.h"
 #include "audio_node/spsc.h"
@@ -26,7 +27,7 @@ struct BlockTime {
 };
 
 // The quality ladder of sound.
-inline constexpr std::array<VoiceLimits, 3> kQualities{{{64, 1}, {64, 2}, {32, 4}}};
+inline constexpr std::array<VoiceLimits, 3> kQualities{{{128, 1}, {64, 2}, {32, 4}}};
 
 // What the node's loop wants of the callback; the newest counts.
 struct Orders {
@@ -34,6 +35,12 @@ struct Orders {
   int quality = -1;  // step of the ladder to hold; -1: by the time that blocks take
 
   bool operator==(const Orders&) const = default;
+};
+
+// What one way of making sound has cost so far.
+struct MethodCost {
+  std::atomic<std::int64_t> ns{0};        // of the callback's time; stays 0 without a clock
+  std::atomic<std::int64_t> contacts{0};  // impacts, and contacts that scrape or roll
 };
 
 // What crosses between the node's loop and the callback.
@@ -44,9 +51,11 @@ struct Crossing {
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+  RecordedCrossing recorded;
   Spsc<presentation_t> reports{4096};
   std::atomic<int> quality{0};  // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
+  std::array<MethodCost, 2> costs;  // of what is computed, of what is recorded
 };
 
 // A sound that comes late is weaker, to nothing at the limit: the ear would take its full strength for another
@@ -60,6 +69,7 @@ struct RendererDef {
   double ceiling = 0.9;
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
   Instructions instructions = available_instructions().back();
+  std::int64_t (*clock_ns)() = nullptr;  // to tell costs by; null: nobody asks
 };
 
 // Same strikes, same blocks, same times: the same samples to the bit.
@@ -78,6 +88,7 @@ class Renderer {
 
   int sounding() const { return voices_.active(); }
   int scraping() const { return scrapes_.active(); }
+  int recorded() const { return recorded_.active(); }
 
  private:
   void take_orders();
@@ -88,6 +99,7 @@ class Renderer {
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
+  std::int64_t clock() const { return clock_ns_ ? clock_ns_() : 0; }
 
   Crossing& crossing_;
   double rate_Hz_;
@@ -95,6 +107,8 @@ class Renderer {
   Scheduler scheduler_{512};
   Voices voices_;
   Scrapes scrapes_;
+  Recorded recorded_;
+  std::int64_t (*clock_ns_)();
   std::optional<Scrape> next_scrape_;  // taken, but not yet to be heard
   std::int64_t scrapes_taken_;         // out of the queue, with those of the renderers before
   Dropout dropout_;

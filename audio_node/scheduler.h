@@ -19,6 +19,11 @@ class Scheduler {
   bool push(const Strike& strike);
   // The earliest strike that is scheduled before `end`, or null. It stays valid until the next call.
   const Strike* pop_before(sync::HostTime end);
+  // Those that wait, in no order.
+  template <class F>
+  void for_each(F f) const {
+    for (const Entry& e : heap_) f(slots_[static_cast<std::size_t>(e.slot)]);
+  }
   int size() const { return static_cast<int>(heap_.size()); }
 
  private:

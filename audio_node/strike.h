@@ -7,6 +7,7 @@
 #include "audio_node/bank/ring.h"
 #include "audio_node/force_pulse.h"
 #include "audio_node/place.h"
+#include "audio_node/samples/shot.h"
 #include "sync/time.h"
 
 namespace tactus::audio {
@@ -46,6 +47,8 @@ struct Strike {
   ForcePulse pulse = one_hump(1);
   float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction
   std::array<StrikeSide, 2> sides;
+  float impulse_N_s = 0, speed_m_s = 0;  // of the blow
+  RecordedStrike recorded;
 };
 
 }  // namespace tactus::audio

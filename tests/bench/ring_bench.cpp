@@ -1,5 +1,7 @@
 // How many modes of a vibrating body ring at 48 kHz on one core, in blocks of 64: by a plain loop over modes and
-// samples, and by bank/ring.h with each set of instructions that this machine has; pushed, and ringing on freely.
+// samples, by STK's modal instrument where it is installed, and by bank/ring.h with each set of instructions that
+// this machine has; pushed, ringing on freely, and after a silence in which all of it has become too small to be a
+// number.
 //
 //   bin/ring_bench [--modes N] [--json FILE]
 #include <CLI/CLI.hpp>
@@ -10,9 +12,13 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "audio_node/bank/ring.h"
+#if defined(TACTUS_STK)
+#include "tests/bench/stk_bars.h"
+#endif
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -40,7 +46,7 @@ __attribute__((noinline)) void plain(const Ringing& m, const Push* pushes, int c
 // Median of rounds that take turns with the others, modes at 48 kHz.
 struct Way {
   std::string name;
-  Ring ring;
+  std::function<void(int pushes)> block;
   std::vector<double> modes = {};
   double median() {
     std::sort(modes.begin(), modes.end());
@@ -76,28 +82,39 @@ int main(int argc, char** argv) {
   for (int k = 0; k < kMaxBlock; ++k) force[k] = static_cast<float>(std::sin(k));
   const Push push{array(4), force};
 
-  std::printf("%-8s %-8s %14s %10s\n", "modes", "push", "modes / core", "ratio");
+  const auto bank_of = [&](Ring ring) {
+    return [&, ring](int pushes) {
+      std::fill(out, out + kMaxBlock, 0.f);
+      ring(bank, &push, pushes, kMaxBlock, out);
+    };
+  };
+  constexpr int kBlocks = 20;
+  const auto timed = [&](Way& way, int pushes) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int k = 0; k < kBlocks; ++k) way.block(pushes);
+    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    way.modes.push_back(modes * kBlocks * kMaxBlock / kRate_Hz / took_s);
+  };
+
+  std::printf("%-8s %-8s %14s %10s\n", "modes", "state", "modes / core", "ratio");
   nlohmann::json rows = nlohmann::json::array();
-  for (const int pushes : {1, 0}) {
-    std::vector<Way> ways{{"plain", plain}};
-    for (const Instructions i : available_instructions()) ways.push_back({name(i), ring(i)});
+  for (const std::string state : {"pushed", "free", "silent"}) {
+    std::vector<Way> ways{{"plain", bank_of(plain)}};
+#if defined(TACTUS_STK)
+    StkBars bars(modes, kRate_Hz);
+    if (state != "silent") ways.push_back({"stk", [&](int pushes) { bars.block(kMaxBlock, pushes > 0); }});
+#endif
+    for (const Instructions i : available_instructions()) ways.push_back({name(i), bank_of(ring(i))});
+    if (state == "silent")  // 20 s at 10 / s: e^-200
+      for (int k = 0; k < 20 * kRate_Hz / kMaxBlock; ++k) ways.back().block(0);
     for (int round = 0; round < 41; ++round)
-      for (Way& way : ways) {
-        const auto begin = std::chrono::steady_clock::now();
-        constexpr int kBlocks = 20;
-        for (int k = 0; k < kBlocks; ++k) {
-          std::fill(out, out + kMaxBlock, 0.f);
-          way.ring(bank, &push, pushes, kMaxBlock, out);
-        }
-        const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        way.modes.push_back(modes * kBlocks * kMaxBlock / kRate_Hz / took_s);
-      }
+      for (Way& way : ways) timed(way, state == "pushed" ? 1 : 0);
     const double plainly = ways[0].median();
     for (Way& way : ways) {
-      const char* how = pushes ? "pushed" : "free";
-      std::printf("%-8s %-8s %14.0f %10.1f\n", way.name.c_str(), how, way.median(), way.median() / plainly);
+      std::printf("%-8s %-8s %14.0f %10.1f\n", way.name.c_str(), state.c_str(), way.median(),
+                  way.median() / plainly);
       rows.push_back(
-          {{"way", way.name}, {"push", how}, {"modes", way.median()}, {"ratio", way.median() / plainly}});
+          {{"way", way.name}, {"state", state}, {"modes", way.median()}, {"ratio", way.median() / plainly}});
     }
   }
   if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";

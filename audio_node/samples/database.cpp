@@ -1,0 +1,175 @@
+#include "audio_node/samples/database.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+namespace tactus::audio {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of all recordings in memory (design: half an hour at 48 kHz); what comes after is left out.
+constexpr std::size_t kMostBytes = std::size_t{350} << 20;
+
+// Sorted, so that the same folder gives the same takes everywhere.
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::vector<fs::path> all;
+  std::error_code error;
+  for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error))
+    all.push_back(i->path());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return text;
+}
+
+// "0.5", "0.5_2": the number up to what tells takes apart.
+std::optional<double> positive(const std::string& text) {
+  const std::string number = text.substr(0, text.find('_'));
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc{} || end != number.data() + number.size() || !(value > 0) || !(value < 1e3))
+    return std::nullopt;
+  return value;
+}
+
+std::optional<MaterialPair> materials_of(const std::string& folder) {
+  const auto dash = folder.find('-');
+  if (dash == std::string::npos) return MaterialPair{"", folder};
+  const std::string a = folder.substr(0, dash), b = folder.substr(dash + 1);
+  if (a.empty() || b.empty() || b.find('-') != std::string::npos) return std::nullopt;
+  return pair_of(a, b);
+}
+
+void even_out(Layers& layers, Interaction interaction) {
+  const auto loudness = [&](const Layer& layer) {
+    float most = 0;
+    for (const Recording& r : layer.takes)
+      most = std::max(most, interaction == Interaction::kImpact ? r.peak : r.rms);
+    return most;
+  };
+  const float fastest = loudness(layers.by_speed.back());
+  for (Layer& layer : layers.by_speed) layer.gain = fastest / loudness(layer);
+}
+
+class Reader {
+ public:
+  Reader(Database& into, double rate_Hz) : into_(into), rate_Hz_(rate_Hz) {}
+
+  void read_materials(const fs::path& folder, double size_m) {
+    const auto materials = materials_of(folder.filename().string());
+    if (!materials)
+      return blame(folder, "is named after no material and no pair; call it MATERIAL or MATERIAL-MATERIAL");
+    if (const auto own = size_of(folder)) size_m = *own;
+    for (const fs::path& inside : entries(folder)) {
+      const auto kind = std::find_if(kInteractions.begin(), kInteractions.end(),
+                                     [&](Interaction i) { return name(i) == inside.filename().string(); });
+      if (kind != kInteractions.end() && fs::is_directory(inside))
+        read_interaction(inside, {*materials, *kind}, size_m);
+      else if (inside.filename() != "size.txt")
+        blame(inside, "is not read; the folders of a pair are impact, scrape and roll");
+    }
+  }
+
+ private:
+  void blame(const fs::path& path, const std::string& what) {
+    into_.faults.push_back({path.string(), what, true});
+  }
+
+  std::optional<double> size_of(const fs::path& folder) {
+    std::ifstream file(folder / "size.txt");
+    std::string word;
+    if (!file || !(file >> word)) return std::nullopt;
+    const auto size = positive(word);
+    if (!size) blame(folder / "size.txt", "holds no size; give one number in metres");
+    return size;
+  }
+
+  void read_interaction(const fs::path& folder, const Database::Key& key, double size_m) {
+    std::map<double, Layer> layers;
+    bool any = false;
+    for (const fs::path& path : entries(folder)) {
+      any = true;
+      const std::string ending = lower(path.extension().string());
+      const auto speed = positive(path.stem().string());
+      if (ending != ".wav" && ending != ".flac") {
+        blame(path, "is neither WAV nor FLAC; convert it or take it away");
+      } else if (!speed) {
+        blame(path, "does not begin with a speed in m/s; call it 0.5.wav or 0.5_2.wav, for example");
+      } else if (into_.bytes > kMostBytes) {
+        blame(path, "is left out: the recordings before it fill 350 MB; take some away");
+      } else if (auto take = read_recording(path.string(), key.interaction, rate_Hz_, into_.faults)) {
+        into_.bytes += take->samples.size() * sizeof(float);
+        layers[*speed].takes.push_back(std::move(*take));
+      }
+    }
+    if (!any) blame(folder, "is empty; put recordings into it or take it away");
+    if (layers.empty()) return;
+    Layers& found = into_.sounds[key];
+    if (!found.by_speed.empty())
+      return blame(folder, "is there twice, as its materials are in the other order too; keep one of the two");
+    found.size_m = size_m;
+    for (auto& [speed, layer] : layers) {
+      layer.speed_m_s = speed;
+      found.by_speed.push_back(std::move(layer));
+    }
+    even_out(found, key.interaction);
+  }
+
+  Database& into_;
+  double rate_Hz_;
+};
+
+}  // namespace
+
+MaterialPair pair_of(const std::string& a, const std::string& b) {
+  return a < b ? MaterialPair{a, b} : MaterialPair{b, a};
+}
+
+const Layers* Database::of(const MaterialPair& materials, Interaction interaction) const {
+  const auto i = sounds.find({materials, interaction});
+  return i == sounds.end() ? nullptr : &i->second;
+}
+
+Database::Found Database::find(const std::string& a, const std::string& b, Interaction interaction) const {
+  Found found;
+  if (!a.empty() && !b.empty()) found.pair = of(pair_of(a, b), interaction);
+  if (found.pair) return found;
+  // A material on itself is that material alone.
+  const auto alone = [&](const std::string& m) -> const Layers* {
+    if (m.empty()) return nullptr;
+    const Layers* single = of({"", m}, interaction);
+    return single ? single : of({m, m}, interaction);
+  };
+  found.alone = {alone(a), a == b ? nullptr : alone(b)};
+  return found;
+}
+
+Database read_database(const std::string& folder, double rate_Hz, double size_m) {
+  Database database;
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    database.faults.push_back(
+        {folder, "is no folder of recordings; give another one as the setting sounds", true});
+    return database;
+  }
+  Reader reader(database, rate_Hz);
+  for (const fs::path& inside : entries(folder))
+    if (fs::is_directory(inside, error))
+      reader.read_materials(inside, size_m);
+    else if (const auto ending = lower(inside.extension().string()); ending == ".wav" || ending == ".flac")
+      database.faults.push_back({inside.string(), "lies beside the folders of materials; put it into one", true});
+  if (database.sounds.empty())
+    database.faults.push_back(
+        {folder, "holds no recording that can be played; see the README of the default set", true});
+  return database;
+}
+
+}  // namespace tactus::audio

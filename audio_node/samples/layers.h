@@ -1,0 +1,46 @@
+// Recordings of one sound at several speeds, as they are played: in memory, at the rate of the card. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tactus::audio {
+
+enum class Interaction : std::uint8_t { kImpact, kScrape, kRoll };
+inline constexpr std::array<Interaction, 3> kInteractions{Interaction::kImpact, Interaction::kScrape,
+                                                          Interaction::kRoll};
+// Its folder.
+std::string name(Interaction interaction);
+
+// One channel. A blow begins with its first sample, a loop goes on from its last sample with its first.
+struct Recording {
+  std::vector<float> samples;
+  float peak = 0, rms = 0;
+};
+
+struct Layer {
+  double speed_m_s = 1;
+  float gain = 1;  // makes it as loud as the fastest layer
+  std::vector<Recording> takes;
+};
+
+// Of one pair of materials and one interaction.
+struct Layers {
+  std::vector<Layer> by_speed;  // ascending, each with a take at least
+  double size_m = 0.05;         // of what was recorded: radius of a ball of the same extent
+};
+
+// Of a speed: the layers about it, and how much of each. Powers add up to 1, as recordings that are not alike do
+// (equal-power crossfade over the logarithm of the speed; design).
+struct LayerMix {
+  std::array<int, 2> layer{-1, -1};  // -1: none
+  std::array<float, 2> gain{};
+};
+LayerMix mix_of(const Layers& layers, double speed_m_s);
+
+// The same number gives the same take; others another, evenly. Realtime-safe: yes.
+const Recording& take_of(const Layer& layer, std::int64_t number);
+
+}  // namespace tactus::audio

@@ -1,0 +1,68 @@
+#include "audio_node/samples/library.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "sync/realtime.h"
+
+namespace tactus::audio {
+namespace {
+
+constexpr std::size_t kMostSaid = 5;  // faults of one database
+
+}  // namespace
+
+std::string sounds_folder(const std::string& setting) {
+  if (setting != "default" && !setting.empty()) return setting;
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sounds";
+}
+
+void Library::configure(const Settings& settings) {
+  if (settings.method == "modal") return;
+  wanted_ = Source{sounds_folder(settings.sounds), settings.sample_rate_Hz, settings.recorded_size_m};
+}
+
+void Library::use(std::unique_ptr<Database> database) {
+  std::string what =
+      "recordings of " + std::to_string(database->sounds.size()) + " sounds from " + reading_->folder;
+  news_.push_back(what);
+  for (std::size_t i = 0; i < database->faults.size(); ++i) {
+    if (i == kMostSaid) {
+      news_.push_back("and " + std::to_string(database->faults.size() - i) +
+                      " faults more; scripts/check_sounds names them all");
+      break;
+    }
+    news_.push_back(database->faults[i].path + " " + database->faults[i].what);
+  }
+  next_ = std::move(database);
+}
+
+std::vector<Library::Shared> Library::step() {
+  if (wanted_ && !opening_ && wanted_ != read_) {
+    reading_ = wanted_;
+    opening_.emplace([source = *reading_] {
+      sync::leave_realtime();
+      return std::make_unique<Database>(read_database(source.folder, source.rate_Hz, source.size_m));
+    });
+  }
+  if (opening_ && opening_->done()) {
+    use(opening_->take());
+    opening_.reset();
+    read_ = reading_;
+  }
+  // When the callback cannot be told yet, what was is played on.
+  if (next_ && crossing_.databases.push(told_ + 1)) {
+    if (now_) kept_.push_back({told_, std::move(now_)});
+    now_ = std::move(next_);
+    ++told_;
+  }
+  std::vector<Shared> unread;
+  const std::int64_t let_go = crossing_.let_go.load(std::memory_order_acquire);
+  while (!kept_.empty() && kept_.front().number < let_go) {
+    unread.push_back(std::move(kept_.front().database));
+    kept_.pop_front();
+  }
+  return unread;
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,103 @@
+#include "audio_node/samples/loops.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "audio_node/bank/ring.h"
+#include "audio_node/samples/interpolate.h"
+
+namespace tactus::audio {
+namespace {
+
+// A level goes to the next within so long. Design: shorter is heard as roughness when contacts are told at 1 kHz.
+constexpr double kLevel_s = 0.005;
+// A contact that is not told of any more fades. Design, as of scrapes: a few lost messages are no gap.
+constexpr sync::Nanoseconds kSilence{30'000'000};
+constexpr float kOver = 1e-6f;
+// An octave either way; beyond it a recording sounds of another material (design).
+constexpr double kLeastStep = 0.5, kMostStep = 2;
+
+}  // namespace
+
+bool Loops::take(const Rub& rub) {
+  if (!rub.layers) return false;
+  Voice* free = nullptr;
+  for (Voice& v : voices_) {
+    // Of another database it is another sound; the one before fades.
+    if (v.on && v.now.contact == rub.contact && v.now.part == rub.part && v.now.layers == rub.layers) {
+      v.now = rub;
+      return false;
+    }
+    if (!v.on && !free) free = &v;
+  }
+  if (!free) return false;
+  *free = Voice{};
+  free->on = true;
+  free->now = rub;
+  const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMostLayers));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Recording& r = take_of(rub.layers->by_speed[i], rub.contact);
+    // Contacts that begin together are not heard as one: each begins elsewhere in the loop.
+    const auto begin = static_cast<std::uint64_t>(rub.contact + 1) * 0x9E3779B97F4A7C15u % r.samples.size();
+    free->layers[i] = {&r, static_cast<double>(begin), 0};
+  }
+  return true;
+}
+
+void Loops::add(Playing& p, double step, float wanted, float* out, int frames) const {
+  const std::vector<float>& x = p.recording->samples;
+  const auto size = x.size();
+  const auto length = static_cast<double>(size);
+  const auto follow = static_cast<float>(1 - std::exp(-1 / (kLevel_s * rate_Hz_)));
+  for (int n = 0; n < frames; ++n) {
+    const auto i = std::min(static_cast<std::size_t>(p.at), size - 1);
+    const auto part = static_cast<float>(p.at - static_cast<double>(i));
+    p.level += follow * (wanted - p.level);
+    const std::size_t before = i == 0 ? size - 1 : i - 1, after = i + 1 < size ? i + 1 : 0;
+    const std::size_t later = after + 1 < size ? after + 1 : 0;
+    out[n] += p.level * between(x[before], x[i], x[after], x[later], part);
+    p.at += step;
+    if (p.at >= length) p.at -= length;
+  }
+}
+
+void Loops::render(Voice& v, float* mix, int frames, sync::HostTime first) const {
+  const bool told = first - v.now.at < kSilence;
+  const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
+  std::array<float, kMaxBlock> out{};
+  float level = 0;
+  for (std::size_t i = 0; i < v.layers.size(); ++i) {
+    Playing& p = v.layers[i];
+    if (!p.recording) break;
+    const Layer& layer = v.now.layers->by_speed[i];
+    float wanted = 0;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (told && mixed.layer[k] == static_cast<int>(i)) wanted = v.now.level * layer.gain * mixed.gain[k];
+    if (wanted <= 0 && p.level < kOver) {
+      p.level = 0;
+      continue;
+    }
+    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, out.data(), frames);
+    level = std::max(level, p.level);
+  }
+  v.ears.add(v.now.place, out.data(), mix, frames);
+  // The comparison also ends one that has become no number.
+  if (!told && !(level > kOver)) v.on = false;
+}
+
+void Loops::render(float* mix, int frames, sync::HostTime first) {
+  for (Voice& v : voices_)
+    if (v.on) render(v, mix, frames, first);
+}
+
+int Loops::active() const {
+  return static_cast<int>(std::count_if(voices_.begin(), voices_.end(), [](const Voice& v) { return v.on; }));
+}
+
+std::int64_t Loops::oldest(std::int64_t none) const {
+  for (const Voice& v : voices_)
+    if (v.on) none = std::min(none, v.now.database);
+  return none;
+}
+
+}  // namespace tactus::audio

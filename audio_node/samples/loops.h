@@ -1,0 +1,51 @@
+// The recordings of contacts that scrape or roll just now, each a loop as long as its contact lasts. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "audio_node/samples/ears.h"
+#include "audio_node/samples/shot.h"
+
+namespace tactus::audio {
+
+// Their layers go over into each other by the speed, and each is played as much faster as the contact is than it
+// was when it was recorded: what passes a relief twice as fast hears all of it an octave higher (van den Doel, Kry
+// and Pai 2001, section 4.2). Realtime-safe: yes.
+class Loops {
+ public:
+  static constexpr int kMost = 32;       // at a time; more are not heard
+  static constexpr int kMostLayers = 8;  // of one sound
+
+  explicit Loops(double rate_Hz) : rate_Hz_(rate_Hz) {}
+
+  // One that is to be heard from its instant on. True when it begins.
+  bool take(const Rub& rub);
+  // Adds `frames` <= kMaxBlock frames, left and right interleaved, the first of which is heard at `first`.
+  void render(float* mix, int frames, sync::HostTime first);
+
+  int active() const;
+  // Number of the oldest database that one of them is of; `none` when nothing sounds.
+  std::int64_t oldest(std::int64_t none) const;
+  void clear() { voices_ = {}; }
+
+ private:
+  struct Playing {
+    const Recording* recording = nullptr;
+    double at = 0;
+    float level = 0;  // goes to what is told
+  };
+  struct Voice {
+    Rub now;
+    bool on = false;
+    Ears ears;
+    std::array<Playing, kMostLayers> layers;
+  };
+  void render(Voice& voice, float* mix, int frames, sync::HostTime first) const;
+  void add(Playing& playing, double step, float wanted, float* out, int frames) const;
+
+  double rate_Hz_;
+  std::array<Voice, kMost> voices_;
+};
+
+}  // namespace tactus::audio

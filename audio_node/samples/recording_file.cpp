@@ -1,0 +1,111 @@
+#include "audio_node/samples/recording_file.h"
+
+#include <sndfile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "audio_node/samples/resample.h"
+
+namespace tactus::audio {
+namespace {
+
+constexpr double kLongest_s = 20;         // what is longer is cut (design: no blow rings on for so long)
+constexpr double kShortestBlow_s = 0.01;  // design: shorter is a click of no material
+constexpr double kShortestLoop_s = 0.25;  // design: shorter is heard as a hum of its repetitions
+constexpr float kOnset = 1e-3f;           // of the peak: before it, a blow has not begun (design: -60 dB)
+constexpr float kSilent = 1e-3f;          // of full scale: quieter is silence (design: -60 dBFS)
+constexpr float kFull = 0.9995f;  // of full scale: what so many samples in a row reach, is clipped (design)
+constexpr int kClipped = 4;
+constexpr double kEnd_s = 0.005;  // fade at the end of a blow (design: shorter is heard as a click)
+constexpr double kSeam_s = 0.05;  // of a loop, at most a quarter of it (design)
+constexpr float kLoudest = 10;    // of a float file: beyond it is no sound
+
+struct Close {
+  void operator()(SNDFILE* file) const { sf_close(file); }
+};
+
+bool clipped(const std::vector<float>& x) {
+  int in_a_row = 0;
+  for (const float s : x)
+    if (in_a_row = std::abs(s) >= kFull ? in_a_row + 1 : 0; in_a_row >= kClipped) return true;
+  return false;
+}
+
+float peak_of(const std::vector<float>& x) {
+  float peak = 0;
+  for (const float s : x) peak = std::max(peak, std::abs(s));
+  return peak;
+}
+
+}  // namespace
+
+std::vector<float> cut_blow(std::vector<float> x, double rate_Hz) {
+  const float onset = kOnset * peak_of(x);
+  const auto begin = std::find_if(x.begin(), x.end(), [&](float s) { return std::abs(s) > onset; });
+  x.erase(x.begin(), begin);
+  const auto fade = std::min(x.size(), static_cast<std::size_t>(kEnd_s * rate_Hz));
+  for (std::size_t i = 0; i < fade; ++i) x[x.size() - 1 - i] *= static_cast<float>(i) / static_cast<float>(fade);
+  return x;
+}
+
+std::vector<float> close_loop(std::vector<float> x, double rate_Hz) {
+  const auto seam = std::min(x.size() / 4, static_cast<std::size_t>(kSeam_s * rate_Hz));
+  const std::size_t length = x.size() - seam;
+  // Both parts are of the same noise but not alike: their powers add.
+  for (std::size_t i = 0; i < seam; ++i) {
+    const double angle = static_cast<double>(i) / static_cast<double>(seam) * std::numbers::pi / 2;
+    x[i] = static_cast<float>(std::sin(angle)) * x[i] + static_cast<float>(std::cos(angle)) * x[length + i];
+  }
+  x.resize(length);
+  return x;
+}
+
+std::optional<Recording> read_recording(const std::string& path, Interaction interaction, double rate_Hz,
+                                        std::vector<SoundFault>& faults) {
+  const auto refuse = [&](const std::string& what) {
+    faults.push_back({path, what, true});
+    return std::nullopt;
+  };
+  SF_INFO info{};
+  const std::unique_ptr<SNDFILE, Close> file(sf_open(path.c_str(), SFM_READ, &info));
+  if (!file)
+    return refuse("cannot be read as sound (" + std::string(sf_strerror(nullptr)) + "); give a WAV or FLAC");
+  if (info.channels < 1 || info.channels > 2)
+    return refuse("has " + std::to_string(info.channels) + " channels; give one or two");
+  if (info.samplerate < 8000 || info.samplerate > 192000)
+    return refuse("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
+  const auto most = static_cast<sf_count_t>(kLongest_s * info.samplerate);
+  if (info.frames > most) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
+  // Frames are counted as they come: a header may promise any number.
+  std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));
+  while (static_cast<sf_count_t>(x.size()) < most) {
+    const sf_count_t got = sf_readf_float(file.get(), block.data(), 4096);
+    if (got <= 0) break;
+    for (sf_count_t n = 0; n < got; ++n) {
+      const float* frame = &block[static_cast<std::size_t>(n * info.channels)];
+      x.push_back(info.channels == 1 ? frame[0] : 0.5f * (frame[0] + frame[1]));
+    }
+  }
+  if (!std::all_of(x.begin(), x.end(), [](float s) { return std::abs(s) <= kLoudest; }))
+    return refuse("holds samples that are no sound (no number, or far beyond full scale); record it anew");
+  if (peak_of(x) < kSilent) return refuse("is silent; record it louder or take it away");
+  if (clipped(x)) faults.push_back({path, "is clipped; record it with less gain", false});
+  const bool blow = interaction == Interaction::kImpact;
+  x = resample(x, info.samplerate, rate_Hz);
+  x = blow ? cut_blow(std::move(x), rate_Hz) : std::move(x);
+  const double length_s = static_cast<double>(x.size()) / rate_Hz;
+  if (blow && length_s < kShortestBlow_s) return refuse("is shorter than 10 ms; give the whole sound of the blow");
+  if (!blow && length_s < kShortestLoop_s)
+    return refuse("is shorter than 0.25 s, too short for a loop; give a second or more");
+  Recording r{blow ? std::move(x) : close_loop(std::move(x), rate_Hz), 0, 0};
+  r.peak = peak_of(r.samples);
+  double power = 0;
+  for (const float s : r.samples) power += static_cast<double>(s * s);
+  r.rms = static_cast<float>(std::sqrt(power / static_cast<double>(r.samples.size())));
+  return r;
+}
+
+}  // namespace tactus::audio

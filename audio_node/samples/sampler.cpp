@@ -1,0 +1,160 @@
+#include "audio_node/samples/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::audio {
+namespace {
+
+// Of a blow: louder than its recording by 12 dB at most, as computed ones are above the reference (design).
+constexpr double kMostLevel = 4;
+// An octave either way; beyond it a recording sounds of another material (design).
+constexpr double kLeastPitch = 0.5, kMostPitch = 2;
+// As for scrapes: below, nothing slides or rolls; beyond, nothing becomes louder or faster (design).
+constexpr double kLeastSpeed_m_s = 1e-3, kMostSpeed_m_s = 5, kMostForce_N = 50;
+constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
+
+// Of the bodies of a pair that whose size the ear takes for that of the sound: the smaller of those that move.
+double size_of(const BodySound& a, const BodySound& b) {
+  if (a.moves != b.moves) return a.moves ? a.radius_m : b.radius_m;
+  return std::min(a.radius_m, b.radius_m);
+}
+
+}  // namespace
+
+MethodGains gains_of(const Settings& s) {
+  if (s.method == "samples") return {0, 1};
+  if (s.method != "both") return {1, 0};
+  const double angle = s.mix * std::numbers::pi / 2;
+  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+}
+
+double level_of(double impulse_N_s, const Settings& s) {
+  const double relative = std::max(impulse_N_s, 0.0) / s.recorded_impulse_Ns;
+  return s.gain * s.recorded_level * std::min(kMostLevel, std::pow(relative, s.loudness_exponent));
+}
+
+double pitch_of(double size_m, double recorded_size_m) {
+  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMostPitch);
+}
+
+Sampler::Sampler(const scene_t& scene, const Settings& settings)
+    : settings_(settings), listener_(to_eigen(scene.listener)) {
+  for (const material_def_t& m : scene.materials) {
+    materials_.push_back(m.name);
+    mu_.push_back(m.friction_dynamic);
+  }
+}
+
+std::string Sampler::material(std::int32_t i) const {
+  return i >= 0 && static_cast<std::size_t>(i) < materials_.size() ? materials_[static_cast<std::size_t>(i)] : "";
+}
+
+void Sampler::say(const std::string& a, const std::string& b, Interaction interaction,
+                  const Database::Found& found) {
+  if (found.pair || !said_.insert({pair_of(a, b), interaction}).second) return;
+  const auto named = [](const std::string& m) { return m.empty() ? std::string("(no material)") : m; };
+  const std::string of = named(a) + " on " + named(b) + ": no recording of this " + name(interaction);
+  if (!found.any()) return news_.push_back(of + "; it is computed");
+  std::string materials = found.alone[0] ? a : b;
+  if (found.alone[0] && found.alone[1]) materials += " and of " + b;
+  news_.push_back(of + "; that of " + materials + " alone is played");
+}
+
+Database::Found Sampler::find(std::int32_t a, std::int32_t b, Interaction interaction) {
+  if (!plays()) return {};
+  const std::string of_a = material(a), of_b = material(b);
+  const Database::Found found = database_->find(of_a, of_b, interaction);
+  say(of_a, of_b, interaction, found);
+  return found;
+}
+
+void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts& impacts) {
+  const Database::Found found = find(event.material_a, event.material_b, Interaction::kImpact);
+  if (!found.any()) return;
+  const MethodGains method = gains_of(settings_);
+  const double level = level_of(static_cast<double>(strike.impulse_N_s), settings_);
+  const BodySound &a = impacts.body(event.body_a), &b = impacts.body(event.body_b);
+  std::size_t next = 0;
+  float peak = 0;
+  const auto add = [&](const Layers& layers, double size_m, float share) {
+    const LayerMix mix = mix_of(layers, static_cast<double>(strike.speed_m_s));
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (mix.layer[k] < 0) continue;
+      const Layer& layer = layers.by_speed[static_cast<std::size_t>(mix.layer[k])];
+      const Recording& take = take_of(layer, event.event_id);
+      const float gain = static_cast<float>(level) * share * layer.gain * mix.gain[k] * method.recorded;
+      strike.recorded.shots[next++] = {&take, gain, static_cast<float>(pitch_of(size_m, layers.size_m))};
+      peak += gain * take.peak;
+    }
+  };
+  if (found.pair) add(*found.pair, size_of(a, b), 1);
+  const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
+  if (found.alone[0]) add(*found.alone[0], a.radius_m, each);
+  if (found.alone[1]) add(*found.alone[1], b.radius_m, each);
+  strike.recorded.database = number_;
+  strike.recorded.place = strike.sides[0].place;
+  for (StrikeSide& side : strike.sides) {
+    side.impulse *= method.modal, side.click *= method.modal;
+    if (method.modal <= 0) side.voice = -1;  // costs nothing
+  }
+  // Both are known by their peaks; what is heard of them is no less than the louder.
+  const auto inaudible = static_cast<float>(settings_.inaudible_level);
+  const float computed = inaudible / std::max(strike.heard_from, 1e-12f) * method.modal;
+  strike.heard_from = inaudible / std::max({computed, peak / strike.recorded.place.distance_m, 1e-12f});
+}
+
+void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
+  const Database::Found found = find(c.material_a, c.material_b, interaction);
+  const std::array<const Layers*, 3> all{found.pair, found.alone[0], found.alone[1]};
+  const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i]) continue;
+    Rub r;
+    r.contact = c.contact_id;
+    r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
+    r.database = number_;
+    r.at = at;
+    r.layers = all[i];
+    r.speed_m_s = speed_m_s;
+    r.level = each * gains_of(settings_).recorded *
+              static_cast<float>(settings_.gain * settings_.recorded_level * level);
+    r.place = place_of(listener_, 0.5 * (to_eigen(c.points[0].a_world_m) + to_eigen(c.points[0].b_world_m)),
+                       settings_.nearest_m);
+    rubs_.push_back(r);
+    recorded_.insert(c.contact_id);
+  }
+}
+
+const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
+  rubs_.clear();
+  recorded_.clear();
+  if (!plays()) return rubs_;
+  const auto mu = [&](std::int32_t m) {
+    return m >= 0 && static_cast<std::size_t>(m) < mu_.size() ? mu_[static_cast<std::size_t>(m)] : 1.0;
+  };
+  for (const contact_t& c : contacts) {
+    if (c.points.empty()) continue;
+    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
+    const double slides = std::min(to_eigen(c.sliding_velocity_m_s).norm(), kMostSpeed_m_s);
+    const double rolls = std::min(to_eigen(c.rolling_velocity_m_s).norm(), kMostSpeed_m_s);
+    // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
+    if (slides >= kLeastSpeed_m_s) {
+      const double power_W = std::sqrt(mu(c.material_a) * mu(c.material_b)) * force_N * slides;
+      rub(c, Interaction::kScrape, slides, settings_.recorded_scrape_level * std::sqrt(power_W), at);
+    }
+    // The point of contact of a body that slides moves too: that is no rolling.
+    if (rolls >= kLeastSpeed_m_s && rolls > slides)
+      rub(c, Interaction::kRoll, rolls, settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
+  }
+  return rubs_;
+}
+
+float Sampler::modal_of(std::int64_t contact) const {
+  return recorded_.contains(contact) ? gains_of(settings_).modal : 1;
+}
+
+}  // namespace tactus::audio

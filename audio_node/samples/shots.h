@@ -1,0 +1,54 @@
+// The recordings of impacts that sound just now. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "audio_node/samples/ears.h"
+#include "audio_node/samples/shot.h"
+
+namespace tactus::audio {
+
+// A fixed number of them. When all are in use the quietest gives way and fades. Realtime-safe: yes, all but the
+// constructor.
+class Shots {
+ public:
+  static constexpr int kMost = 64;  // at a time, as bodies
+
+  explicit Shots(double rate_Hz);
+
+  // From the frame `offset` of the next render() on, `gain` as strong as it says.
+  void take(const RecordedStrike& strike, float gain, int offset);
+  // Adds `frames` <= kMaxBlock frames, left and right interleaved.
+  void render(float* mix, int frames);
+
+  int active() const;
+  // Number of the oldest database that one of them is of; `none` when nothing sounds.
+  std::int64_t oldest(std::int64_t none) const;
+  void clear();
+
+ private:
+  static constexpr int kFading = 16;        // that give way while others sound (design)
+  static constexpr double kFade_s = 0.005;  // shorter is heard as a click (design)
+
+  struct Voice {
+    Shot shot;
+    std::int64_t database = 0;
+    Place place;
+    Ears ears;
+    int begin = 0;  // frames until it starts
+    double at = 0;  // in the recording
+    bool fades = false;
+    float fade = 1;
+    float level = 0;  // largest of the last block, as heard
+  };
+  Voice& free_voice();
+  void leave_room();
+  void render(Voice& voice, float* mix, int frames) const;
+
+  float fade_step_;
+  std::vector<Voice> voices_;
+};
+
+}  // namespace tactus::audio

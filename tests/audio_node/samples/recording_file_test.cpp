@@ -1,0 +1,134 @@
+#include "audio_node/samples/recording_file.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/audio_node/samples/sounds.h"
+
+using namespace tactus::audio;
+using namespace tactus::audio::test;
+
+namespace {
+
+// What is said of a file; empty: nothing is wrong.
+std::string said(const std::string& path, Interaction interaction, bool* read = nullptr) {
+  std::vector<SoundFault> faults;
+  const auto r = read_recording(path, interaction, 48000, faults);
+  if (read) *read = r.has_value();
+  std::string all;
+  for (const SoundFault& f : faults) {
+    CHECK(f.path == path);
+    all += f.what;
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
+  const SoundFolder folder;
+  for (const std::string ending : {".wav", ".flac"})
+    for (const int rate : {22050, 44100, 48000, 96000}) {
+      CAPTURE(ending, rate);
+      std::vector<float> stereo;
+      for (const float s : tone(300, 0.3, 0.5, rate)) stereo.insert(stereo.end(), {s, s});
+      folder.write("a" + ending, stereo, rate, 2);
+      std::vector<SoundFault> faults;
+      const auto r = read_recording(folder.path() + "/a" + ending, Interaction::kScrape, 48000, faults);
+      REQUIRE(r);
+      CHECK(faults.empty());
+      // A root mean square of 0.5 / sqrt(2); the seam of 50 ms of 300 may add two tones by their phases, to 3 dB.
+      CHECK(r->rms == Approx(0.3536).epsilon(0.1));
+      CHECK(r->samples.size() == Approx(0.25 * 48000).margin(4));
+    }
+}
+
+TEST_CASE("A blow begins with its first sample, whatever silence was recorded before it") {
+  const SoundFolder folder;
+  std::vector<float> x(5000, 1e-5f);
+  const auto ring = tone(500, 0.2, 0.5, 48000, 20);
+  x.insert(x.end(), ring.begin(), ring.end());
+  folder.write("a.wav", x);
+  std::vector<SoundFault> faults;
+  const auto r = read_recording(folder.path() + "/a.wav", Interaction::kImpact, 48000, faults);
+  REQUIRE(r);
+  CHECK(faults.empty());
+  CHECK(r->samples.front() == 0.5f);
+  CHECK(r->samples.size() == ring.size());
+  CHECK(std::abs(r->samples.back()) < 1e-6f);  // it fades
+}
+
+TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
+  std::mt19937 random(3);
+  std::normal_distribution<float> normal(0, 0.2f);
+  std::vector<float> x(48000);
+  float low = 0;
+  // Noise through a low-pass: what is steady from sample to sample, so that a jump would stand out.
+  for (float& s : x) s = low += 0.05f * (normal(random) - low);
+  float inside = 0;
+  for (std::size_t n = 1; n < x.size(); ++n) inside = std::max(inside, std::abs(x[n] - x[n - 1]));
+  const auto loop = close_loop(x, 48000);
+  REQUIRE(loop.size() == 48000 - 2400);
+  // At the seam one follows the other as in the recording; in it, of two parts whose gains add up to sqrt(2) at
+  // most and turn by pi/2 in 2400 samples.
+  CHECK(std::abs(loop.front() - loop.back()) <= inside * 1.001f);
+  const float most =
+      *std::max_element(x.begin(), x.end(), [](float a, float b) { return std::abs(a) < std::abs(b); });
+  const float bound = std::sqrt(2.f) * inside + std::abs(most) * 1.4143f * 1.5708f / 2400;
+  for (std::size_t n = 1; n < loop.size(); ++n) REQUIRE(std::abs(loop[n] - loop[n - 1]) <= bound);
+}
+
+TEST_CASE("What cannot be played is refused with a sentence that says what to do") {
+  const SoundFolder folder;
+  const auto at = [&](const char* file) { return folder.path() + "/" + file; };
+  folder.text("empty.wav", "");
+  folder.text("text.wav", "This is a text, and no sound at all, though its name says so.\n");
+  folder.write("ten.wav", std::vector<float>(48000, 0.1f), 48000, 10);
+  folder.write("slow.wav", tone(100, 1, 0.5, 4000), 4000);
+  folder.write("silent.wav", std::vector<float>(48000, 1e-4f));
+  folder.write("click.wav", tone(4000, 0.005));
+  folder.write("short.wav", tone(400, 0.2));
+  auto nan = tone(400, 1);
+  nan[100] = std::numeric_limits<float>::quiet_NaN();
+  folder.write("nan.wav", nan);
+  nan[100] = std::numeric_limits<float>::infinity();
+  folder.write("inf.wav", nan);
+  using Catch::Contains;
+  CHECK_THAT(said(at("missing.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(said(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(said(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(said(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
+  CHECK_THAT(said(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
+  CHECK_THAT(said(at("silent.wav"), Interaction::kImpact), Contains("silent"));
+  CHECK_THAT(said(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
+  CHECK_THAT(said(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
+  CHECK_THAT(said(at("nan.wav"), Interaction::kRoll), Contains("no number"));
+  CHECK_THAT(said(at("inf.wav"), Interaction::kRoll), Contains("no number"));
+  for (const char* file : {"empty.wav", "text.wav", "ten.wav", "slow.wav", "silent.wav", "nan.wav"}) {
+    bool read = true;
+    said(at(file), Interaction::kImpact, &read);
+    CHECK_FALSE(read);
+  }
+}
+
+TEST_CASE("What is clipped is played all the same, and said") {
+  const SoundFolder folder;
+  auto x = tone(200, 0.5, 1.5);
+  for (float& s : x) s = std::clamp(s, -1.f, 1.f);
+  folder.write("a.wav", x);
+  bool read = false;
+  CHECK_THAT(said(folder.path() + "/a.wav", Interaction::kImpact, &read), Catch::Contains("clipped"));
+  CHECK(read);
+}
+
+TEST_CASE("A file that was cut off is read as far as it goes") {
+  const SoundFolder folder;
+  folder.write("a.wav", tone(200, 1));
+  std::filesystem::resize_file(folder.path() + "/a.wav", 100000);
+  bool read = false;
+  said(folder.path() + "/a.wav", Interaction::kImpact, &read);
+  CHECK(read);
+}
