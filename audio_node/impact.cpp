@@ -6,6 +6,7 @@
 
 #include "audio_node/measured_modes.h"
 #include "audio_node/peak.h"
+#include "audio_node/plausible.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -23,6 +24,8 @@ constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
 // Louder than the reference by 12 dB at most: the limiter is for surprises, not for every blow.
 constexpr double kMostAboveReference = 4;  // design
+// Of a strike that is not to be heard at any strength.
+constexpr float kNeverHeard = 2;
 
 // How well an oscillating ball of radius a radiates: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 +
 // (ka)^4) (the dipole field with the ball's velocity as boundary condition; Pierce, Acoustics, 1981, section 4.2).
@@ -168,6 +171,11 @@ ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const
 }
 
 Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose) const {
+  Strike strike;
+  strike.event_id = event.event_id;
+  strike.scheduled = scheduled;
+  strike.heard_from = kNeverHeard;
+  if (!plausible(event)) return strike;
   const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
   const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
   const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
@@ -180,9 +188,6 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   const double impulse = mass * speed * (1 + std::clamp(std::min(a.restitution, b.restitution), 0.0, 1.0));
   const double length_s = std::min(settings_.longest_contact_s, contact_time_s(mass, curvature, speed, a, b));
 
-  Strike strike;
-  strike.event_id = event.event_id;
-  strike.scheduled = scheduled;
   strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
   strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);

@@ -37,6 +37,7 @@ class Impacts {
   // T_world_listener from the next strike on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
+  // An event that cannot be of this world is a strike that nobody hears (plausible.h).
   // Bodies or materials that the scene does not have sound as small wooden ones. A body of which nobody says how
   // it lies sounds as if it were struck anywhere.
   Strike strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose = {}) const;

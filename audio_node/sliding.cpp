@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "audio_node/plausible.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -75,6 +76,7 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
   dt_s = std::clamp(dt_s, 0.0, 0.1);
   for (auto& [id, way] : ways_) way.seen = false;
   for (const contact_t& c : contacts) {
+    if (!plausible(c)) continue;
     const Vector3d past = to_eigen(c.sliding_velocity_m_s);  // of b past a
     const double speed = std::min(past.norm(), kMostSpeed_m_s);
     if (c.points.empty() || speed < kLeastSpeed_m_s) continue;

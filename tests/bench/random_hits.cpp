@@ -1,5 +1,6 @@
-// Stands in for sim_node in measurements of time: a dull board and a ball that strikes it at random times, alone, for ever; each
-// hit is told as the simulation tells it, in the step in which its time is reached and for 50 ms after.
+// Stands in for sim_node in measurements of time: a dull board and a ball that strikes it at random times, alone,
+// for ever; each hit is told as the simulation tells it, in the step in which its time is reached and for 50 ms
+// after.
 //
 //   in   ASSET_REQUEST
 //   out  SCENE_MANIFEST, ASSET_CHUNK, CONTACT_EVENTS, CONTACTS
@@ -17,10 +18,10 @@ using namespace tactus;
 
 namespace {
 
-constexpr double kLeastGap_s = 0.07, kMostGap_s = 0.13;        // 10 a second; the board has fallen silent by then
-constexpr sync::Nanoseconds kRepeat{50'000'000};               // as sim_node/publish repeats its events
-constexpr sync::Nanoseconds kGrace{3'000'000'000};             // in which the scene is read, as sim_node's scene_grace
-constexpr int kSnapshotEvery = 17;                             // ticks: 60 Hz
+constexpr double kLeastGap_s = 0.07, kMostGap_s = 0.13;  // 10 a second; the board has fallen silent by then
+constexpr sync::Nanoseconds kRepeat{50'000'000};         // as sim_node/publish repeats its events
+constexpr sync::Nanoseconds kGrace{3'000'000'000};       // in which the scene is read, as sim_node's scene_grace
+constexpr int kSnapshotEvery = 17;                       // ticks: 60 Hz
 
 // Stiff, so that the blow is short, and so damped that each blow is over before the next: by 1/e in 3 ms.
 scene_t dull_board() {
