@@ -3,6 +3,8 @@
 #include <exception>
 #include <utility>
 
+#include "audio_node/spatial/space_of.h"
+
 namespace tactus::audio {
 namespace {
 
@@ -16,7 +18,8 @@ constexpr std::size_t kMostUnsounded = 1024;
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
-         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions;
+         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions && a.spatial == b.spatial &&
+         a.hrtf_file == b.hrtf_file && a.layout_file == b.layout_file;
 }
 
 // Those that this machine lacks are refused by name; the widest are used.
@@ -56,21 +59,26 @@ bool Output::keep_open(sync::HostTime now) {
 void Output::begin_to_open(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  const RendererDef def{settings_.sample_rate_Hz, settings_.period_frames, settings_.limiter_ceiling,
-                        late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s)),
-                        instructions_of(settings_)};
-  renderer_ = std::make_shared<Renderer>(*crossing_, def);
   ordered_.reset();
-  const StreamOptions options{settings_.device,
-                              static_cast<int>(settings_.sample_rate_Hz),
-                              settings_.period_frames,
-                              settings_.latency_periods,
-                              folder_,
-                              fifo_priority_};
-  opening_.emplace([options, crossing = crossing_, renderer = renderer_] {
-    return std::make_unique<Stream>(options, [crossing, renderer](float* out, int frames, const BlockTime& time) {
-      renderer->render(out, frames, time);
-    });
+  heard_from_.reset();
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_] {
+    const RendererDef def{
+        settings.sample_rate_Hz,   settings.period_frames,
+        settings.limiter_ceiling,  late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
+        instructions_of(settings), space_of(settings, settings.sample_rate_Hz)};
+    const auto renderer = std::make_shared<Renderer>(*crossing, def);
+    const StreamOptions options{settings.device,
+                                static_cast<int>(settings.sample_rate_Hz),
+                                settings.period_frames,
+                                settings.latency_periods,
+                                folder,
+                                priority,
+                                renderer->channels()};
+    auto stream =
+        std::make_unique<Stream>(options, [crossing, renderer](float* out, int frames, const BlockTime& time) {
+          renderer->render(out, frames, time);
+        });
+    return std::make_unique<Opened>(Opened{renderer, std::move(stream)});
   });
 }
 
@@ -82,7 +90,9 @@ void Output::end_opening(sync::HostTime now) {
     return;
   }
   try {
-    stream_ = opening_->take();
+    const std::unique_ptr<Opened> opened = opening_->take();
+    renderer_ = std::move(opened->renderer);
+    stream_ = std::move(opened->stream);
     medium_ = stream_->medium();
     trouble_.clear();
     // The scene may have chosen another card meanwhile.
@@ -106,6 +116,11 @@ void Output::degrade(const DropoutDef& dropout) {
   if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
 }
 
+void Output::hear_from(const Eigen::Isometry3d& listener) {
+  const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
+  if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
+}
+
 void Output::submit(const Strike& strike) {
   if ((stream_ && crossing_->strikes.push(strike)) || unsounded_.size() >= kMostUnsounded) return;
   presentation_t report{};
@@ -119,7 +134,9 @@ void Output::submit(const Strike& strike) {
 
 sync::Nanoseconds Output::latency() const {
   const double periods = settings_.latency_periods + kCallbackPeriods;
-  return sync::from_seconds((periods * settings_.period_frames + Limiter::kDelay) / settings_.sample_rate_Hz);
+  const int ears = settings_.spatial == "hrtf" ? kEarsLatency : 0;
+  return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
+                            settings_.sample_rate_Hz);
 }
 
 std::optional<presentation_t> Output::next_report() {
