@@ -32,6 +32,7 @@ bool Loops::take(const Rub& rub) {
   }
   if (!free) return false;
   *free = Voice{};
+  spatialiser_.begin(static_cast<int>(free - voices_.data()));
   free->on = true;
   free->now = rub;
   const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMostLayers));
@@ -71,7 +72,7 @@ void Loops::add(Playing& p, double step, float wanted, float* out, int frames) c
   p.level = wanted + (begin - wanted) * left;
 }
 
-void Loops::render(Voice& v, float* mix, int frames, sync::HostTime first) const {
+void Loops::render(Voice& v, int frames, sync::HostTime first) {
   const bool told = first - v.now.at < kSilence;
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
@@ -90,14 +91,18 @@ void Loops::render(Voice& v, float* mix, int frames, sync::HostTime first) const
     add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, out.data(), frames);
     level = std::max(level, p.level);
   }
-  v.ears.add(v.now.place, out.data(), mix, frames);
+  spatialiser_.add(static_cast<int>(&v - voices_.data()), listener_ ? heard_by(*listener_, v.now.place) : v.now.place,
+                   out.data(), frames);
   // The comparison also ends one that has become no number.
-  if (!told && !(level > kOver)) v.on = false;
+  const bool over = !told && !(level > kOver);
+  if (over && v.silent >= spatialiser_.tail()) v.on = false;
+  v.silent = over ? v.silent + frames : 0;
 }
 
 void Loops::render(float* mix, int frames, sync::HostTime first) {
   for (Voice& v : voices_)
-    if (v.on) render(v, mix, frames, first);
+    if (v.on) render(v, frames, first);
+  spatialiser_.mix(mix, frames);
 }
 
 int Loops::active() const {

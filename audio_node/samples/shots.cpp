@@ -8,9 +8,10 @@
 
 namespace tactus::audio {
 
-Shots::Shots(double rate_Hz)
+Shots::Shots(double rate_Hz, const Space& space, Instructions instructions)
     : fade_step_(static_cast<float>(1 / (kFade_s * rate_Hz))),
-      voices_(static_cast<std::size_t>(kMost + kFading)) {}
+      voices_(static_cast<std::size_t>(kMost + kFading)),
+      spatialiser_(space, kMost + kFading, rate_Hz, instructions) {}
 
 void Shots::leave_room() {
   const auto sounds = [](const Voice& v) { return v.on && !v.fades; };
@@ -39,6 +40,7 @@ void Shots::take(const RecordedStrike& strike, float gain, int offset) {
   leave_room();
   Voice& v = free_voice();
   v = Voice{};
+  spatialiser_.begin(static_cast<int>(&v - voices_.data()));
   v.on = true;
   for (std::size_t i = 0; i < v.shots.size(); ++i) {
     v.shots[i].shot = strike.shots[i];
@@ -71,7 +73,7 @@ bool Shots::play(Playing& p, float* out, int frames) {
   return p.at < static_cast<double>(size);
 }
 
-void Shots::render(Voice& v, float* mix, int frames) const {
+void Shots::render(Voice& v, int frames) {
   std::array<float, kMaxBlock> out{};
   const int begin = std::min(v.begin, frames);
   v.begin -= begin;
@@ -89,14 +91,18 @@ void Shots::render(Voice& v, float* mix, int frames) const {
     if (v.fades) s *= v.fade = std::max(0.f, v.fade - fade_step_);
     most = std::max(most, std::abs(s));
   }
-  v.ears.add(v.place, out.data(), mix, frames);
-  if (begin < frames) v.level = most / v.place.distance_m;
-  v.on = sounds && v.fade > 0;
+  const Place place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
+  if (begin < frames) v.level = most / place.distance_m;
+  const bool over = !sounds || v.fade <= 0;
+  v.on = !over || v.silent < spatialiser_.tail();
+  v.silent = over ? v.silent + frames : 0;
 }
 
 void Shots::render(float* mix, int frames) {
   for (Voice& v : voices_)
-    if (v.on) render(v, mix, frames);
+    if (v.on) render(v, frames);
+  spatialiser_.mix(mix, frames);
 }
 
 int Shots::active() const {

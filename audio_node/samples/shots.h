@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "audio_node/samples/ears.h"
 #include "audio_node/samples/shot.h"
+#include "audio_node/spatial/spatialiser.h"
 
 namespace tactus::audio {
 
@@ -16,11 +17,13 @@ class Shots {
  public:
   static constexpr int kMost = 64;  // impacts at a time, as bodies
 
-  explicit Shots(double rate_Hz);
+  explicit Shots(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2);
+
+  void hear_from(const Listener& listener) { listener_ = listener; }
 
   // From the frame `offset` of the next render() on, `gain` as strong as it says.
   void take(const RecordedStrike& strike, float gain, int offset);
-  // Adds `frames` <= kMaxBlock frames, left and right interleaved.
+  // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
   int active() const;
@@ -42,7 +45,7 @@ class Shots {
     bool on = false;
     std::int64_t database = 0;
     Place place;
-    Ears ears;
+    int silent = 0;  // frames since the last of which something came
     int begin = 0;  // frames until it starts
     bool fades = false;
     float fade = 1;
@@ -50,11 +53,13 @@ class Shots {
   };
   Voice& free_voice();
   void leave_room();
-  void render(Voice& voice, float* mix, int frames) const;
+  void render(Voice& voice, int frames);
   static bool play(Playing& playing, float* out, int frames);
 
   float fade_step_;
   std::vector<Voice> voices_;
+  Spatialiser spatialiser_;
+  std::optional<Listener> listener_;
 };
 
 }  // namespace tactus::audio
