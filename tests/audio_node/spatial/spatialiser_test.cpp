@@ -74,9 +74,9 @@ TEST_CASE("A source that circles the head once a second is heard without a click
     const auto still = tone(space, f, 12, [&](int) { return at(azimuth); });
     gain = std::max({gain, largest(still.left, kSettled), largest(still.right, kSettled)});
   }
-  // The second difference of a tone is w^2 of its amplitude. At the borders of blocks it is bent besides: in every second
-  // block the delay goes 4 pi 31 samples a second, 0.008 w, and gains change at most 4 pi a second, 2.6e-4; both together
-  // 0.22 w^2. A click of -50 dB would be one of w^2.
+  // The second difference of a tone is w^2 of its amplitude. At the borders of blocks it is bent besides: in every
+  // second block the delay goes 4 pi 31 samples a second, 0.008 w, and gains change at most 4 pi a second, 2.6e-4;
+  // both together 0.22 w^2. A click of -50 dB would be one of w^2.
   CHECK(std::max(largest_bend(swept.left, kSettled), largest_bend(swept.right, kSettled)) < 1.25 * w * w * gain);
 }
 
@@ -204,4 +204,17 @@ TEST_CASE("A blow from any side reaches the nearer ear on its sample") {
   }
   // Both the mode and the ear take up to half of a period of 6 kHz, 4 samples, to come to a fifth of the peak.
   CHECK(std::abs(onset(nearer) - 960) <= 8);
+}
+
+TEST_CASE("A place that is no number is heard from ahead") {
+  const Space space = GENERATE(Space{ears(), nullptr}, Space{},
+                               Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
+  const float none = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
+  const auto ahead = tone(space, 440, 4, [](int) { return at(0); });
+  const bool direction = GENERATE(true, false);
+  const auto heard = tone(space, 440, 4, [&](int) {
+    return direction ? Place{Eigen::Vector3f(none, 0, 0), 1} : Place{Eigen::Vector3f::UnitX(), none};
+  });
+  CHECK(heard.left == ahead.left);
+  CHECK(heard.right == ahead.right);
 }
