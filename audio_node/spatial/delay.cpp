@@ -1,5 +1,6 @@
 #include "audio_node/spatial/delay.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::audio {
@@ -22,12 +23,20 @@ void add_delayed(const float* signal, float from, float to, int frames, float* o
           w[0] * s[n] + w[1] * s[n + 1] + w[2] * s[n + 2] + w[3] * s[n + 3] + w[4] * s[n + 4] + w[5] * s[n + 5];
     return;
   }
+  // In runs over the same six samples and their neighbours, which are computed in vectors. A place that rounding
+  // puts a little out of 0 .. 1 does no harm: the polynomial goes on.
   const float step = (to - from) / static_cast<float>(frames);
-  for (int n = 0; n < frames; ++n) {
-    const float delay = from + step * static_cast<float>(n + 1), whole = std::ceil(delay);
-    const std::array<float, 6> w = lagrange(whole - delay);
-    const float* const s = signal + n - static_cast<int>(whole) - 2;
-    out[n] += w[0] * s[0] + w[1] * s[1] + w[2] * s[2] + w[3] * s[3] + w[4] * s[4] + w[5] * s[5];
+  for (int n = 0; n < frames;) {
+    const float first = from + step * static_cast<float>(n + 1), whole = std::ceil(first);
+    const float left = step > 0 ? whole - first : first - whole + 1;
+    const float run = std::min(std::floor(left / std::abs(step)) + 1, static_cast<float>(frames - n));
+    const int end = n + std::max(1, static_cast<int>(run));
+    const float* const s = signal - static_cast<int>(whole) - 2;
+    for (; n < end; ++n) {
+      const std::array<float, 6> w = lagrange(whole - (from + step * static_cast<float>(n + 1)));
+      out[n] +=
+          w[0] * s[n] + w[1] * s[n + 1] + w[2] * s[n + 2] + w[3] * s[n + 3] + w[4] * s[n + 4] + w[5] * s[n + 5];
+    }
   }
 }
 

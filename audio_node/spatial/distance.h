@@ -14,6 +14,8 @@ class Distance {
   void apply(const float* in, float distance_m, int frames, float* out);
 
  private:
+  void hold(const float* in, int frames, float* out);
+
   double rate_Hz_, air_dB_m_;
   bool fresh_ = true;
   float distance_m_ = 0, gain_ = 0, keep_ = 0;

@@ -4,24 +4,24 @@
 
 namespace tactus::audio {
 namespace sse2 {
-void fir_pair(const float*, const float*, const float*, int, float*, float*);
+void fir(const float*, const float* const*, int, int, float* const*);
 }
 #if defined(__x86_64__)
 namespace avx2 {
-void fir_pair(const float*, const float*, const float*, int, float*, float*);
+void fir(const float*, const float* const*, int, int, float* const*);
 }
 namespace avx512 {
-void fir_pair(const float*, const float*, const float*, int, float*, float*);
+void fir(const float*, const float* const*, int, int, float* const*);
 }
 #endif
 
-FirPair fir_pair(Instructions instructions) {
+Fir fir(Instructions instructions) {
 #if defined(__x86_64__)
-  if (instructions == Instructions::kAvx2) return avx2::fir_pair;
-  if (instructions == Instructions::kAvx512) return avx512::fir_pair;
+  if (instructions == Instructions::kAvx2) return avx2::fir;
+  if (instructions == Instructions::kAvx512) return avx512::fir;
 #endif
   if (instructions != Instructions::kSse2) throw std::logic_error("these instructions are of another machine");
-  return sse2::fir_pair;
+  return sse2::fir;
 }
 
 }  // namespace tactus::audio

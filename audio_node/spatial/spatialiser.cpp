@@ -13,10 +13,13 @@ namespace {
 // block.
 constexpr float kTurned = 0.00175f;
 
+// What has become no number is heard from ahead.
+const Place kNowhere;
+
 }  // namespace
 
 Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instructions instructions)
-    : space_(space), channels_(space.channels()), fir_(fir_pair(instructions)) {
+    : space_(space), channels_(space.channels()), fir_(fir(instructions)) {
   buses_.resize(static_cast<std::size_t>(channels_ * kMaxBlock));
   sources_.assign(static_cast<std::size_t>(sources), Source(rate_Hz));
   if (!space.hrtf) return;
@@ -39,11 +42,16 @@ void Spatialiser::begin(int source) {
   for (auto* past : {&s.input, &s.heard_left, &s.heard_right}) std::fill(past->begin(), past->end(), 0.f);
 }
 
-void Spatialiser::add(int source, const Place& place, const float* mono, int frames) {
+void Spatialiser::add(int source, const Place& told, const float* mono, int frames) {
+  const bool is_place = told.direction.allFinite() && told.distance_m > 0 && std::isfinite(told.distance_m);
+  const Place& place = is_place ? told : kNowhere;
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());
-  const bool turned = s.fresh || (place.direction - s.direction).squaredNorm() > kTurned * kTurned;
+  // In every second block at most: new filters cost as much again as the old ones.
+  const bool moved = (place.direction - s.direction).squaredNorm() > kTurned * kTurned;
+  const bool turned = s.fresh || (moved && s.rested);
+  s.rested = !turned;
   if (turned) s.direction = place.direction;
   if (space_.hrtf)
     add_by_ears(s, sound.data(), frames, turned);
@@ -62,10 +70,12 @@ void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool tu
   const float later = s.left_later;
   if (turned) s.left_later = space_.hrtf->at(s.direction, next_left_.data(), next_right_.data());
   if (s.fresh) std::swap(s.left, next_left_), std::swap(s.right, next_right_);
-  fir_(input, s.left.data(), s.right.data(), taps_, left, right);
-  if (turned && !s.fresh) {
-    std::array<float, kMaxBlock> new_left, new_right;
-    fir_(input, next_left_.data(), next_right_.data(), taps_, new_left.data(), new_right.data());
+  std::array<float, kMaxBlock> new_left, new_right;
+  const float* const filters[] = {s.left.data(), s.right.data(), next_left_.data(), next_right_.data()};
+  float* const heard[] = {left, right, new_left.data(), new_right.data()};
+  const bool goes_over = turned && !s.fresh;
+  fir_(input, filters, goes_over ? 4 : 2, taps_, heard);
+  if (goes_over) {
     for (int n = 0; n < frames; ++n) {
       const auto i = static_cast<std::size_t>(n);
       const float share = static_cast<float>(n + 1) / static_cast<float>(frames);

@@ -51,6 +51,7 @@ class Spatialiser {
     explicit Source(double rate_Hz) : distance(rate_Hz) {}
     Distance distance;
     bool fresh = true;
+    bool rested = true;  // in the block before it stayed where it was
     Eigen::Vector3f direction = Eigen::Vector3f::Zero();
     std::array<float, kMostChannels> gains{};
     float left_later = 0;
@@ -64,7 +65,7 @@ class Spatialiser {
 
   Space space_;
   int channels_, tail_ = 0, taps_ = 0, past_ = 0;
-  FirPair fir_;
+  Fir fir_;
   std::vector<float> buses_;
   std::vector<float> next_left_, next_right_;
   std::vector<Source> sources_;
