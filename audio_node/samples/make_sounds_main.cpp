@@ -187,12 +187,20 @@ class Set {
 int main(int argc, char** argv) try {
   std::string folder, materials, readme;
   CLI::App app{"Renders the default set of recordings from modal models."};
-  app.add_option("folder", folder, "where to")->required();
-  app.add_option("--materials", materials, "table of materials")->required();
+  app.add_option("folder", folder, "where to");
+  app.add_option("--materials", materials, "table of materials");
   app.add_option("--readme", readme, "goes beside them");
   sync::parse_or_exit(app, "make_sounds", argc, argv);
+  if (folder.empty() || materials.empty())
+    throw std::runtime_error("give a folder and --materials; see make_sounds --help");
   const auto all = read_materials(materials);
+  // What it renders anew is a set of its own, never a folder of somebody's.
+  const auto mark = std::filesystem::path(folder) / ".rendered";
+  if (std::filesystem::exists(folder) && !std::filesystem::exists(mark))
+    throw std::runtime_error(folder + " is there and no set of this program; give a new folder");
   std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(mark) << "by make_sounds\n";
   Set set(folder);
   for (std::size_t i = 0; i < all.size(); ++i) {
     set.render(all[i], all[i], true);
