@@ -196,7 +196,7 @@ int main(int argc, char** argv) try {
   const auto all = read_materials(materials);
   // What it renders anew is a set of its own, never a folder of somebody's.
   const auto mark = std::filesystem::path(folder) / ".rendered";
-  if (std::filesystem::exists(folder) && !std::filesystem::exists(mark))
+  if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder) && !std::filesystem::exists(mark))
     throw std::runtime_error(folder + " is there and no set of this program; give a new folder");
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
