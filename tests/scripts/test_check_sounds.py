@@ -80,6 +80,21 @@ class CheckSounds(unittest.TestCase):
         self.assertEqual(report["faults"], [])
         self.assertNotIn("modal", [p["plays"] for p in report["pairs"]])
 
+    def test_the_default_set_is_rendered_to_the_same_bits_and_over_no_folder_of_somebody(self):
+        def make(name):
+            return subprocess.run([os.path.join(os.environ["TACTUS_BIN"], "make_sounds"), self.place(name), "--materials",
+                                   os.path.join(ROOT, "sim_node", "scenes", "materials.csv")], capture_output=True, check=False)
+
+        self.assertEqual([make(name).returncode for name in ("a", "b", "b")], [0, 0, 0])
+        files = [os.path.join(folder, name) for folder, _, names in os.walk(self.place("a")) for name in names]
+        self.assertGreater(len(files), 100)
+        for path in files:
+            with open(path, "rb") as one, open(path.replace(self.place("a"), self.place("b")), "rb") as other:
+                self.assertEqual(one.read(), other.read(), path)
+        tone(self.place("mine/impact/1.wav"))
+        self.assertEqual(make("mine").returncode, 1)
+        self.assertTrue(os.path.exists(self.place("mine/impact/1.wav")))
+
     @unittest.skipUnless(os.path.isdir(KITS), "hydrogen-drumkits is not installed: no real recordings to try")
     def test_real_recordings_make_a_folder_that_is_whole(self):
         folder = self.place("drums")
