@@ -89,7 +89,8 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
           mode_step(std::sqrt(mode.frequency_Hz * mode.frequency_Hz - lost * lost), mode.damping_1_s, rate_Hz);
       v.resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
-                           kSoundSpeed_m_s * radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
+                           kSoundSpeed_m_s *
+                           radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
     }
     return v;
   };

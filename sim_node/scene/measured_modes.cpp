@@ -50,8 +50,7 @@ measured_mode_t mode_of(const std::vector<std::string>& cells, const std::map<st
     throw std::runtime_error("frequency_Hz is not between 20 and 20000");
   if (!(mode.damping_1_s > 0 && mode.damping_1_s < 2 * std::numbers::pi * mode.frequency_Hz))
     throw std::runtime_error("damping_1_s is not above 0 and below critical damping");
-  if (!(mode.amplitude > 0 && std::isfinite(mode.amplitude)))
-    throw std::runtime_error("amplitude is not above 0");
+  if (!(mode.amplitude > 0 && std::isfinite(mode.amplitude))) throw std::runtime_error("amplitude is not above 0");
   return mode;
 }
 

@@ -61,7 +61,8 @@ TEST_CASE("What is heard of measured modes is in the proportions of the recordin
     for (std::size_t i = 0; i < 3; ++i) {
       const double lost = kBell[i].damping_1_s / (2 * std::numbers::pi);
       const double damped = std::sqrt(kBell[i].frequency_Hz * kBell[i].frequency_Hz - lost * lost);
-      p[i] = static_cast<double>(gains[i]) / static_cast<double>(mode_step(damped, kBell[i].damping_1_s, 48000).unit_gain);
+      p[i] = static_cast<double>(gains[i]) /
+             static_cast<double>(mode_step(damped, kBell[i].damping_1_s, 48000).unit_gain);
     }
     return p;
   };

@@ -19,8 +19,15 @@ TEST_CASE("A scene whose measured modes cannot be is not let in") {
   m.modes = {right}, m.mode_count = 1;
   REQUIRE(valid(scene));
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-  for (const measured_mode_t& wrong : {measured_mode_t{10, 3, 0.5}, {20'001, 3, 0.5}, {nan, 3, 0.5}, {440, 0, 0.5},
-                                       {440, -1, 0.5}, {440, 2765, 0.5}, {440, inf, 0.5}, {440, 3, 0}, {440, 3, inf}}) {
+  for (const measured_mode_t& wrong : {measured_mode_t{10, 3, 0.5},
+                                       {20'001, 3, 0.5},
+                                       {nan, 3, 0.5},
+                                       {440, 0, 0.5},
+                                       {440, -1, 0.5},
+                                       {440, 2765, 0.5},
+                                       {440, inf, 0.5},
+                                       {440, 3, 0},
+                                       {440, 3, inf}}) {
     m.modes = {wrong};
     CHECK_FALSE(valid(scene));
   }
