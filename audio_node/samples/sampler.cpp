@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "audio_node/plausible.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -71,7 +72,7 @@ Database::Found Sampler::find(std::int32_t a, std::int32_t b, Interaction intera
 
 void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts& impacts) {
   const Database::Found found = find(event.material_a, event.material_b, Interaction::kImpact);
-  if (!found.any()) return;
+  if (!found.any() || !plausible(event)) return;
   const MethodGains method = gains_of(settings_);
   const double level = level_of(static_cast<double>(strike.impulse_N_s), settings_);
   const BodySound &a = impacts.body(event.body_a), &b = impacts.body(event.body_b);
@@ -134,7 +135,7 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
     return m >= 0 && static_cast<std::size_t>(m) < mu_.size() ? mu_[static_cast<std::size_t>(m)] : 1.0;
   };
   for (const contact_t& c : contacts) {
-    if (c.points.empty()) continue;
+    if (c.points.empty() || !plausible(c)) continue;
     const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
     const double slides = std::min(to_eigen(c.sliding_velocity_m_s).norm(), kMostSpeed_m_s);
     const double rolls = std::min(to_eigen(c.rolling_velocity_m_s).norm(), kMostSpeed_m_s);

@@ -52,16 +52,20 @@ inline scene_t struck_scene() {
 class RecordedRun {
  public:
   explicit RecordedRun(std::unique_ptr<sync::LogSink> sink, const scene_t& scene = struck_scene())
-      : writer_(std::move(sink)), bytes_(sync::encode(scene)) {
+      : RecordedRun(std::move(sink), {{asset_ref_t::SCENE, "scene", sync::encode(scene)}}) {}
+  RecordedRun(std::unique_ptr<sync::LogSink> sink, const std::vector<sync::Asset>& assets) : writer_(std::move(sink)) {
     recorder_ = {"recorder", 1, 3, kRunId, kClockId};
     log_info_t info{};
     info.realtime_offset_ns = kLogOffset_ns;
-    asset_ref_t ref{};
-    ref.hash = sync::fnv1a_64(bytes_.data(), bytes_.size());
-    ref.size = static_cast<std::int64_t>(bytes_.size());
-    ref.kind = asset_ref_t::SCENE;
-    ref.name = "scene";
-    for (const sync::HeadEvent& e : sync::log_head(recorder_, info, {{ref, &bytes_}}, sync::host_time(kLogBegins_ns)))
+    std::vector<sync::HeadAsset> head;
+    for (const sync::Asset& asset : assets) {
+      asset_ref_t ref{};
+      ref.hash = sync::fnv1a_64(asset.bytes.data(), asset.bytes.size());
+      ref.size = static_cast<std::int64_t>(asset.bytes.size());
+      ref.kind = asset.kind, ref.name = asset.name;
+      head.push_back({ref, &asset.bytes});
+    }
+    for (const sync::HeadEvent& e : sync::log_head(recorder_, info, head, sync::host_time(kLogBegins_ns)))
       write(sync::to_ns(e.time), e.channel, e.data);
   }
 
@@ -83,7 +87,6 @@ class RecordedRun {
   }
   void finish() { writer_.flush(); }
 
-  // Of so many hits by chance, at least `apart` apart: when each was.
   static contact_event_t hit(std::int64_t id, double at_s, int a, int b, float speed_m_s = 0.5f) {
     contact_event_t e{};
     e.event_id = id, e.contact_id = id, e.kind = contact_event_t::HIT;
@@ -109,7 +112,6 @@ class RecordedRun {
   }
 
   sync::LogWriter writer_;
-  sync::Bytes bytes_;
   sync::Identity recorder_;
   std::int64_t events_seq_ = 0, frames_seq_ = 0;
 };

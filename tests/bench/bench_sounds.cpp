@@ -1,0 +1,98 @@
+// Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and rolled on, all
+// alike, with silence after each. What audio_node --log makes of it is drawn by scripts/draw_sounds.
+//
+//   bin/bench_sounds LOG MATERIAL...
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+
+#include "sim_node/scene/load_sdf.h"
+#include "sim_node/scene/scene_assets.h"
+#include "sync/node.h"
+#include "tests/audio_node/recorded_run.h"
+
+using namespace tactus;
+using audio::test::RecordedRun;
+
+namespace {
+
+// Of each material, s: scripts/draw_sounds draws it by the same.
+constexpr double kFirst_s = 1, kEach_s = 3, kScrape_s = 0.9, kRoll_s = 2, kLasts_s = 0.7;
+constexpr double kSpeed_m_s = 0.15, kForce_N = 4, kStep_s = 1.0 / 60;
+
+int body_named(const scene_t& scene, const std::string& name) {
+  for (const body_def_t& b : scene.bodies)
+    if (b.name == name || b.name.starts_with(name + "::")) return b.id;
+  throw std::runtime_error("materials_bench has no " + name + "; name a material that has a bar there");
+}
+
+int tool_body(const scene_t& scene) { return scene.tool_count > 0 ? scene.tools[0].body : 0; }
+
+contact_t contact(const scene_t& scene, int bar, int material, double slid_m, bool rolls) {
+  const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);
+  const Eigen::Vector3d on_bar(-0.05 + slid_m, 0, 0.01);
+  const int tool = tool_body(scene);
+  contact_t c{};
+  c.contact_id = 1000 + bar, c.body_a = std::min(bar, tool), c.body_b = std::max(bar, tool), c.tool = 0;
+  const bool bar_first = bar < tool;
+  c.material_a = bar_first ? material : scene.tools[0].material, c.material_b = bar_first ? scene.tools[0].material : material;
+  c.normal.z = bar_first ? 1 : -1;
+  c.normal_force_N = static_cast<float>(kForce_N), c.area_m2 = 1e-5f, c.depth_m = 1e-4f;
+  (rolls ? c.rolling_velocity_m_s : c.sliding_velocity_m_s).x = static_cast<float>(bar_first ? kSpeed_m_s : -kSpeed_m_s);
+  contact_point_t p{};
+  p.a_world_m = p.b_world_m = to_vec3f(lies * on_bar);
+  (bar_first ? p.a_body_m : p.b_body_m) = to_vec3f(on_bar);
+  c.point_count = 1, c.points = {p};
+  return c;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  std::string path;
+  std::vector<std::string> materials;
+  CLI::App app{"Writes a log in which bars of materials_bench are struck, scraped and rolled on."};
+  app.add_option("LOG", path, "file to write")->required();
+  app.add_option("MATERIAL", materials, "in order")->required();
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<std::string> warnings;
+  const auto assets = sim::make_assets(sim::load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/materials_bench.sdf", warnings));
+  scene_t scene{};
+  for (const sync::Asset& a : assets)
+    if (a.kind == asset_ref_t::SCENE) scene = sync::decode_asset<scene_t>(a.bytes).value();
+  if (scene.tool_count == 0) throw std::runtime_error("materials_bench has no tool, which is to strike");
+
+  std::remove(path.c_str());
+  RecordedRun run(std::make_unique<sync::FileSink>(path), assets);
+  double next_snapshot = 0;
+  const double end = kFirst_s + kEach_s * static_cast<double>(materials.size());
+  std::size_t struck = 0;
+  for (int ms = 0; ms < static_cast<int>(1000 * end); ++ms) {
+    const double now = ms * 1e-3;
+    const double since = std::fmod(now - kFirst_s + kEach_s, kEach_s);
+    const auto i = static_cast<std::size_t>(std::max(0.0, (now - kFirst_s) / kEach_s));
+    const int bar = body_named(scene, materials[i] + "_bar");
+    int material = -1;
+    for (const shape_def_t& s : scene.shapes)
+      if (s.body == bar) material = s.material;
+    if (now >= kFirst_s && i == struck) {
+      const contact_t where = contact(scene, bar, material, 0.02, false);
+      contact_event_t e = RecordedRun::hit(static_cast<std::int64_t>(++struck), now, where.body_a, where.body_b, 0.5f);
+      e.material_a = where.material_a, e.material_b = where.material_b, e.tool = 0;
+      e.point_m = where.points[0].a_world_m, e.normal = where.normal;
+      run.hear(now, {e});
+    }
+    if (now < next_snapshot) continue;
+    next_snapshot += kStep_s;
+    std::vector<contact_t> contacts;
+    for (const double begin : {kScrape_s, kRoll_s})
+      if (now >= kFirst_s && since >= begin && since < begin + kLasts_s)
+        contacts.push_back(contact(scene, bar, material, kSpeed_m_s * (since - begin), begin == kRoll_s));
+    run.snapshot(now, contacts);
+  }
+  run.finish();
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("bench_sounds", e);
+}
