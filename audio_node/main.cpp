@@ -5,7 +5,7 @@
 //        TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
-// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends scrapes, losing WORLD_STATE leaves bodies turned as they
+// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends what scrapes and rolls, losing WORLD_STATE leaves bodies turned as they
 // were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
 // callback never for the loop.
 #include <CLI/CLI.hpp>
@@ -44,6 +44,7 @@ const sync::Declaration kAudio{.node = "audio_node",
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
+constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
 
@@ -133,7 +134,8 @@ int main(int argc, char** argv) try {
       const std::shared_ptr<const audio::HeardSurfaces> heard = surfaces->take();
       surfaces.reset();
       output.hear(heard);
-      sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, output.settings());
+      sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, *impacts, output.settings(),
+                                                 output.settings().sample_rate_Hz);
     }
     // Of scenes that are over: tables of 200 MB take 20 ms to free.
     if (auto unread = output.take_unread(); !unread.empty())
@@ -161,15 +163,17 @@ int main(int argc, char** argv) try {
         }));
       }
     }
-    if (const auto map = contacts.map(now); map && sliding && sliding->any()) {
+    if (const auto map = contacts.map(now); map && sliding && sync::to_seconds(now - slid_at) >= sliding->period_s()) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone)
         sliding->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
       const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
       contacts.keep(sense.delay());
       bodies.keep(sense.delay());
+      // Nobody tells of contacts any more: they would go on for ever.
+      const bool told = now - frames.count().newest_arrival < kContactsLost;
       for (const audio::Scrape& scrape :
-           sliding->scrapes(contacts.state_at(t).value, t, heard_at, sync::to_seconds(now - slid_at)))
+           sliding->scrapes(told ? contacts.state_at(t).value : sync::Contacts{}, t, heard_at, sync::to_seconds(now - slid_at)))
         output.submit(scrape);
       slid_at = now;
     }

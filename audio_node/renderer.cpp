@@ -126,9 +126,9 @@ void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(stereo, stereo + 2 * frames, 0.f);
-  voices_.render(stereo, frames);
   take_scrapes(leaving.first_sample);
-  scrapes_.render(stereo, frames, leaving.first_sample);
+  scrapes_.drive(voices_, frames, leaving.first_sample);
+  voices_.render(stereo, frames);
   for (int n = 0; n < 2 * frames; ++n) stereo[n] *= open_[static_cast<std::size_t>(n / 2)];
   limiter_.process(stereo, frames);
 }
