@@ -38,9 +38,8 @@ struct Scrape {
   std::int64_t number = 0;  // of all that crossed, from 0
   sync::HostTime at{};      // when that is to be heard
   bool ends = false;        // the contact slides and rolls no more: nothing but id and at counts
-  // Force per unit of slope, N s a sample, scaled to full scale per Pa.
+  // Force per unit of slope, N s a sample, scaled to full scale per Pa; of sliding where friction maps have the factor 1.
   float slide = 0, roll = 0;
-  float friction_power = 0;  // of the factor of friction maps, that `slide` grows with
   double cutoff_Hz = 0;      // of what rolls, by the patch
   double over_s = 0.001;     // until it is told anew
   Place place;               // where it is heard from

@@ -124,8 +124,9 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
     const ScrapeSide& side = s.sides[i];
     if (!side.known) continue;
     const Track track = follow(side, c.sides[i], since_s, c.fresh, frames);
-    add_slopes(side.roughness, track, side.slides, side.rolls, frames, slope.data(), rolling.data());
-    if (side.relief) add_relief(side, track, frames, slope.data(), rolling.data());
+    const bool passes = !side.slides.isZero(0) || !side.rolls.isZero(0);
+    if (passes) add_slopes(side.roughness, track, side.slides, side.rolls, frames, slope.data(), rolling.data());
+    if (passes && side.relief) add_relief(side, track, frames, slope.data(), rolling.data());
     for (int n = 0; side.friction && n < frames; ++n)
       friction[static_cast<std::size_t>(n)] *=
           static_cast<float>(side.friction->factor(side.outward, track.at(n)));
@@ -134,7 +135,8 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   c.patch.set(s.cutoff_Hz, rate_Hz_);
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    const float rubs = mapped ? std::pow(friction[k], s.friction_power) : 1;
+    // Of a pair the root of the factors counts, and of power the root again.
+    const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
     c.force[k] = c.slide.next() * rubs * slope[k] + c.roll.next() * c.patch.next(rolling[k]);
   }
   c.fresh = false;

@@ -24,6 +24,8 @@ constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
 constexpr std::size_t kMany = 50;
 // Who is heard gives way to who is so much stronger. Design.
 constexpr double kGivesWay = 2;
+// W^(1/2), of 1 N at 0.1 m/s with friction 0.5 (design).
+constexpr double kReferenceStrength = 0.22360679774997896;
 // Of noise, over its rms (design).
 constexpr double kCrest = 3;
 constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker ones are no more raised than that
@@ -193,16 +195,15 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
     const double map = side.relief ? 0.5 * side.relief->mean_square_slope().sum() : 0;
     steep += share * (map + mean_square_slope(side.roughness));
   }
-  // Full scale per Pa as of a blow of the pressure that is to be expected, were the force white. Friction is that
-  // of the surface without its map, which the callback reads on the way: it counts by the root of the pair's and
-  // that of power.
+  // Full scale per Pa: the reference stroke over these two is as loud as a blow of the pressure that is to be
+  // expected, were the force white; others by their strength. Friction is that of the surfaces without their maps,
+  // which the callback reads on the way.
   const double expected =
-      std::max(kHearing_Pa, kCrest * settings_.scrape_force_N * std::sqrt(k.strength() * steep * pressure));
+      std::max(kHearing_Pa, kCrest * settings_.scrape_force_N * kReferenceStrength * std::sqrt(steep * pressure));
   const double scale =
       settings_.gain * level_of(expected, settings_) / expected * settings_.scrape_force_N / rate_Hz_;
   s.slide = static_cast<float>(scale * k.slide);
   s.roll = static_cast<float>(scale * k.roll);
-  s.friction_power = static_cast<float>(0.25 * settings_.loudness_exponent);
   s.place = place_of(listener_, to_eigen(c.points[k.live->way.point()].a_world_m), settings_.nearest_m);
   return s;
 }

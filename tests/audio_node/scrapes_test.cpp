@@ -141,20 +141,20 @@ TEST_CASE("Friction that changes on the map changes the strength at that place")
   material_def_t m{};
   m.friction_size_u_m = m.friction_size_v_m = 0.4, m.friction_black = 0.25, m.friction_white = 4;
   const FrictionMap map(HeightMap{2, 2, 255, {0, 255, 0, 255}}, m);
-  const auto loud = [&](double from_m, float power) {
+  const auto loud = [&](double from_m, bool mapped) {
     const auto r = rub(
         [&](double ms) {
           Scrape s = along_x(&wavy(), 0.1, ms);
           s.sides[0].place_m.x() += from_m;
-          s.sides[0].friction = &map, s.friction_power = power;
+          if (mapped) s.sides[0].friction = &map;
           return s;
         },
         100, 100);
     return rms(r.force, 0.02, 0.1);
   };
   // The middles of black and of white; 10 mm further on it is a tenth of the way to the other.
-  CHECK(loud(0.295, 0.25f) == Approx(2 * loud(0.095, 0.25f)).epsilon(0.05));
-  CHECK(loud(0.295, 0) == Approx(loud(0.095, 0)).epsilon(0.01));
+  CHECK(loud(0.295, true) == Approx(2 * loud(0.095, true)).epsilon(0.05));
+  CHECK(loud(0.295, false) == Approx(loud(0.095, false)).epsilon(0.01));
 }
 
 TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have rung out, and neither end clicks") {

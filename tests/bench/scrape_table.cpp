@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
       const sync::HostTime now = sync::host_time(static_cast<std::int64_t>(1e9 * (1 + t)));
       for (int i = 0; i < row.contacts; ++i) {
         Scrape s;
-        s.id = i, s.at = now, s.cutoff_Hz = 3000, s.friction_power = 0.15f;
+        s.id = i, s.at = now, s.cutoff_Hz = 3000;
         (row.rolls ? s.roll : s.slide) = 1e-4f;
         for (std::size_t k = 0; k < 2; ++k) {
           ScrapeSide& side = s.sides[k];
