@@ -19,6 +19,10 @@ struct ScrapeSide {
   std::int64_t voice = -1;  // the same for the same body, as of a strike; -1: none
   Resonators resonators;
   PerMode gains{};  // of each mode at the place of the contact, Pa at 1 m per N s
+  // Its modes above `beyond_Hz` are too many to render. Together they follow a force at once: pressure at 1 m, Pa
+  // per N s a sample.
+  float beyond = 0;
+  double beyond_Hz = 0;
   // Nobody knows where on it the contact is: its surface adds nothing.
   bool known = false;
   // These two live while a scrape of this number is held; null: it has none.
@@ -38,11 +42,12 @@ struct Scrape {
   std::int64_t number = 0;  // of all that crossed, from 0
   sync::HostTime at{};      // when that is to be heard
   bool ends = false;        // the contact slides and rolls no more: nothing but id and at counts
-  // Force per unit of slope, N s a sample, scaled to full scale per Pa; of sliding where friction maps have the factor 1.
+  // Force per unit of slope, N s a sample, scaled to full scale per Pa; of sliding where friction maps have the
+  // factor 1.
   float slide = 0, roll = 0;
-  double cutoff_Hz = 0;      // of what rolls, by the patch
-  double over_s = 0.001;     // until it is told anew
-  Place place;               // where it is heard from
+  double cutoff_Hz = 0;   // of what rolls, by the patch
+  double over_s = 0.001;  // until it is told anew
+  Place place;            // where it is heard from
   std::array<ScrapeSide, 2> sides;
 };
 

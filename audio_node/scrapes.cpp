@@ -70,6 +70,8 @@ void Scrapes::begin(Contact& c, const Scrape& scrape) const {
     c.sides[i].in_use = 0;
     c.sides[i].gains[0] = scrape.sides[i].gains;
     c.sides[i].changed = false;
+    c.sides[i].beyond = {};
+    c.sides[i].beyond.set(scrape.sides[i].beyond_Hz, rate_Hz_);
   }
 }
 
@@ -137,7 +139,7 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
     const auto k = static_cast<std::size_t>(n);
     // Of a pair the root of the factors counts, and of power the root again.
     const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
-    c.force[k] = c.slide.next() * rubs * slope[k] + c.roll.next() * c.patch.next(rolling[k]);
+    c.force[k] = c.slide.next() * rubs * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }
   c.fresh = false;
   if (c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0) c.on = false;
@@ -146,20 +148,24 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
 void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
   const ScrapeSide& told = c.now.sides[i];
   Side& side = c.sides[i];
-  const auto with = [&](const PerMode& gains, const Block& force) {
-    voices.drive({told.voice, &told.resonators, &gains, c.now.place, force.data()});
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    side.direct[k] = told.beyond * side.beyond.next(c.force[k]).high;
+  }
+  const auto with = [&](const PerMode& gains, const Block& force, const float* direct) {
+    voices.drive({told.voice, &told.resonators, &gains, c.now.place, force.data(), direct});
   };
-  if (!side.changed) return with(side.gains[side.in_use], c.force);
+  if (!side.changed) return with(side.gains[side.in_use], c.force, side.direct.data());
   // Linearly from one set of gains to the next. Both bodies share the shares.
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
     c.in[k] = c.force[k] * static_cast<float>(n) / static_cast<float>(frames);
     c.out[k] = c.force[k] - c.in[k];
   }
-  with(side.gains[side.in_use], c.out);
+  with(side.gains[side.in_use], c.out, side.direct.data());
   side.in_use = 1 - side.in_use;
   side.gains[side.in_use] = told.gains;
-  with(side.gains[side.in_use], c.in);
+  with(side.gains[side.in_use], c.in, nullptr);
   side.changed = false;
 }
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "audio_node/lowpass.h"
+#include "audio_node/butterworth.h"
 #include "audio_node/scrape.h"
 #include "audio_node/voices.h"
 
@@ -54,13 +54,15 @@ class Scrapes {
     std::array<PerMode, 2> gains;
     std::size_t in_use = 0;
     bool changed = false;  // told since
+    Butterworth beyond;
+    Block direct{};  // what its modes beyond those that are rendered sound
   };
   struct Contact {
     Scrape now;
     bool on = false, fresh = true;
     sync::HostTime heard{};  // of the newest
     Ramp slide, roll;
-    Lowpass patch;
+    Butterworth patch;
     std::array<Side, 2> sides;
     Block force{}, out{}, in{};
   };

@@ -144,17 +144,32 @@ void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const
   for (std::size_t i = 0; i < 2; ++i) {
     const int body = k.grounds[i].body;
     live.gains[i] = impacts_.gains(body, impacts_.on_body(body, point, i == 0 ? Vector3d(-normal) : normal, pose));
-    if (!first) continue;
-    // A mode that is pushed by white noise of variance 1 a sample has the variance g^2 / (1 - r^2) / 2 of an
-    // oscillation whose envelope falls by r a sample. Gains as of anywhere: on a nodal line it shall be quiet.
-    const PerMode anywhere = impacts_.gains(body, std::nullopt);
-    const Resonators& r = impacts_.resonators(body);
-    double square = 0;
-    for (std::size_t m = 0; m < static_cast<std::size_t>(r.count); ++m)
-      square += 0.5 * std::pow(static_cast<double>(anywhere[m]), 2) /
-                std::max(1e-9, 1 - static_cast<double>(r.damping[m]));
-    live.heard_Pa_N[i] = std::sqrt(square) / rate_Hz_;
+    if (first) find_loudness(k, i);
   }
+}
+
+// By gains as of anywhere: on a nodal line it shall be quiet.
+void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
+  const int body = k.grounds[side].body;
+  const PerMode gains = impacts_.gains(body, std::nullopt);
+  const Resonators& r = impacts_.resonators(body);
+  const auto count = static_cast<std::size_t>(r.count);
+  // A mode that is pushed by white noise of variance 1 a sample has the variance g^2 / (1 - r^2) / 2 of an
+  // oscillation whose envelope falls by r a sample.
+  double all = 0, last = 0;
+  for (std::size_t m = 0; m < count; ++m) {
+    const double one =
+        0.5 * std::pow(static_cast<double>(gains[m]), 2) / std::max(1e-9, 1 - static_cast<double>(r.damping[m]));
+    all += one;
+    if (4 * m >= 3 * count) last += one;
+  }
+  // A plate has as many modes in each Hz, which lose sound as the square of their frequency (beta of Rayleigh):
+  // all above the highest that is rendered have together the variance of `count` such as it, of which a quarter
+  // was added up. They die away before anybody could tell them apart.
+  const bool cut = count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
+  const double beyond = cut ? 4 * last : 0;
+  k.live->heard_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
+  k.live->beyond_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;
 }
 
 ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
@@ -164,6 +179,11 @@ ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
   s.voice = impacts_.voice_id(g.body);
   s.resonators = impacts_.resonators(g.body);
   s.gains = k.live->gains[i];
+  if (k.live->beyond_Pa_N[i] > 0) {
+    // Per N s a sample, as gains are.
+    s.beyond = static_cast<float>(k.live->beyond_Pa_N[i] * rate_Hz_);
+    s.beyond_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
+  }
   if (!g.to_body) return s;
   s.known = true;
   s.outward = *g.to_body * Vector3d((i == 0 ? 1 : -1) * to_eigen(k.contact->normal));

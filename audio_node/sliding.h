@@ -53,6 +53,7 @@ class Sliding {
     bool seen = false, heard = false;
     std::array<PerMode, 2> gains;
     std::array<double, 2> heard_Pa_N{};       // of each body: rms of the pressure at 1 m per rms of a white force
+    std::array<double, 2> beyond_Pa_N{};      // of its modes beyond those that are rendered, likewise
     std::optional<Eigen::Vector3d> struck_m;  // where they are for, world
     double since_s = 0;                       // they were found
   };
@@ -72,6 +73,7 @@ class Sliding {
   Scrape scrape(const Candidate& candidate, sync::SimTime t, sync::HostTime at, double dt_s);
   ScrapeSide side(const Candidate& candidate, std::size_t side) const;
   void find_gains(const Candidate& candidate, sync::SimTime t, double dt_s) const;
+  void find_loudness(const Candidate& candidate, std::size_t side) const;
   double turn(const Candidate& candidate) const;
   double cutoff_Hz(const contact_t& contact, double force_N, double speed_m_s) const;
   Elastic elastic_of(std::int32_t material, std::int32_t body) const;

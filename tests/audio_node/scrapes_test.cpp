@@ -137,6 +137,22 @@ TEST_CASE("What rolls feels the profile through a low-pass at the speed over the
         Approx(static_cast<double>(kForce) * kSlope / std::sqrt(1 + std::pow(of_cutoff, 4))).epsilon(0.03));
 }
 
+TEST_CASE("What a body sounds beyond its modes follows the force at once, above the highest of them") {
+  const double beyond_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
+  const auto r = rub(
+      [&](double ms) {
+        Scrape s = along_x(&wavy(), tone_Hz * kWave_m, ms);
+        give_mode(s.sides[0], 400, 60, 0);
+        s.sides[0].beyond = 0.5f, s.sides[0].beyond_Hz = beyond_Hz;
+        return s;
+      },
+      400, 400);
+  // Butterworth of second order.
+  const double ratio = std::pow(tone_Hz / beyond_Hz, 2), high = ratio / std::sqrt(1 + ratio * ratio);
+  CHECK(amplitude(r.sound, tone_Hz, 0.1, 0.4) ==
+        Approx(0.5 * high * amplitude(r.force, tone_Hz, 0.1, 0.4)).epsilon(0.01));
+}
+
 TEST_CASE("Friction that changes on the map changes the strength at that place") {
   material_def_t m{};
   m.friction_size_u_m = m.friction_size_v_m = 0.4, m.friction_black = 0.25, m.friction_white = 4;
