@@ -7,15 +7,15 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
+#include "audio_node/relief_levels.h"
 #include "lcmtypes/friction_map.h"
-#include "lcmtypes/relief.h"
 #include "sync/scene_pictures.h"
 
 namespace tactus::audio {
 
 // Of one material; null: nothing, or nobody could read it.
 struct HeardSurface {
-  std::shared_ptr<const Relief> relief;
+  std::shared_ptr<const ReliefLevels> relief;
   std::shared_ptr<const FrictionMap> friction;
   bool heard() const { return relief || friction; }
 };
@@ -27,7 +27,6 @@ struct HeardSurfaces {
     const auto i = static_cast<std::size_t>(material);
     return material >= 0 && i < by_material.size() && by_material[i].heard() ? &by_material[i] : nullptr;
   }
-  bool any() const;
 };
 
 // Reads them and makes their tables, which may take as long as a second: not for a loop. What cannot be read is

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "audio_node/contact_patch.h"
+#include "audio_node/loudness.h"
 #include "audio_node/measured_modes.h"
 #include "audio_node/peak.h"
 #include "audio_node/plausible.h"
@@ -22,8 +24,6 @@ constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, 
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
-// Louder than the reference by 12 dB at most: the limiter is for surprises, not for every blow.
-constexpr double kMostAboveReference = 4;  // design
 // Of a strike that is not to be heard at any strength.
 constexpr float kNeverHeard = 2;
 
@@ -50,10 +50,7 @@ const shape_def_t* main_shape(const scene_t& scene, int body) {
 }  // namespace
 
 double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a, const Elastic& b) {
-  const auto compliance = [](const Elastic& m) {
-    return (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
-  };
-  const double e = 1 / (compliance(a) + compliance(b));
+  const double e = reduced_modulus_Pa(a, b);
   return 2.87 * std::pow(mass_kg * mass_kg * curvature_1_m / (e * e * speed_m_s), 0.2);
 }
 
@@ -205,10 +202,8 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
     side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);
     side.place = place;
   }
-  // Full scale per Pa: the reference pressure becomes the reference level, others follow with a smaller exponent.
-  const double pressure = std::max(peak_Pa(strike), 1e-9), relative = pressure / settings_.reference_pressure_Pa;
-  const double level =
-      settings_.reference_level * std::min(kMostAboveReference, std::pow(relative, settings_.loudness_exponent));
+  // Full scale per Pa.
+  const double pressure = std::max(peak_Pa(strike), 1e-9), level = level_of(pressure, settings_);
   const auto scale = static_cast<float>(settings_.gain * level / pressure);
   for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
   const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);

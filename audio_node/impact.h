@@ -13,7 +13,7 @@
 namespace tactus::audio {
 
 // Duration of an elastic impact of a ball, s: T = 2.87 (m^2 / (R E*^2 v))^(1/5) (Hertz 1882; Johnson, Contact
-// Mechanics, 1985, eq. 11.24), with 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b.
+// Mechanics, 1985, eq. 11.24).
 double contact_time_s(double effective_mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a,
                       const Elastic& b);
 

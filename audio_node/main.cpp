@@ -5,7 +5,7 @@
 //        TOOL_STATE of a head, where the ear is
 //   out  PRESENTED, MEDIA_CLOCK, audio.wav
 //
-// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends scrapes, losing WORLD_STATE leaves bodies turned as they
+// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends what scrapes and rolls, losing WORLD_STATE leaves bodies turned as they
 // were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
 // callback never for the loop. With --log it hears a recorded run instead of the bus and plays it into --wav, as fast as it
 // can; the same log gives the same bytes.
@@ -49,6 +49,7 @@ const sync::Declaration kAudio{.node = "audio_node",
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
+constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 constexpr sync::Nanoseconds kRingOn{1'000'000'000};      // after the end of a log (design)
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
@@ -197,7 +198,8 @@ int main(int argc, char** argv) try {
       const std::shared_ptr<const audio::HeardSurfaces> heard = surfaces->take();
       surfaces.reset();
       output.hear(heard);
-      sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, output.settings());
+      sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, *impacts, output.settings(),
+                                                 output.settings().sample_rate_Hz);
     }
     // Of scenes that are over: tables of 200 MB take 20 ms to free.
     if (auto unread = output.take_unread(); !unread.empty())
@@ -241,7 +243,8 @@ int main(int argc, char** argv) try {
         output.submit(strike);
       }
     }
-    if (const auto map = contacts.map(now); map && sampler && (sampler->plays() || (sliding && sliding->any()))) {
+    const bool slides = sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
+    if (const auto map = contacts.map(now); map && sampler && (slides || sampler->plays())) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone) {
         const auto listener = listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation));
@@ -251,14 +254,16 @@ int main(int argc, char** argv) try {
       const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
       contacts.keep(sense.delay());
       bodies.keep(sense.delay());
-      const sync::Contacts lasting = contacts.state_at(t).value;
+      // Nobody tells of contacts any more: they would go on for ever.
+      const bool told = now - frames.count().newest_arrival < kContactsLost;
+      const sync::Contacts lasting = told ? contacts.state_at(t).value : sync::Contacts{};
       for (const audio::Rub& rub : sampler->rubs(lasting, heard_at)) output.submit(rub);
-      if (sliding)
+      if (slides)
         for (audio::Scrape scrape : sliding->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at))) {
-          scrape.level *= sampler->modal_of(scrape.id);
+          scrape.slide *= sampler->modal_of(scrape.id), scrape.roll *= sampler->modal_of(scrape.id);
           output.submit(scrape);
         }
-      slid_at = now;
+      if (slides) slid_at = now;
     }
     while (const auto report = output.next_report()) {
       sense.report(*report);

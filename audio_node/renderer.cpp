@@ -53,7 +53,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       delay_(def.space.latency() + Limiter::kDelay),
       late_(def.late),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
-      scrapes_(def.rate_Hz, def.space, def.instructions),
+      scrapes_(def.rate_Hz),
       recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
       clock_ns_(def.clock_ns),
       scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
@@ -71,7 +71,7 @@ void Renderer::take_orders() {
   Listener listener;
   bool moved = false;
   while (crossing_.listeners.pop(listener)) moved = true;
-  if (moved) voices_.hear_from(listener), scrapes_.hear_from(listener), recorded_.hear_from(listener);
+  if (moved) voices_.hear_from(listener), recorded_.hear_from(listener);
 }
 
 // The ladder is told what a second of sound would take, since blocks may differ in length.
@@ -139,11 +139,11 @@ void Renderer::render_some(float* out, int frames, const BlockTime& time) {
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(out, out + channels_ * frames, 0.f);
   const std::int64_t begun = clock();
-  voices_.render(out, frames);
   const int scraping = scrapes_.active();
   take_scrapes(leaving.first_sample);
   crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
-  scrapes_.render(out, frames, leaving.first_sample);
+  scrapes_.drive(voices_, frames, leaving.first_sample);
+  voices_.render(out, frames);
   const std::int64_t computed = clock();
   const int rubs = recorded_.render(out, frames, leaving.first_sample);
   crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);

@@ -48,7 +48,7 @@ struct Crossing {
   Spsc<Strike> strikes{512};
   Spsc<Orders> orders{16};
   Spsc<Listener> listeners{64};  // the newest counts
-  Spsc<Scrape> scrapes{1024};
+  Spsc<Scrape> scrapes{512};
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);

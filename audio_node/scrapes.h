@@ -1,54 +1,78 @@
-// The surfaces that scrape just now. A tip that slides over a profile is pushed up and down by its slope: the
-// sound is the slope of the relief under the contact, at the speed with which it passes, and stronger with the
-// root of the power that friction takes (van den Doel, Kry and Pai 2001, "FoleyAutomatic", section 4.2). Pure.
+// The contacts that slide or roll just now: the force of each on its two bodies, sample by sample. Pure.
+//
+// A tip that slides over a profile is pushed up and down by its slope, as a phonograph's needle, stronger with the
+// root of the power that friction takes (van den Doel, Kry and Pai 2001, "FoleyAutomatic", sections 4.1 and 4.2).
+// What rolls feels the same profile through a low-pass, since the patch that touches is wider than the finest
+// waves.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "audio_node/butterworth.h"
 #include "audio_node/scrape.h"
-#include "audio_node/spatial/spatialiser.h"
+#include "audio_node/voices.h"
 
 namespace tactus::audio {
 
 class Scrapes {
  public:
   static constexpr int kMost = 16;  // at a time; more are not heard
+  // Each drives a body twice at the most, while its place on it goes from one set of gains to the next.
+  static_assert(2 * kMost <= Voices::kDrives);
 
-  explicit Scrapes(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
-      : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}
+  explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
   // One that is to be heard from its instant on. Realtime-safe: yes.
   void take(const Scrape& scrape);
-  // They stay where they are in the world. Realtime-safe: yes.
-  void hear_from(const Listener& listener) { listener_ = listener; }
-  // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
-  // Realtime-safe: yes.
-  void render(float* mix, int frames, sync::HostTime first);
+  // Drives their bodies for the `frames` <= kMaxBlock frames that are rendered next, the first of which is heard
+  // at `first`. The forces stay where they are until the next call. Realtime-safe: yes.
+  void drive(Voices& voices, int frames, sync::HostTime first);
   int active() const;
   // Number of the oldest scrape that it holds, and whose relief it may still read. Realtime-safe: yes.
   std::optional<std::int64_t> oldest() const;
-  void clear() { voices_ = {}; }
+  void clear() { contacts_ = {}; }
+
+  // Force of a contact in the block that was driven last, N s a sample scaled to full scale per Pa; null: no such.
+  const float* force(std::int64_t id) const;
 
  private:
-  struct Voice {
-    Scrape now;
-    bool on = false;
-    double u = 0, v = 0, travelled_m = 0;  // of the sample that comes next
-    float level = 0;                       // goes to that of `now`
-    sync::HostTime heard{};                // of the newest
-    int silent = 0;                        // frames since the last of which something came
+  using Block = std::array<float, kMaxBlock>;
+  // Goes from where it is to where it is told to be within so many samples, to the bit.
+  struct Ramp {
+    float value = 0, target = 0;
+    int left = 0;
+    void go(float to, int within) {
+      if (to != target) target = to, left = within;
+    }
+    float next();
   };
-  void render(Voice& voice, int frames, sync::HostTime first);
+  struct Side {
+    Eigen::Vector3d place_m, step_m;  // of the sample that comes next
+    // Those in use, and those that they go to within a block or were before.
+    std::array<PerMode, 2> gains;
+    std::size_t in_use = 0;
+    bool changed = false;  // told since
+    Butterworth beyond;
+    Block direct{};  // what its modes beyond those that are rendered sound
+  };
+  struct Contact {
+    Scrape now;
+    bool on = false, fresh = true;
+    sync::HostTime heard{};  // of the newest
+    Ramp slide, roll;
+    Butterworth patch;
+    std::array<Side, 2> sides;
+    Block force{}, out{}, in{};
+  };
+  void begin(Contact& contact, const Scrape& scrape) const;
+  Track follow(const ScrapeSide& told, Side& side, double since_s, bool fresh, int frames) const;
+  void render(Contact& contact, int frames, sync::HostTime first) const;
+  static void drive(Contact& contact, std::size_t side, Voices& voices, int frames);
 
   double rate_Hz_;
-  std::array<Voice, kMost> voices_;
-  Spatialiser spatialiser_;
-  std::optional<Listener> listener_;
+  std::array<Contact, kMost> contacts_;
 };
-
-// Slope of the roughness that every surface has, after so much way: the same in every run, mean square 1.
-double roughness(double travelled_m);
 
 }  // namespace tactus::audio

@@ -1,4 +1,4 @@
-// From contacts that slide to what is heard of them: which surface wears a map, where on it, how fast. Pure.
+// From contacts that slide or roll to what is heard of them: where on both surfaces, how fast, how strongly. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,6 +9,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
+#include "audio_node/contact_way.h"
 #include "audio_node/heard_surfaces.h"
 #include "audio_node/impact.h"
 #include "audio_node/scrape.h"
@@ -18,49 +19,77 @@
 
 namespace tactus::audio {
 
-// Of one scene. Surfaces that wear a relief or a friction map scrape, on bodies that stand still and on those that
-// move; all others are silent.
+// Root of the powers that friction and rolling take of a contact, W^(1/2).
+double sliding_strength(double friction, double force_N, double speed_m_s);
+
+// The contacts of one scene. What is fixed to a body that moves is silent until somebody has said how it is
+// turned.
 class Sliding {
  public:
-  // surfaces: of that scene, not null. bodies: how those that move are turned; outlives this.
+  // surfaces: of that scene, not null. bodies: how those that move are turned. These and impacts outlive this.
   Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces, const sync::BodyHistory& bodies,
-          const Settings& settings);
+          const Impacts& impacts, const Settings& settings, double rate_Hz);
 
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
-  // False: no surface of the scene can be heard so, and nobody need look at contacts.
-  bool any() const { return surfaces_->any(); }
-  // What of the contacts of the instant t is to be heard at `at`. dt_s: since the instant before.
+  // How often to look at contacts: at every tick, or when there are many as often as they are told.
+  double period_s() const { return many_ ? kSnapshot_s : 0; }
+  // What of the contacts of the instant t is to be heard at `at`; each that is heard no more ends once. dt_s:
+  // since the instant before.
   const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::SimTime t, sync::HostTime at,
                                      double dt_s);
 
  private:
-  // The side of a contact that wears what is heard.
-  struct Side {
-    const HeardSurface* surface;
-    Eigen::Quaterniond to_body;
-    double mu, other_mu;  // sliding, without maps
-    bool is_a;
+  static constexpr double kSnapshot_s = 1 / 60.;
+  // One of the surfaces of a contact.
+  struct Ground {
+    std::int32_t body = -1, material = -1;
+    const HeardSurface* surface = nullptr;  // with a map
+    std::optional<Eigen::Quaterniond> to_body;
   };
-  // Of a contact, as long as it slides.
-  struct Way {
-    double travelled_m = 0;
-    std::optional<Eigen::Vector3d> place;  // told last, in the body that wears the map
-    double slid_m = 0, slid_s = 0;         // since another was told
-    double share = 1;                      // of the sliding that was a way over the map, lately
-    bool seen = false;
+  struct Live {
+    ContactWay way;
+    bool seen = false, heard = false;
+    std::array<PerMode, 2> gains;
+    std::array<double, 2> heard_Pa_N{};       // of each body: rms of the pressure at 1 m per rms of a white force
+    std::array<double, 2> beyond_Pa_N{};      // of its modes beyond those that are rendered, likewise
+    std::optional<Eigen::Vector3d> struck_m;  // where they are for, world
+    double since_s = 0;                       // they were found
   };
-  std::optional<Side> side(const contact_t& contact, bool is_a, sync::SimTime t) const;
-  static double share(Way& way, const Eigen::Vector3d& place, const Eigen::Vector3d& along);
+  // A contact and how strongly it slides and rolls.
+  struct Candidate {
+    const contact_t* contact;
+    Live* live;
+    std::array<Ground, 2> grounds;
+    double friction, slide, roll, cutoff_Hz;
+    double strength() const { return slide * slide + roll * roll; }
+  };
+  struct Material {
+    double friction, finish_m;
+  };
+  Ground ground(const contact_t& contact, std::size_t side, sync::SimTime t) const;
+  std::optional<Candidate> candidate(const contact_t& contact, sync::SimTime t, double dt_s);
+  Scrape scrape(const Candidate& candidate, sync::SimTime t, sync::HostTime at, double dt_s);
+  ScrapeSide side(const Candidate& candidate, std::size_t side) const;
+  void find_gains(const Candidate& candidate, sync::SimTime t, double dt_s) const;
+  void find_loudness(const Candidate& candidate, std::size_t side) const;
+  double turn(const Candidate& candidate) const;
+  double cutoff_Hz(const contact_t& contact, double force_N, double speed_m_s) const;
+  Elastic elastic_of(std::int32_t material, std::int32_t body) const;
 
   Settings settings_;
+  double rate_Hz_;
   Eigen::Isometry3d listener_;
   std::shared_ptr<const HeardSurfaces> surfaces_;
   const sync::BodyHistory& bodies_;
-  std::vector<double> mu_;                               // by material
+  const Impacts& impacts_;
+  std::vector<material_def_t> materials_;
+  std::vector<double> curvatures_1_m_;                   // of bodies that are round; 0: flat, or nobody knows
   std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move, of which nobody tells often
-  std::map<std::int64_t, Way> ways_;
+  std::map<std::int64_t, Live> live_;
+  bool many_ = false;
+  std::vector<Candidate> candidates_;
   std::vector<Scrape> out_;
 };
 

@@ -124,10 +124,11 @@ void Voices::drive(const Drive& drive) {
   v.place = drive.place;
   if (v.driven == kDrives) return;
   bring_back(v);
+  v.directs[static_cast<std::size_t>(v.driven)] = drive.direct;
   v.drives[static_cast<std::size_t>(v.driven++)] = {drive.gains->data(), drive.force};
 }
 
-// The forces of the block; the clicks go straight to `out`.
+// The forces of the block; the clicks, and what is heard beside the modes, go straight to `out`.
 void Voices::collect(Voice& v, int frames, Pushes& pushes, float* out) {
   for (std::size_t i = 0; i < v.pulses.size(); ++i) {
     Pulse& p = v.pulses[i];
@@ -146,8 +147,10 @@ void Voices::collect(Voice& v, int frames, Pushes& pushes, float* out) {
     p.on = p.begin + p.end >= 0;
   }
   pushes.of_blows = pushes.count > 0;
-  for (int i = 0; i < v.driven; ++i)
-    pushes.list[static_cast<std::size_t>(pushes.count++)] = v.drives[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.driven); ++i) {
+    pushes.list[static_cast<std::size_t>(pushes.count++)] = v.drives[i];
+    for (int n = 0; v.directs[i] && n < frames; ++n) out[n] += v.directs[i][n];
+  }
   v.driven = 0;
 }
 

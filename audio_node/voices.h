@@ -24,7 +24,8 @@ struct Drive {
   const Resonators* resonators = nullptr;
   const PerMode* gains = nullptr;  // at the place of the contact, as of a strike
   Place place;
-  const float* force = nullptr;  // N s a sample, scaled to full scale per Pa; read until the end of that render()
+  const float* force = nullptr;   // N s a sample, scaled to full scale per Pa; read until the end of that render()
+  const float* direct = nullptr;  // heard beside the modes, at 1 m, likewise; null: nothing
 };
 
 // A fixed number of voices, each one body, whose modes ring in bank/ring.h. Striking or driving a voice that
@@ -88,6 +89,7 @@ class Voices {
     PerMode damping, stiffness, velocity, displacement;
     std::array<Pulse, kPulses> pulses;
     std::array<Push, kDrives> drives;
+    std::array<const float*, kDrives> directs;
     int driven = 0;
     Place place;
     int silent = 0;      // frames since the last of which something came

@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "audio_node/impact.h"
+#include "audio_node/roughness.h"
 #include "audio_node/samples/layers.h"
-#include "audio_node/scrapes.h"
 #include "audio_node/voices.h"
 #include "lcmtypes/vectors.h"
 #include "sync/node.h"
@@ -33,6 +33,8 @@ constexpr double kLongest_s = 1.5, kLoop_s = 1.2;
 constexpr float kEnd = 1e-3f;       // of the peak: it is over
 constexpr double kLoopRms = 0.1;    // leaves room for its peaks
 constexpr double kRollGrain = 0.1;  // a rolling patch of 1 mm feels no finer grain than that of scraping by 0.1
+// Only its shape counts, not its size.
+constexpr Roughness kRough{1e-6, 0};
 constexpr double kRollCutoff_Hz = 400;
 // Each with each other, besides all materials alone.
 const std::set<std::string> kPaired{"steel", "glass", "oak", "rubber"};
@@ -128,14 +130,19 @@ class Set {
     std::array<float, kMaxBlock> force;
     double went_m = 0, low = 0;
     const double follow = rolls ? 1 - std::exp(-2 * M_PI * kRollCutoff_Hz / kRate_Hz) : 1;
+    const double steepness = std::sqrt(mean_square_slope(kRough));
     std::vector<float> surface;
     const auto x = rendered(voices, kLoop_s + 0.2, [&](int frames) {
+      std::array<float, kMaxBlock> slope{}, none{};
+      const double step_m = (rolls ? kRollGrain : 1) * speed_m_s / kRate_Hz;
+      add_slopes(kRough, {{went_m, 0, 0}, {step_m, 0, 0}, {0, 0, 0}}, Eigen::Vector3f::UnitX(),
+                 Eigen::Vector3f::Zero(), frames, slope.data(), none.data());
       for (int n = 0; n < frames; ++n) {
-        low += follow * (roughness(rolls ? kRollGrain * went_m : went_m) - low);
+        low += follow * (static_cast<double>(slope[static_cast<std::size_t>(n)]) / steepness - low);
         surface.push_back(static_cast<float>(low));
         force[static_cast<std::size_t>(n)] = static_cast<float>(1e-4 * low);
-        went_m += speed_m_s / kRate_Hz;
       }
+      went_m += step_m * frames;
       for (int i = 0; i < (alone ? 1 : 2); ++i)
         voices.drive(
             {impacts.voice_id(i), &impacts.resonators(i), &gains[static_cast<std::size_t>(i)], {}, force.data()});

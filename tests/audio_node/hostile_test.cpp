@@ -85,7 +85,7 @@ std::vector<float> play(int wild, unsigned seed) {
   const scene_t scene = rough_scene();
   const Impacts impacts(scene, no_mesh, Settings{}, kRate, 1);
   const sync::BodyHistory bodies(1);
-  Sliding sliding(scene, wavy_surfaces(), bodies, Settings{});
+  Sliding sliding(scene, wavy_surfaces(), bodies, impacts, Settings{}, kRate);
   auto bench = std::make_unique<Bench>();
   std::mt19937 random(seed), wild_random(seed + 1);
   std::int64_t id = 0, wild_id = 1'000'000, number = 0;
@@ -132,7 +132,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
   const scene_t scene = rough_scene();
   const Impacts impacts(scene, no_mesh, Settings{}, kRate, 1);
   const sync::BodyHistory bodies(1);
-  Sliding sliding(scene, wavy_surfaces(), bodies, Settings{});
+  Sliding sliding(scene, wavy_surfaces(), bodies, impacts, Settings{}, kRate);
   auto bench = std::make_unique<Bench>();
   std::mt19937 random(9);
   // Also the bits of a float at random: NaNs, infinities, denormal and huge numbers.

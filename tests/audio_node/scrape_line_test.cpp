@@ -24,14 +24,31 @@ constexpr float kLoudest = 0.1f;
 // As the surfaces of a scene; freed they become so steep that a callback which reads them is heard.
 ScrapeLine::Surfaces poisoned_when_freed() {
   auto* surfaces = new HeardSurfaces;
-  auto relief = std::make_shared<Relief>(make_relief(waves(), rough()));
+  auto relief = std::make_shared<ReliefLevels>(make_relief(waves(), rough()));
   surfaces->by_material.push_back({relief, nullptr});
-  static std::vector<std::shared_ptr<Relief>> graveyard;  // memory that is never used again
+  static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never used again
   return {surfaces, [relief](const HeardSurfaces* gone) {
-            for (Eigen::Vector2f& slope : relief->slopes) slope.setConstant(1e6f);
+            for (Eigen::Vector2f& slope : const_cast<Relief&>(relief->finest()).slopes) slope.setConstant(1e6f);
             graveyard.push_back(relief);
             delete gone;
           }};
+}
+
+// Slides along the waves of a relief at 0.1 m/s, over a body with a mode of 300 Hz.
+Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, float strength) {
+  Scrape s;
+  s.id = id;
+  s.at = sync::host_time(at_ns);
+  s.slide = strength;
+  s.place.direction = Eigen::Vector3f::UnitY();
+  const Strike struck = strike_of(0, 0, 300, 50, 0);
+  ScrapeSide& side = s.sides[0];
+  side.voice = id;
+  side.resonators = struck.sides[0].resonators, side.gains = struck.sides[0].gains;
+  side.known = true;
+  side.relief = relief;
+  side.velocity_m_s.x() = 0.1, side.slides.x() = 1;
+  return s;
 }
 
 // A loop and a callback in one thread, by turns.
@@ -41,13 +58,8 @@ struct Line {
 
   // Of the contact `id`, heard from now, or so much later.
   bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
-    Scrape s;
-    s.id = id;
-    s.at = sync::host_time(bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)));
-    s.relief = surfaces->by_material[0].relief.get();
-    s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1;
-    s.level = 0.005f, s.place.direction = Eigen::Vector3f::UnitY();
-    return line.submit(s);
+    return line.submit(over(surfaces->by_material[0].relief.get(), id,
+                            bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)), 1e-4f));
   }
   // Something was heard, and nothing of what was freed.
   bool sound() const {
@@ -180,16 +192,11 @@ TEST_CASE(
   for (std::size_t scene = 0; scene < kScenes; ++scene) {
     auto surfaces = poisoned_when_freed();
     l.line.change(surfaces);
-    const Relief* relief = surfaces->by_material[0].relief.get();
+    const ReliefLevels* relief = surfaces->by_material[0].relief.get();
     surfaces.reset();
     for (int i = 0; i < 50; ++i) {
-      Scrape s;
-      s.id = static_cast<std::int64_t>(random() % 5);
-      s.at = sync::host_time(l.bench->time_ns(played + random() % 1000));
-      s.relief = relief;
-      s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1, s.level = 0.02f,
-      s.place.direction = Eigen::Vector3f::UnitY();
-      l.line.submit(s);
+      const auto id = static_cast<std::int64_t>(random() % 5);
+      l.line.submit(over(relief, id, l.bench->time_ns(played + random() % 1000), 1e-4f));
       freed += l.line.take_unread().size();
       std::this_thread::yield();
     }

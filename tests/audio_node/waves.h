@@ -30,7 +30,7 @@ inline material_def_t rough() {
 // Of a scene whose first material has the waves, and no other.
 inline std::shared_ptr<HeardSurfaces> wavy_surfaces() {
   auto surfaces = std::make_shared<HeardSurfaces>();
-  surfaces->by_material.push_back({std::make_shared<const Relief>(make_relief(waves(), rough())), nullptr});
+  surfaces->by_material.push_back({std::make_shared<const ReliefLevels>(make_relief(waves(), rough())), nullptr});
   return surfaces;
 }
 

@@ -1,0 +1,23 @@
+#include "audio_node/contact_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::audio {
+
+double reduced_modulus_Pa(const Elastic& a, const Elastic& b) {
+  const auto compliance = [](const Elastic& m) {
+    return (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
+  };
+  return 1 / (compliance(a) + compliance(b));
+}
+
+double patch_radius_m(double force_N, double curvature_1_m, double reduced_modulus_Pa) {
+  return std::cbrt(3 * force_N / (4 * curvature_1_m * reduced_modulus_Pa));
+}
+
+double patch_cutoff_Hz(double speed_m_s, double patch_radius_m) {
+  return speed_m_s / (2 * std::max(patch_radius_m, 1e-9));
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,19 @@
+// From the pressure that a model computes to the level that is played: the same for blows and for what scrapes.
+// Pure.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "audio_node/settings.gen.h"
+
+namespace tactus::audio {
+
+// Level at 1 m, full scale, of a peak pressure: the reference pressure becomes the reference level, others follow
+// with a smaller exponent. Louder than the reference by 12 dB at most: the limiter is for surprises (design).
+inline double level_of(double pressure_Pa, const Settings& settings) {
+  return settings.reference_level *
+         std::min(4.0, std::pow(pressure_Pa / settings.reference_pressure_Pa, settings.loudness_exponent));
+}
+
+}  // namespace tactus::audio
