@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "audio_node/spatial/diffuse_field.h"
 #include "audio_node/spatial/hull.h"
 #include "audio_node/spatial/onset.h"
 
@@ -19,7 +20,10 @@ using std::numbers::pi;
 // After its beginning a response is kept for so long: with what comes before, 128 samples at 48 kHz. Design:
 // levels in octaves stay within 1 dB of the whole response's.
 constexpr double kLength_s = 0.0023;
-constexpr int kFade = 16;  // of its last samples
+constexpr double kEqualised_s = 0.001;  // as finely as bands of 1 kHz. Design.
+constexpr std::size_t kOneIn = 4;       // of the directions: enough for a mean
+constexpr int kUncut = 2;               // as many lengths are equalised, before the rest is cut off
+constexpr int kFade = 16;               // of its last samples
 
 // A response without its delay, at another rate.
 struct Aligned {
@@ -31,10 +35,8 @@ std::vector<float> align(std::span<const float> response, double begin, double i
   std::vector<float> filter;
   for (int i = 0; i < taps; ++i) {
     const double t = begin + (i - Hrtf::kLead) * in_Hz / out_Hz;
-    const double fade = std::min(1.0, (taps - i) / (kFade + 1.0));
     // A sample of a filter stands for its integral over a step.
-    filter.push_back(
-        static_cast<float>(fade * in_Hz / out_Hz * value_at(response, t, std::min(1.0, out_Hz / in_Hz))));
+    filter.push_back(static_cast<float>(in_Hz / out_Hz * value_at(response, t, std::min(1.0, out_Hz / in_Hz))));
   }
   return filter;
 }
@@ -48,6 +50,30 @@ std::vector<Aligned> align_all(const MeasuredHrtf& m, double rate_Hz, int taps) 
                    align(m.response(i, 1), right, m.rate_Hz, rate_Hz, taps), later / m.rate_Hz});
   }
   return all;
+}
+
+// What all have in common goes: it would colour every sound, and headphones bring their own.
+void equalise(std::vector<Aligned>& all, double rate_Hz) {
+  std::vector<std::vector<float>> some;
+  for (std::size_t i = 0; i < all.size(); i += kOneIn) some.push_back(all[i].left), some.push_back(all[i].right);
+  const auto inverse = diffuse_field_inverse(some, static_cast<int>(kEqualised_s * rate_Hz));
+  for (Aligned& a : all)
+    for (std::vector<float>* filter : {&a.left, &a.right}) {
+      const std::vector<float> before = *filter;
+      for (std::size_t n = 0; n < before.size(); ++n) {
+        (*filter)[n] = 0;
+        for (std::size_t k = 0; k <= n && k < inverse.size(); ++k) (*filter)[n] += inverse[k] * before[n - k];
+      }
+    }
+}
+
+void cut(std::vector<Aligned>& all, int taps) {
+  for (Aligned& a : all)
+    for (std::vector<float>* filter : {&a.left, &a.right}) {
+      filter->resize(static_cast<std::size_t>(taps));
+      for (int i = taps - kFade; i < taps; ++i)
+        (*filter)[static_cast<std::size_t>(i)] *= static_cast<float>(taps - i) / (kFade + 1.f);
+    }
 }
 
 // Weights of the three corners whose sum points there, as of loudspeakers (panning.h), of sum 1.
@@ -92,7 +118,9 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
   const std::vector<Corner> hull = corners(m.directions);
   if (hull.empty())
     throw std::runtime_error("the directions of the HRTF file lie in one plane; choose another hrtf_file");
-  const std::vector<Aligned> aligned = align_all(m, rate_Hz, taps_);
+  std::vector<Aligned> aligned = align_all(m, rate_Hz, kUncut * taps_);
+  equalise(aligned, rate_Hz);
+  cut(aligned, taps_);
   const auto n = static_cast<std::size_t>(taps_);
   filters_.resize(static_cast<std::size_t>(kAzimuths * kElevations) * 2 * n);
   delays_.resize(static_cast<std::size_t>(kAzimuths * kElevations));

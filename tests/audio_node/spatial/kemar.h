@@ -68,12 +68,16 @@ inline std::complex<double> spectrum_at(const std::vector<double>& x, double fre
   return sum;
 }
 
+// In both, each frequency counts alike, so that a filter that both ears have in common plays no part.
+//
 // By how much the left ear hears later: the maximum of the cross-correlation below `up_to_Hz`, from the
 // cross-spectrum on a grid of 50 Hz, so that the rate plays no part. Microseconds.
 inline double time_difference_us(const TwoEars& ears, double rate_Hz, double up_to_Hz = 1500) {
   std::vector<std::complex<double>> cross;
-  for (double f = 50; f <= up_to_Hz; f += 50)
-    cross.push_back(std::conj(spectrum_at(ears.left, f, rate_Hz)) * spectrum_at(ears.right, f, rate_Hz));
+  for (double f = 50; f <= up_to_Hz; f += 50) {
+    const auto left = spectrum_at(ears.left, f, rate_Hz), right = spectrum_at(ears.right, f, rate_Hz);
+    cross.push_back(std::conj(left) * right / (std::norm(left) + std::norm(right)));
+  }
   double best_us = 0, most = -1e300;
   for (double us = -1000; us <= 1000; us += 1) {
     double sum = 0, f = 50;
@@ -87,8 +91,11 @@ inline double time_difference_us(const TwoEars& ears, double rate_Hz, double up_
 // Energy of the left ear over that of the right between two frequencies, dB.
 inline double level_difference_dB(const TwoEars& ears, double rate_Hz, double from_Hz, double to_Hz) {
   double left = 0, right = 0;
-  for (double f = from_Hz; f < to_Hz; f += 50)
-    left += std::norm(spectrum_at(ears.left, f, rate_Hz)), right += std::norm(spectrum_at(ears.right, f, rate_Hz));
+  for (double f = from_Hz; f < to_Hz; f += 50) {
+    const double l = std::norm(spectrum_at(ears.left, f, rate_Hz)),
+                 r = std::norm(spectrum_at(ears.right, f, rate_Hz));
+    left += l / (l + r), right += r / (l + r);
+  }
   return 10 * std::log10(left / right);
 }
 
