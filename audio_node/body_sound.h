@@ -30,6 +30,8 @@ struct BodySound {
   std::vector<Mode> modes;  // ascending
   double mass_kg = 1;       // of what vibrates
   double radius_m = 0.05;   // of a ball of the same extent: how well it radiates
+  // Measured modes are heard as strong as they were recorded, so that all radiate as the strongest does.
+  std::optional<double> radiates_as_Hz{};
   bool moves = true;
   Eigen::Isometry3d solid_to_body = Eigen::Isometry3d::Identity();  // T_body_solid
   Eigen::Vector3d half_extents_m = Eigen::Vector3d::Zero();         // of the solid, in its frame

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "audio_node/measured_modes.h"
 #include "audio_node/peak.h"
 #include "audio_node/plausible.h"
 #include "lcmtypes/vectors.h"
@@ -67,7 +68,7 @@ Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& sou
   const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
   const double r = p.norm();
   return {r > 1e-9 ? Eigen::Vector3f((p / r).cast<float>()) : Eigen::Vector3f::UnitX(),
-          static_cast<float>(std::max(r, nearest_m))};
+          static_cast<float>(std::max(r, nearest_m)), source_m.cast<float>()};
 }
 
 Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
@@ -77,6 +78,8 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
   const auto add = [&](const body_def_t& body, const shape_def_t* shape, int material_index) {
     const auto extent = shape && shape->kind == shape_def_t::MESH ? mesh(shape->mesh_hash) : std::nullopt;
     Voice v{body_sound(body, shape, material(material_index), extent, settings), {}, {}, {}};
+    if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
+      sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
     if (body.is_static) v.stands = to_eigen(body.pose);
     // Nearer to half the rate a resonator would sound as another.
     std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
@@ -86,7 +89,8 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
           mode_step(std::sqrt(mode.frequency_Hz * mode.frequency_Hz - lost * lost), mode.damping_1_s, rate_Hz);
       v.resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
-                           kSoundSpeed_m_s * radiation_m(mode.frequency_Hz, v.sound.radius_m));
+                           kSoundSpeed_m_s *
+                           radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
     }
     return v;
   };

@@ -11,9 +11,11 @@ float finite(float x) { return std::isfinite(x) ? x : 0; }
 
 }  // namespace
 
-Limiter::Limiter(double ceiling, double rate_Hz)
+Limiter::Limiter(double ceiling, double rate_Hz, int channels)
     : ceiling_(static_cast<float>(ceiling)),
-      release_(static_cast<float>(1 - std::exp(-1 / (kRelease_s * rate_Hz)))) {
+      release_(static_cast<float>(1 - std::exp(-1 / (kRelease_s * rate_Hz)))),
+      channels_(static_cast<std::size_t>(channels)),
+      delayed_(channels_ * kLookAhead) {
   gains_.fill(1);
 }
 
@@ -26,12 +28,11 @@ float Limiter::smallest_in_window(float target) {
   return values_[slot(front_)];
 }
 
-void Limiter::process(float* stereo, int frames) {
+void Limiter::process(float* samples, int frames) {
   for (int n = 0; n < frames; ++n, ++count_) {
-    float& left = stereo[2 * n];
-    float& right = stereo[2 * n + 1];
-    left = finite(left), right = finite(right);
-    const float peak = std::max(std::abs(left), std::abs(right));
+    float* const frame = samples + static_cast<std::size_t>(n) * channels_;
+    float peak = 0;
+    for (std::size_t c = 0; c < channels_; ++c) peak = std::max(peak, std::abs(frame[c] = finite(frame[c])));
     const float needed = smallest_in_window(peak > ceiling_ ? ceiling_ / peak : 1);
     gain_ = std::min(needed, gain_ + (1 - gain_) * release_);
 
@@ -46,10 +47,12 @@ void Limiter::process(float* stereo, int frames) {
     }
     const float gain = static_cast<float>(sum_ / kLookAhead);
 
-    const std::size_t in = 2 * slot(count_), out = 2 * slot(count_ + 1);
-    delayed_[in] = left, delayed_[in + 1] = right;
-    left = std::clamp(delayed_[out] * gain, -ceiling_, ceiling_);
-    right = std::clamp(delayed_[out + 1] * gain, -ceiling_, ceiling_);
+    float* const in = delayed_.data() + channels_ * slot(count_);
+    const float* const out = delayed_.data() + channels_ * slot(count_ + 1);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      in[c] = frame[c];
+      frame[c] = std::clamp(out[c] * gain, -ceiling_, ceiling_);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace tactus::audio {
 
@@ -16,10 +17,10 @@ class Limiter {
   static constexpr int kLookAhead = 64;
   static constexpr int kDelay = kLookAhead - 1;
 
-  Limiter(double ceiling, double rate_Hz);
-  // In place, left and right interleaved: what comes out is what came in kDelay frames before. Both sides get one
+  Limiter(double ceiling, double rate_Hz, int channels = 2);
+  // In place, channels interleaved: what comes out is what came in kDelay frames before. All channels get one
   // gain.
-  void process(float* stereo, int frames);
+  void process(float* samples, int frames);
 
  private:
   // 50 ms back to 63 % of the gain: shorter is heard as distortion of low tones (Giannoulis, Massberg, Reiss, J.
@@ -33,7 +34,8 @@ class Limiter {
   float gain_ = 1;
   double sum_ = kLookAhead;
   std::int64_t count_ = 0;
-  std::array<float, 2 * kLookAhead> delayed_{};
+  std::size_t channels_;
+  std::vector<float> delayed_;
   std::array<float, kLookAhead> gains_;
   // Monotonic queue of candidates for the window's minimum: their values and when they leave.
   std::array<float, kLookAhead> values_{};

@@ -213,6 +213,10 @@ int main(int argc, char** argv) try {
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
+    if (const auto ear = head.at(now + output.latency()); head_tool >= 0 && ear.how != sync::How::kNone)
+      output.hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
+    else if (scene.scene())
+      output.hear_from(to_eigen(scene.scene()->listener));
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = world.pop()) bodies.push(m->message, m->arrival);

@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "audio_node/spatial/space_of.h"
+
 namespace tactus::audio {
 namespace {
 
@@ -17,7 +19,8 @@ constexpr std::size_t kMostUnsounded = 1024;
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
-         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions;
+         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions && a.spatial == b.spatial &&
+         a.hrtf_file == b.hrtf_file && a.layout_file == b.layout_file;
 }
 
 // Those that this machine lacks are refused by name; the widest are used.
@@ -63,32 +66,44 @@ bool Output::keep_open(sync::HostTime now) {
 void Output::begin_to_open(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  const RendererDef def{settings_.sample_rate_Hz,
-                        settings_.period_frames,
-                        settings_.limiter_ceiling,
-                        late_policy(settings_.sample_rate_Hz, sync::from_seconds(settings_.late_limit_s)),
-                        instructions_of(settings_),
-                        [] { return sync::to_ns(sync::host_now()); }};
-  renderer_ = std::make_shared<Renderer>(*crossing_, def);
   ordered_.reset();
-  const StreamOptions options{settings_.device,
-                              static_cast<int>(settings_.sample_rate_Hz),
-                              settings_.period_frames,
-                              settings_.latency_periods,
-                              folder_,
-                              fifo_priority_};
-  if (open_) {
-    stream_ = open_(options, [crossing = crossing_, renderer = renderer_](float* out, int frames, const BlockTime& time) {
-      renderer->render(out, frames, time);
-    });
-    medium_ = stream_->medium();
-    return;
-  }
-  opening_.emplace([options, crossing = crossing_, renderer = renderer_] {
-    return std::make_unique<Stream>(options, [crossing, renderer](float* out, int frames, const BlockTime& time) {
-      renderer->render(out, frames, time);
-    });
+  heard_from_.reset();
+  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_] {
+    return open(settings, folder, priority, crossing, {});
   });
+}
+
+std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
+                                             const std::shared_ptr<Crossing>& crossing, const OpenCard& open) {
+  RendererDef def;
+  def.rate_Hz = settings.sample_rate_Hz;
+  def.period_frames = settings.period_frames;
+  def.ceiling = settings.limiter_ceiling;
+  def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
+  def.instructions = instructions_of(settings);
+  def.space = space_of(settings, settings.sample_rate_Hz);
+  def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
+  const auto renderer = std::make_shared<Renderer>(*crossing, def);
+  const StreamOptions options{settings.device,
+                              static_cast<int>(settings.sample_rate_Hz),
+                              settings.period_frames,
+                              settings.latency_periods,
+                              folder,
+                              priority,
+                              renderer->channels()};
+  const Card::Render render = [crossing, renderer](float* out, int frames, const BlockTime& time) {
+    renderer->render(out, frames, time);
+  };
+  auto card = open ? open(options, render) : std::make_unique<Stream>(options, render);
+  return std::make_unique<Opened>(Opened{renderer, std::move(card)});
+}
+
+void Output::take(Opened& opened) {
+  renderer_ = std::move(opened.renderer);
+  stream_ = std::move(opened.card);
+  medium_ = stream_->medium();
+  trouble_.clear();
 }
 
 void Output::end_opening(sync::HostTime now) {
@@ -99,9 +114,7 @@ void Output::end_opening(sync::HostTime now) {
     return;
   }
   try {
-    stream_ = opening_->take();
-    medium_ = stream_->medium();
-    trouble_.clear();
+    take(*opening_->take());
     // The scene may have chosen another card meanwhile.
     if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
@@ -123,6 +136,11 @@ void Output::degrade(const DropoutDef& dropout) {
   if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
 }
 
+void Output::hear_from(const Eigen::Isometry3d& listener) {
+  const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
+  if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
+}
+
 void Output::submit(const Strike& strike) {
   if ((stream_ && crossing_->strikes.push(strike)) || unsounded_.size() >= kMostUnsounded) return;
   presentation_t report{};
@@ -136,7 +154,9 @@ void Output::submit(const Strike& strike) {
 
 sync::Nanoseconds Output::latency() const {
   const double periods = settings_.latency_periods + kCallbackPeriods;
-  return sync::from_seconds((periods * settings_.period_frames + Limiter::kDelay) / settings_.sample_rate_Hz);
+  const int ears = settings_.spatial == "hrtf" ? kEarsLatency : 0;
+  return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
+                            settings_.sample_rate_Hz);
 }
 
 std::optional<presentation_t> Output::next_report() {

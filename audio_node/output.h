@@ -37,6 +37,8 @@ class Output {
   void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
   // Those that it need not keep any more. Freeing them may take milliseconds: not in a loop.
   std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
+  // Where the ear is, from now on, and how near a source may come.
+  void hear_from(const Eigen::Isometry3d& listener);
   // What is not taken at once is not heard: the next one is.
   void submit(const Scrape& scrape) {
     if (stream_) scrapes_.submit(scrape);
@@ -81,11 +83,20 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
-  ScrapeLine scrapes_;             // goes after the stream, whose callback reads what it keeps
-  Library library_;                // as well
-  std::optional<Orders> ordered_;  // what the renderer has been told; nothing: it is new
-  OpenCard open_;  // none: a Stream
-  std::optional<sync::Opening<Stream>> opening_;
+  ScrapeLine scrapes_;                  // goes after the stream, whose callback reads what it keeps
+  Library library_;                     // as well
+  std::optional<Orders> ordered_;       // what the renderer has been told; nothing: it is new
+  std::optional<Listener> heard_from_;  // likewise
+  OpenCard open_;                       // none: a Stream
+  // A card and what renders for it.
+  struct Opened {
+    std::shared_ptr<Renderer> renderer;
+    std::unique_ptr<Card> card;
+  };
+  static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
+                                      const std::shared_ptr<Crossing>& crossing, const OpenCard& open);
+  void take(Opened& opened);
+  std::optional<sync::Opening<Opened>> opening_;
   std::unique_ptr<Card> stream_;
   std::deque<presentation_t> unsounded_;
 };

@@ -49,14 +49,16 @@ sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
 Renderer::Renderer(Crossing& crossing, const RendererDef& def)
     : crossing_(crossing),
       rate_Hz_(def.rate_Hz),
+      channels_(def.space.channels()),
+      delay_(def.space.latency() + Limiter::kDelay),
       late_(def.late),
-      voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions)),
-      scrapes_(def.rate_Hz),
-      recorded_(crossing.recorded, def.rate_Hz),
+      voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
+      scrapes_(def.rate_Hz, def.space, def.instructions),
+      recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
       clock_ns_(def.clock_ns),
       scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
-      limiter_(def.ceiling, def.rate_Hz),
+      limiter_(def.ceiling, def.rate_Hz, channels_),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
@@ -66,6 +68,10 @@ void Renderer::take_orders() {
     dropout_.set(orders.dropout);
     pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
   }
+  Listener listener;
+  bool moved = false;
+  while (crossing_.listeners.pop(listener)) moved = true;
+  if (moved) voices_.hear_from(listener), scrapes_.hear_from(listener), recorded_.hear_from(listener);
 }
 
 // The ladder is told what a second of sound would take, since blocks may differ in length.
@@ -97,7 +103,7 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
   crossing_.reports.push(r);
 }
 
-void Renderer::render(float* stereo, int frames, const BlockTime& time) {
+void Renderer::render(float* out, int frames, const BlockTime& time) {
   const FlushToZero guard;
   take_orders();
   recorded_.take_databases();
@@ -106,7 +112,7 @@ void Renderer::render(float* stereo, int frames, const BlockTime& time) {
   while (crossing_.strikes.pop(strike))
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
   for (int done = 0; done < frames; done += kMaxBlock)
-    render_some(stereo + 2 * done, std::min(kMaxBlock, frames - done),
+    render_some(out + channels_ * done, std::min(kMaxBlock, frames - done),
                 {time.first_sample + samples(done), time.uncertainty, {}});
   let_go_of_scrapes();
   recorded_.let_go(scheduler_);
@@ -123,27 +129,29 @@ void Renderer::abandon() {
   recorded_.abandon(scheduler_);
 }
 
-// The block's frames are rendered now and leave the limiter kDelay frames later.
-void Renderer::render_some(float* stereo, int frames, const BlockTime& time) {
-  const BlockTime leaving{time.first_sample + samples(Limiter::kDelay), time.uncertainty, {}};
+// The block's frames are rendered now, reach the ears a little later and leave the limiter kDelay frames after
+// that.
+void Renderer::render_some(float* out, int frames, const BlockTime& time) {
+  const BlockTime leaving{time.first_sample + samples(delay_), time.uncertainty, {}};
   const sync::HostTime end =
       leaving.first_sample + sync::Nanoseconds(std::llround((frames - 0.5) * 1e9 / rate_Hz_));
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
-  std::fill(stereo, stereo + 2 * frames, 0.f);
+  std::fill(out, out + channels_ * frames, 0.f);
   const std::int64_t begun = clock();
-  voices_.render(stereo, frames);
+  voices_.render(out, frames);
   const int scraping = scrapes_.active();
   take_scrapes(leaving.first_sample);
   crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
-  scrapes_.render(stereo, frames, leaving.first_sample);
+  scrapes_.render(out, frames, leaving.first_sample);
   const std::int64_t computed = clock();
-  const int rubs = recorded_.render(stereo, frames, leaving.first_sample);
+  const int rubs = recorded_.render(out, frames, leaving.first_sample);
   crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
   crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
   crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
-  for (int n = 0; n < 2 * frames; ++n) stereo[n] *= open_[static_cast<std::size_t>(n / 2)];
-  limiter_.process(stereo, frames);
+  for (int n = 0; n < frames; ++n)
+    for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
+  limiter_.process(out, frames);
 }
 
 // They cross in the order in which they are to be heard; one that is early waits.

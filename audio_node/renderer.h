@@ -47,6 +47,7 @@ struct MethodCost {
 struct Crossing {
   Spsc<Strike> strikes{512};
   Spsc<Orders> orders{16};
+  Spsc<Listener> listeners{64};  // the newest counts
   Spsc<Scrape> scrapes{1024};
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
@@ -69,6 +70,7 @@ struct RendererDef {
   double ceiling = 0.9;
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
   Instructions instructions = available_instructions().back();
+  Space space = {};
   std::int64_t (*clock_ns)() = nullptr;  // to tell costs by; null: nobody asks
 };
 
@@ -77,10 +79,12 @@ class Renderer {
  public:
   Renderer(Crossing& crossing, const RendererDef& def);
 
-  // Fills `frames` stereo frames and reports what became of each strike. A strike that is due before what can
+  // Of the samples, interleaved.
+  int channels() const { return channels_; }
+  // Fills `frames` frames and reports what became of each strike. A strike that is due before what can
   // still be changed is played at once, as weak as the policy says, and called late, or dropped; one whose onset a
   // drop-out silences was dropped by the profile. Realtime-safe: yes.
-  void render(float* stereo, int frames, const BlockTime& time);
+  void render(float* out, int frames, const BlockTime& time);
 
   // What waits will never sound: reports all strikes as dropped, and holds no scrape. Of the loop's thread, once
   // the callback has ended.
@@ -93,7 +97,7 @@ class Renderer {
  private:
   void take_orders();
   void adapt(int frames, sync::Nanoseconds used);
-  void render_some(float* stereo, int frames, const BlockTime& time);
+  void render_some(float* out, int frames, const BlockTime& time);
   void take_scrapes(sync::HostTime until);
   void let_go_of_scrapes();
   void begin(const Strike& strike, int frames, const BlockTime& time);
@@ -103,6 +107,8 @@ class Renderer {
 
   Crossing& crossing_;
   double rate_Hz_;
+  int channels_;
+  int delay_;  // frames from what is rendered to what leaves
   sync::LatePolicy late_;
   Scheduler scheduler_{512};
   Voices voices_;

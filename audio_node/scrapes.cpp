@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "audio_node/pan.h"
-
 namespace tactus::audio {
 namespace {
 
@@ -50,13 +48,14 @@ void Scrapes::take(const Scrape& scrape) {
   }
   if (!free) return;
   *free = Voice{};
+  spatialiser_.begin(static_cast<int>(free - voices_.data()));
   free->on = true;
   free->now = scrape;
   free->heard = scrape.at;
   free->u = scrape.u, free->v = scrape.v, free->travelled_m = scrape.travelled_m;
 }
 
-void Scrapes::render(Voice& voice, float* mix, int frames, sync::HostTime first) const {
+void Scrapes::render(Voice& voice, int frames, sync::HostTime first) {
   const Scrape& s = voice.now;
   const double dt = 1 / rate_Hz_;
   // Where what was told would be at the first of these samples; what is missing is made up on the way.
@@ -65,25 +64,28 @@ void Scrapes::render(Voice& voice, float* mix, int frames, sync::HostTime first)
   const double lag_m = s.travelled_m + s.speed_m_s * since_s - voice.travelled_m;
   const double step_u = (s.u_per_s + lag_u / kFollow_s) * dt, step_v = (s.v_per_s + lag_v / kFollow_s) * dt;
   const double step_m = (s.speed_m_s + lag_m / kFollow_s) * dt;
-  const auto [left, right] = pan(s.place);
+  std::array<float, kMaxBlock> out;
   const bool told = first - voice.heard < kSilence;
   const float wanted = told ? s.level : 0, follow = static_cast<float>(1 - std::exp(-dt / kLevel_s));
   for (int n = 0; n < frames; ++n) {
     double slope = kRough * roughness(voice.travelled_m);
     if (s.relief) slope += s.relief->slope({voice.u, voice.v}).dot(Eigen::Vector2d(s.along_u, s.along_v));
     voice.level += follow * (wanted - voice.level);
-    const float sample = voice.level * static_cast<float>(slope);
-    mix[2 * n] += left * sample;
-    mix[2 * n + 1] += right * sample;
+    out[static_cast<std::size_t>(n)] = voice.level * static_cast<float>(slope);
     voice.u += step_u, voice.v += step_v, voice.travelled_m += step_m;
   }
+  spatialiser_.add(static_cast<int>(&voice - voices_.data()), listener_ ? heard_by(*listener_, s.place) : s.place,
+                   out.data(), frames);
   // The comparison also ends one that has become no number.
-  if (!told && !(voice.level > kOver)) voice.on = false;
+  const bool over = !told && !(voice.level > kOver);
+  if (over && voice.silent >= spatialiser_.tail()) voice.on = false;
+  voice.silent = over ? voice.silent + frames : 0;
 }
 
 void Scrapes::render(float* mix, int frames, sync::HostTime first) {
   for (Voice& v : voices_)
-    if (v.on) render(v, mix, frames, first);
+    if (v.on) render(v, frames, first);
+  spatialiser_.mix(mix, frames);
 }
 
 std::optional<std::int64_t> Scrapes::oldest() const {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "audio_node/scrape.h"
+#include "audio_node/spatial/spatialiser.h"
 
 namespace tactus::audio {
 
@@ -15,11 +16,15 @@ class Scrapes {
  public:
   static constexpr int kMost = 16;  // at a time; more are not heard
 
-  explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
+  explicit Scrapes(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
+      : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}
 
   // One that is to be heard from its instant on. Realtime-safe: yes.
   void take(const Scrape& scrape);
-  // Adds `frames` frames, left and right interleaved, the first of which is heard at `first`. Realtime-safe: yes.
+  // They stay where they are in the world. Realtime-safe: yes.
+  void hear_from(const Listener& listener) { listener_ = listener; }
+  // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
+  // Realtime-safe: yes.
   void render(float* mix, int frames, sync::HostTime first);
   int active() const;
   // Number of the oldest scrape that it holds, and whose relief it may still read. Realtime-safe: yes.
@@ -33,12 +38,14 @@ class Scrapes {
     double u = 0, v = 0, travelled_m = 0;  // of the sample that comes next
     float level = 0;                       // goes to that of `now`
     sync::HostTime heard{};                // of the newest
-    float last = 0;
+    int silent = 0;                        // frames since the last of which something came
   };
-  void render(Voice& voice, float* mix, int frames, sync::HostTime first) const;
+  void render(Voice& voice, int frames, sync::HostTime first);
 
   double rate_Hz_;
   std::array<Voice, kMost> voices_;
+  Spatialiser spatialiser_;
+  std::optional<Listener> listener_;
 };
 
 // Slope of the roughness that every surface has, after so much way: the same in every run, mean square 1.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "audio_node/pan.h"
-
 namespace tactus::audio {
 namespace {
 
@@ -27,11 +25,12 @@ float over_modes(const Voice& v, F f) {
 
 }  // namespace
 
-Voices::Voices(int voices, double rate_Hz, Ring ring)
+Voices::Voices(int voices, double rate_Hz, Ring ring, const Space& space, Instructions instructions)
     : limits_{voices, 1},
       ring_(ring),
       fade_step_(static_cast<float>(1 / (kFade_s * rate_Hz))),
-      voices_(static_cast<std::size_t>(voices + kFading)) {}
+      voices_(static_cast<std::size_t>(voices + kFading)),
+      spatialiser_(space, voices + kFading, rate_Hz, instructions) {}
 
 void Voices::set_limits(const VoiceLimits& limits) {
   const int most = static_cast<int>(voices_.size()) - kFading;
@@ -71,7 +70,7 @@ int Voices::allowed(const Voice& v) const {
   return (groups + limits_.modes_of - 1) / limits_.modes_of * kModeGroup;
 }
 
-void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const Place& place) const {
+void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const Place& place) {
   v.id = id;
   v.modes = (std::clamp(resonators.count, 0, kMaxModes) + kModeGroup - 1) / kModeGroup * kModeGroup;
   v.rendered = v.kept = allowed(v);
@@ -81,7 +80,8 @@ void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const
   for (Pulse& p : v.pulses) p.on = false;
   v.driven = 0;
   v.place = place;
-  v.left = v.right = -1;
+  v.silent = 0;
+  spatialiser_.begin(static_cast<int>(&v - voices_.data()));
   v.expected = v.level = 0;
 }
 
@@ -184,21 +184,7 @@ void Voices::end_cut(Voice& v) const {
   v.cut = {};
 }
 
-// Its gains go straight to where they shall be at the end of the block.
-void Voices::place(Voice& v, const float* mono, float* mix, int frames) {
-  const auto [left, right] = pan(v.place);
-  if (v.left < 0) v.left = left, v.right = right;
-  const float step_left = (left - v.left) / static_cast<float>(frames);
-  const float step_right = (right - v.right) / static_cast<float>(frames);
-  for (int n = 0; n < frames; ++n) {
-    v.left += step_left, v.right += step_right;
-    mix[2 * n] += v.left * mono[n];
-    mix[2 * n + 1] += v.right * mono[n];
-  }
-  v.left = left, v.right = right;
-}
-
-void Voices::render(Voice& v, float* mix, int frames) const {
+void Voices::render(Voice& v, int frames) {
   cut(v);
   std::array<float, kMaxBlock> out{};
   Pushes pushes;
@@ -212,18 +198,22 @@ void Voices::render(Voice& v, float* mix, int frames) const {
     end_cut(v);
   }
   fade(v.whole, out.data(), frames);
-  place(v, out.data(), mix, frames);
-  v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / v.place.distance_m * v.whole.gain;
+  const Place place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
+  v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
   const bool pushed = pushes.count > 0;
-  // The comparison also ends a voice that has become no number.
-  if (v.whole.gain <= 0 || (!pushed && !(v.level > kOver))) v.id = -1;
+  // What is on its way to the ears is still heard, but for a voice that has become no number.
+  const bool over = v.whole.gain <= 0 || (!pushed && !(v.level > kOver));
+  if (!std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
+  v.silent = over ? v.silent + frames : 0;
   if (pushes.of_blows) v.level += v.expected;
 }
 
 void Voices::render(float* mix, int frames) {
   leave_room(limits_.voices);
   for (Voice& v : voices_)
-    if (v.id >= 0) render(v, mix, frames);
+    if (v.id >= 0) render(v, frames);
+  spatialiser_.mix(mix, frames);
 }
 
 int Voices::active() const {

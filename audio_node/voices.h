@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "audio_node/bank/ring.h"
+#include "audio_node/spatial/spatialiser.h"
 #include "audio_node/strike.h"
 
 namespace tactus::audio {
@@ -32,7 +34,8 @@ struct Drive {
 class Voices {
  public:
   // As many voices as no limit will exceed.
-  Voices(int voices, double rate_Hz, Ring ring);
+  Voices(int voices, double rate_Hz, Ring ring, const Space& space = {},
+         Instructions instructions = Instructions::kSse2);
 
   // From the next render() on.
   void set_limits(const VoiceLimits& limits);
@@ -42,7 +45,9 @@ class Voices {
   void strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset);
   // Before each render() as long as the contact lasts. Of one body so many at a time are heard: kDrives.
   void drive(const Drive& drive);
-  // Adds `frames` <= kMaxBlock frames, left and right interleaved.
+  // Bodies stay where they are in the world, also those that ring already.
+  void hear_from(const Listener& listener) { listener_ = listener; }
+  // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
   // That sound, with those that fade.
@@ -85,7 +90,7 @@ class Voices {
     std::array<Push, kDrives> drives;
     int driven = 0;
     Place place;
-    float left = 0, right = 0;
+    int silent = 0;      // frames since the last of which something came
     float expected = 0;  // level that the last pulse will give
     float level = 0;  // largest sum of amplitudes of the last block; while a pulse is on, what is expected besides
   };
@@ -101,21 +106,22 @@ class Voices {
   Voice& free_voice();
   Voice& voice_of(std::int64_t id, const Resonators& resonators, const Place& place);
   void leave_room(int at_most);
-  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const Place& place) const;
+  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const Place& place);
   void bring_back(Voice& voice) const;
   void cut(Voice& voice) const;
   int allowed(const Voice& voice) const;
   void end_cut(Voice& voice) const;
-  void render(Voice& voice, float* mix, int frames) const;
+  void render(Voice& voice, int frames);
   void fade(Fade& fade, float* samples, int frames) const;
   static void collect(Voice& voice, int frames, Pushes& pushes, float* out);
   void resonate(Voice& voice, int from, int to, int frames, const Pushes& pushes, float* out) const;
-  static void place(Voice& voice, const float* mono, float* mix, int frames);
 
   VoiceLimits limits_;
   Ring ring_;
   float fade_step_;  // a sample
   std::vector<Voice> voices_;
+  Spatialiser spatialiser_;
+  std::optional<Listener> listener_;
 };
 
 }  // namespace tactus::audio

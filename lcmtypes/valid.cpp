@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lcmtypes/bump.h"
+#include "lcmtypes/measured_modes.h"
 
 namespace tactus {
 namespace {
@@ -138,6 +140,10 @@ bool sane_friction_map(const material_def_t& m) {
          within(m.friction_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) && within(m.friction_black, 0, kMaxFrictionFactor) &&
          within(m.friction_white, 0, kMaxFrictionFactor);
 }
+bool sane(const measured_mode_t& m) {
+  return m.frequency_Hz >= kMinModeFrequency_Hz && m.frequency_Hz <= kMaxModeFrequency_Hz && m.damping_1_s > 0 &&
+         m.damping_1_s < 2 * std::numbers::pi * m.frequency_Hz && finite_positive(m.amplitude);
+}
 bool sane(const material_def_t& m) {
   // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
@@ -145,7 +151,8 @@ bool sane(const material_def_t& m) {
          sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
          sane_not_negative(m.restitution) && sane_not_negative(m.conductivity_W_mK) &&
          sane_not_negative(m.specific_heat_J_kgK) && sane(m.temperature_degC) && sane_bump(m) &&
-         sane_friction_map(m);
+         sane_friction_map(m) && m.mode_count <= kMaxMeasuredModes &&
+         std::all_of(m.modes.begin(), m.modes.end(), [](const measured_mode_t& mode) { return sane(mode); });
 }
 bool sane(const shape_def_t& s, int bodies, int materials) {
   return between(s.body, 0, bodies - 1) && between(s.material, -1, materials - 1) && sane(s.pose) &&

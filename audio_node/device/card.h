@@ -19,11 +19,13 @@ struct StreamOptions {
   double latency_periods = 2;  // asked of the card; more is safer and later
   std::string folder = ".";    // where audio.wav goes
   int fifo_priority = 0;       // of the callback, where the process runs under FIFO; 0: leave it
+  int channels = 2;
 };
 
 class Card {
  public:
-  using Render = std::function<void(float* stereo, int frames, const BlockTime& time)>;
+  // Fills frames, channels interleaved.
+  using Render = std::function<void(float* out, int frames, const BlockTime& time)>;
 
   virtual ~Card() = default;
 

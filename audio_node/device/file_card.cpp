@@ -6,23 +6,17 @@
 #include <utility>
 
 namespace tactus::audio {
-namespace {
-
-constexpr int kChannels = 2;
-
-}  // namespace
-
 FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render render)
     : wav_(wav),
       render_(std::move(render)),
       rate_Hz_(options.rate_Hz),
       period_frames_(options.period_frames),
       ahead_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
-      block_(static_cast<std::size_t>(options.period_frames * kChannels)),
+      block_(static_cast<std::size_t>(options.period_frames * options.channels)),
       file_(nullptr, sf_close) {
   SF_INFO info{};
   info.samplerate = options.rate_Hz;
-  info.channels = kChannels;
+  info.channels = options.channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
   file_.reset(sf_open(wav.c_str(), SFM_WRITE, &info));
   if (!file_) throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");

@@ -53,7 +53,7 @@ void silence_sound_libraries() {
     if (const auto set = reinterpret_cast<SetHandler>(dlsym(RTLD_DEFAULT, name))) set(say_nothing_to_jack);
 }
 
-VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int pairs_fd) {
+VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int channels, int pairs_fd) {
   const auto plugin =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "libasound_module_pcm_vcard.so";
   if (!std::filesystem::exists(plugin))
@@ -61,7 +61,7 @@ VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int pairs_fd)
                              " is missing; build it with the target audio_node");
   const std::string text = "pcm_type.vcard { lib " + quoted(plugin) + " }\npcm." + kName + " { type vcard file " +
                            quoted(std::filesystem::absolute(wav_path)) + " rate " + std::to_string(rate_Hz) +
-                           " channels 2 pairs_fd " + std::to_string(pairs_fd) +
+                           " channels " + std::to_string(channels) + " pairs_fd " + std::to_string(pairs_fd) +
                            " hint { show on description \"Tactus virtual card\" } }\n"
                            "pcm.default " +
                            kName + "\n";  // PortAudio 19.6 aborts where there is no default

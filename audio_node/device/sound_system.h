@@ -17,7 +17,7 @@ class VirtualCard {
  public:
   static constexpr const char* kName = "vcard";
   // The plug-in lies beside the program. Throws std::runtime_error with one sentence.
-  VirtualCard(const std::string& wav_path, int rate_Hz, int pairs_fd);
+  VirtualCard(const std::string& wav_path, int rate_Hz, int channels, int pairs_fd);
   ~VirtualCard();
   VirtualCard(const VirtualCard&) = delete;
   VirtualCard& operator=(const VirtualCard&) = delete;

@@ -22,7 +22,6 @@ static_assert(MediaPair::kStart == media_clock_t::START && MediaPair::kPeriodic 
               MediaPair::kUnderflow == media_clock_t::UNDERFLOW);
 
 constexpr sync::Nanoseconds kSilentFor{500'000'000};
-constexpr int kChannels = 2;
 
 void check(PaError error, const std::string& what) {
   if (error < 0)
@@ -30,7 +29,15 @@ void check(PaError error, const std::string& what) {
                              "); choose another --audio-device or \"virtual\"");
 }
 
-PaDeviceIndex find_device(const std::string& wanted) {
+constexpr int kFewestChannels = 2;  // of a card that is offered by name
+
+[[noreturn]] void refuse_channels(const PaDeviceInfo& card, int channels) {
+  throw std::runtime_error("the sound card \"" + std::string(card.name) + "\" has " +
+                           std::to_string(card.maxOutputChannels) + " channels, but the loudspeakers need " +
+                           std::to_string(channels) + "; choose another layout_file or --audio-device");
+}
+
+PaDeviceIndex find_device(const std::string& wanted, int channels) {
   if (wanted == "default") {
     const PaDeviceIndex index = Pa_GetDefaultOutputDevice();
     if (index == paNoDevice)
@@ -38,12 +45,17 @@ PaDeviceIndex find_device(const std::string& wanted) {
     return index;
   }
   std::string known;
+  const PaDeviceInfo* few = nullptr;
   for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i) {
     const PaDeviceInfo* info = Pa_GetDeviceInfo(i);
-    if (info->maxOutputChannels < kChannels) continue;
-    if (std::string(info->name).find(wanted) != std::string::npos) return i;
+    if (info->maxOutputChannels < kFewestChannels) continue;
+    if (std::string(info->name).find(wanted) != std::string::npos) {
+      if (info->maxOutputChannels >= channels) return i;
+      few = info;
+    }
     known += std::string(known.empty() ? "" : ", ") + info->name;
   }
+  if (few) refuse_channels(*few, channels);
   throw std::runtime_error("there is no sound card \"" + wanted + "\"; choose default, virtual" +
                            (known.empty() ? "" : " or one of: " + known));
 }
@@ -103,22 +115,24 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
   if (real) {
     try {
       portaudio_ = std::make_unique<PortAudio>();
-      device = find_device(options.device);
+      device = find_device(options.device, options.channels);
     } catch (const std::exception&) {
       portaudio_.reset();
       if (options.device != "default") throw;  // what was asked for by name is not replaced in silence
     }
   }
   if (!portaudio_) {
-    virtual_card_ = std::make_unique<VirtualCard>(wav, options.rate_Hz, pairs_[1]);
+    virtual_card_ = std::make_unique<VirtualCard>(wav, options.rate_Hz, options.channels, pairs_[1]);
     portaudio_ = std::make_unique<PortAudio>();
-    device = find_device(VirtualCard::kName);
+    device = find_device(VirtualCard::kName, options.channels);
   }
+  if (const PaDeviceInfo* info = Pa_GetDeviceInfo(device); info->maxOutputChannels < options.channels)
+    refuse_channels(*info, options.channels);
   card_ = virtual_card_ ? "virtual card" : Pa_GetDeviceInfo(device)->name;
 
   PaStreamParameters parameters{};
   parameters.device = device;
-  parameters.channelCount = kChannels;
+  parameters.channelCount = options.channels;
   parameters.sampleFormat = paFloat32;
   // A thread of normal priority wakes later: one period more.
   const double periods = options.latency_periods + (sync::is_realtime() ? 0 : 1);
@@ -128,7 +142,7 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
         "the sound card \"" + card_ + "\" cannot be opened at " + std::to_string(options.rate_Hz) + " Hz");
   latency_s_ = Pa_GetStreamInfo(stream_)->outputLatency;
   try {
-    if (!virtual_card_) tee_ = std::make_unique<Capture>(wav, options.rate_Hz, kChannels, pairs_[1]);
+    if (!virtual_card_) tee_ = std::make_unique<Capture>(wav, options.rate_Hz, options.channels, pairs_[1]);
     last_ns_ = sync::to_ns(sync::host_now());
     check(Pa_StartStream(stream_), "the sound card \"" + card_ + "\" does not start");
   } catch (...) {

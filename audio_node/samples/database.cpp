@@ -101,6 +101,8 @@ class Reader {
       const auto speed = positive(path.stem().string());
       if (ending != ".wav" && ending != ".flac") {
         blame(path, "is neither WAV nor FLAC; convert it or take it away");
+      } else if (std::error_code error; !fs::is_regular_file(path, error)) {
+        blame(path, "is no file; take it away");
       } else if (!speed) {
         blame(path, "does not begin with a speed in m/s; call it 0.5.wav or 0.5_2.wav, for example");
       } else if (into_.bytes > kMostBytes) {

@@ -32,6 +32,7 @@ bool Loops::take(const Rub& rub) {
   }
   if (!free) return false;
   *free = Voice{};
+  spatialiser_.begin(static_cast<int>(free - voices_.data()));
   free->on = true;
   free->now = rub;
   const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMostLayers));
@@ -48,20 +49,30 @@ void Loops::add(Playing& p, double step, float wanted, float* out, int frames) c
   const std::vector<float>& x = p.recording->samples;
   const auto size = x.size();
   const auto length = static_cast<double>(size);
-  const auto follow = static_cast<float>(1 - std::exp(-1 / (kLevel_s * rate_Hz_)));
-  for (int n = 0; n < frames; ++n) {
+  std::array<float, kMaxBlock> played;
+  for (int n = 0; n < frames;) {
+    const int inside = stretch(x.data(), size, p.at, step, &played[static_cast<std::size_t>(n)], frames - n);
+    n += inside;
+    p.at += inside * step;
+    if (inside > 0) continue;
+    // Over the seam.
     const auto i = std::min(static_cast<std::size_t>(p.at), size - 1);
     const auto part = static_cast<float>(p.at - static_cast<double>(i));
-    p.level += follow * (wanted - p.level);
     const std::size_t before = i == 0 ? size - 1 : i - 1, after = i + 1 < size ? i + 1 : 0;
     const std::size_t later = after + 1 < size ? after + 1 : 0;
-    out[n] += p.level * between(x[before], x[i], x[after], x[later], part);
+    played[static_cast<std::size_t>(n++)] = between(x[before], x[i], x[after], x[later], part);
     p.at += step;
     if (p.at >= length) p.at -= length;
   }
+  // Straight to where it shall be at the end of the block.
+  const auto left = static_cast<float>(std::exp(-frames / (kLevel_s * rate_Hz_)));
+  const float begin = p.level, rise = (wanted + (begin - wanted) * left - begin) / static_cast<float>(frames);
+  for (int n = 0; n < frames; ++n)
+    out[n] += (begin + static_cast<float>(n + 1) * rise) * played[static_cast<std::size_t>(n)];
+  p.level = wanted + (begin - wanted) * left;
 }
 
-void Loops::render(Voice& v, float* mix, int frames, sync::HostTime first) const {
+void Loops::render(Voice& v, int frames, sync::HostTime first) {
   const bool told = first - v.now.at < kSilence;
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
@@ -80,14 +91,18 @@ void Loops::render(Voice& v, float* mix, int frames, sync::HostTime first) const
     add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, out.data(), frames);
     level = std::max(level, p.level);
   }
-  v.ears.add(v.now.place, out.data(), mix, frames);
+  spatialiser_.add(static_cast<int>(&v - voices_.data()), listener_ ? heard_by(*listener_, v.now.place) : v.now.place,
+                   out.data(), frames);
   // The comparison also ends one that has become no number.
-  if (!told && !(level > kOver)) v.on = false;
+  const bool over = !told && !(level > kOver);
+  if (over && v.silent >= spatialiser_.tail()) v.on = false;
+  v.silent = over ? v.silent + frames : 0;
 }
 
 void Loops::render(float* mix, int frames, sync::HostTime first) {
   for (Voice& v : voices_)
-    if (v.on) render(v, mix, frames, first);
+    if (v.on) render(v, frames, first);
+  spatialiser_.mix(mix, frames);
 }
 
 int Loops::active() const {

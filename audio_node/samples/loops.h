@@ -3,9 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
-#include "audio_node/samples/ears.h"
 #include "audio_node/samples/shot.h"
+#include "audio_node/spatial/spatialiser.h"
 
 namespace tactus::audio {
 
@@ -17,11 +18,14 @@ class Loops {
   static constexpr int kMost = 32;       // at a time; more are not heard
   static constexpr int kMostLayers = 8;  // of one sound
 
-  explicit Loops(double rate_Hz) : rate_Hz_(rate_Hz) {}
+  explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
+      : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}
+
+  void hear_from(const Listener& listener) { listener_ = listener; }
 
   // One that is to be heard from its instant on. True when it begins.
   bool take(const Rub& rub);
-  // Adds `frames` <= kMaxBlock frames, left and right interleaved, the first of which is heard at `first`.
+  // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
   void render(float* mix, int frames, sync::HostTime first);
 
   int active() const;
@@ -38,14 +42,16 @@ class Loops {
   struct Voice {
     Rub now;
     bool on = false;
-    Ears ears;
+    int silent = 0;  // frames since the last of which something came
     std::array<Playing, kMostLayers> layers;
   };
-  void render(Voice& voice, float* mix, int frames, sync::HostTime first) const;
+  void render(Voice& voice, int frames, sync::HostTime first);
   void add(Playing& playing, double step, float wanted, float* out, int frames) const;
 
   double rate_Hz_;
   std::array<Voice, kMost> voices_;
+  Spatialiser spatialiser_;
+  std::optional<Listener> listener_;
 };
 
 }  // namespace tactus::audio

@@ -128,9 +128,11 @@ class Set {
     std::array<float, kMaxBlock> force;
     double went_m = 0, low = 0;
     const double follow = rolls ? 1 - std::exp(-2 * M_PI * kRollCutoff_Hz / kRate_Hz) : 1;
-    auto x = rendered(voices, kLoop_s + 0.2, [&](int frames) {
+    std::vector<float> surface;
+    const auto x = rendered(voices, kLoop_s + 0.2, [&](int frames) {
       for (int n = 0; n < frames; ++n) {
         low += follow * (roughness(rolls ? kRollGrain * went_m : went_m) - low);
+        surface.push_back(static_cast<float>(low));
         force[static_cast<std::size_t>(n)] = static_cast<float>(1e-4 * low);
         went_m += speed_m_s / kRate_Hz;
       }
@@ -138,15 +140,23 @@ class Set {
         voices.drive(
             {impacts.voice_id(i), &impacts.resonators(i), &gains[static_cast<std::size_t>(i)], {}, force.data()});
     });
-    x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(0.2 * kRate_Hz));  // until it is steady
-    double power = 0, peak = 0;
-    for (const float v : x) {
-      power += static_cast<double>(v) * static_cast<double>(v);
-      peak = std::max(peak, std::abs(static_cast<double>(v)));
+    // As strong as the modes: what the surfaces radiate by themselves, without which a loop would be a tone.
+    double of_modes = 0, of_surface = 0, peak = 0;
+    const auto steady = static_cast<std::size_t>(0.2 * kRate_Hz);
+    for (std::size_t n = steady; n < x.size(); ++n) {
+      of_modes += static_cast<double>(x[n]) * static_cast<double>(x[n]);
+      of_surface += static_cast<double>(surface[n]) * static_cast<double>(surface[n]);
     }
-    const double rms = std::sqrt(power / static_cast<double>(x.size()));
-    for (float& v : x) v *= static_cast<float>(std::min(kLoopRms / rms, 0.9 / peak));
-    return x;
+    std::vector<float> both;
+    const auto count = static_cast<double>(x.size() - steady);
+    for (std::size_t n = steady; n < x.size(); ++n) {
+      both.push_back(static_cast<float>(kLoopRms * std::sqrt(count / 2) *
+                                        (static_cast<double>(x[n]) / std::sqrt(of_modes) +
+                                         static_cast<double>(surface[n]) / std::sqrt(of_surface))));
+      peak = std::max(peak, std::abs(static_cast<double>(both.back())));
+    }
+    for (float& v : both) v *= static_cast<float>(std::min(1.0, 0.9 / peak));
+    return both;
   }
 
   static std::vector<float> rendered(Voices& voices, double length_s, const std::function<void(int)>& before) {
@@ -187,12 +197,20 @@ class Set {
 int main(int argc, char** argv) try {
   std::string folder, materials, readme;
   CLI::App app{"Renders the default set of recordings from modal models."};
-  app.add_option("folder", folder, "where to")->required();
-  app.add_option("--materials", materials, "table of materials")->required();
+  app.add_option("folder", folder, "where to");
+  app.add_option("--materials", materials, "table of materials");
   app.add_option("--readme", readme, "goes beside them");
   sync::parse_or_exit(app, "make_sounds", argc, argv);
+  if (folder.empty() || materials.empty())
+    throw std::runtime_error("give a folder and --materials; see make_sounds --help");
   const auto all = read_materials(materials);
+  // What it renders anew is a set of its own, never a folder of somebody's.
+  const auto mark = std::filesystem::path(folder) / ".rendered";
+  if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder) && !std::filesystem::exists(mark))
+    throw std::runtime_error(folder + " is there and no set of this program; give a new folder");
   std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(mark) << "by make_sounds\n";
   Set set(folder);
   for (std::size_t i = 0; i < all.size(); ++i) {
     set.render(all[i], all[i], true);

@@ -25,13 +25,20 @@ struct RecordedCrossing {
 // Realtime-safe: yes, all but the constructor.
 class Recorded {
  public:
-  Recorded(RecordedCrossing& crossing, double rate_Hz)
-      : crossing_(crossing), shots_(rate_Hz), loops_(rate_Hz), database_(crossing.let_go.load()) {}
+  Recorded(RecordedCrossing& crossing, double rate_Hz, const Space& space = {},
+           Instructions instructions = Instructions::kSse2)
+      : crossing_(crossing),
+        shots_(rate_Hz, space, instructions),
+        loops_(rate_Hz, space, instructions),
+        database_(crossing.let_go.load()) {}
+
+  // What sounds stays where it is in the world.
+  void hear_from(const Listener& listener) { shots_.hear_from(listener), loops_.hear_from(listener); }
 
   // At the beginning of a call, before strikes are taken.
   void take_databases();
   void begin(const Strike& strike, float gain, int offset) { shots_.take(strike.recorded, gain, offset); }
-  // Adds `frames` frames, left and right interleaved, the first of which is heard at `first`. Returns how many
+  // Adds `frames` frames, channels interleaved, the first of which is heard at `first`. Returns how many
   // contacts began to scrape or roll.
   int render(float* mix, int frames, sync::HostTime first);
   // At the end of a call. waiting: strikes that have not begun.

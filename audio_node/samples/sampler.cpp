@@ -18,11 +18,8 @@ constexpr double kLeastPitch = 0.5, kMostPitch = 2;
 constexpr double kLeastSpeed_m_s = 1e-3, kMostSpeed_m_s = 5, kMostForce_N = 50;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
 
-// Of the bodies of a pair that whose size the ear takes for that of the sound: the smaller of those that move.
-double size_of(const BodySound& a, const BodySound& b) {
-  if (a.moves != b.moves) return a.moves ? a.radius_m : b.radius_m;
-  return std::min(a.radius_m, b.radius_m);
-}
+// That of a pair: a ball on a floor, a hand on a bar are told by the smaller of the two (design).
+double size_of(const BodySound& a, const BodySound& b) { return std::min(a.radius_m, b.radius_m); }
 
 }  // namespace
 

@@ -38,7 +38,10 @@ class Sampler {
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
   // Of which database recordings are from now on; null: of none. It outlives all calls until the next of this.
-  void play(const Database* database, std::int64_t number) { database_ = database, number_ = number; }
+  void play(const Database* database, std::int64_t number) {
+    if (number != number_) said_.clear();
+    database_ = database, number_ = number;
+  }
 
   // False: nothing is recorded, and nobody need look at contacts.
   bool plays() const { return database_ && gains_of(settings_).recorded > 0; }

@@ -8,12 +8,13 @@
 
 namespace tactus::audio {
 
-Shots::Shots(double rate_Hz)
+Shots::Shots(double rate_Hz, const Space& space, Instructions instructions)
     : fade_step_(static_cast<float>(1 / (kFade_s * rate_Hz))),
-      voices_(static_cast<std::size_t>(kMost + kFading)) {}
+      voices_(static_cast<std::size_t>(kMost + kFading)),
+      spatialiser_(space, kMost + kFading, rate_Hz, instructions) {}
 
 void Shots::leave_room() {
-  const auto sounds = [](const Voice& v) { return v.shot.recording && !v.fades; };
+  const auto sounds = [](const Voice& v) { return v.on && !v.fades; };
   if (std::count_if(voices_.begin(), voices_.end(), sounds) < kMost) return;
   Voice* quietest = nullptr;
   for (Voice& v : voices_)
@@ -25,64 +26,92 @@ void Shots::leave_room() {
 Shots::Voice& Shots::free_voice() {
   Voice* best = nullptr;
   for (Voice& v : voices_) {
-    if (!v.shot.recording) return v;
+    if (!v.on) return v;
     if (v.fades && (!best || v.level < best->level)) best = &v;
   }
   return *best;
 }
 
 void Shots::take(const RecordedStrike& strike, float gain, int offset) {
-  if (strike.database == 0) return;
-  for (const Shot& shot : strike.shots) {
-    if (!shot.recording || !(shot.gain * gain > 0)) continue;
-    leave_room();
-    Voice& v = free_voice();
-    v = Voice{};
-    v.shot = shot;
-    v.shot.gain *= gain;
-    v.database = strike.database;
-    v.place = strike.place;
-    v.begin = offset;
-    v.level = v.shot.gain * shot.recording->peak / strike.place.distance_m;
+  float level = 0;
+  for (const Shot& s : strike.shots)
+    if (s.recording) level += s.gain * gain * s.recording->peak;
+  if (strike.database == 0 || !(level > 0)) return;
+  leave_room();
+  Voice& v = free_voice();
+  v = Voice{};
+  spatialiser_.begin(static_cast<int>(&v - voices_.data()));
+  v.on = true;
+  for (std::size_t i = 0; i < v.shots.size(); ++i) {
+    v.shots[i].shot = strike.shots[i];
+    v.shots[i].shot.gain *= gain;
   }
+  v.database = strike.database;
+  v.place = strike.place;
+  v.begin = offset;
+  v.level = level / strike.place.distance_m;
 }
 
-void Shots::render(Voice& v, float* mix, int frames) const {
-  const std::vector<float>& x = v.shot.recording->samples;
+// Adds it; false when it is over.
+bool Shots::play(Playing& p, float* out, int frames) {
+  const std::vector<float>& x = p.shot.recording->samples;
   const auto size = static_cast<std::ptrdiff_t>(x.size());
   const auto sample = [&](std::ptrdiff_t i) { return i >= 0 && i < size ? x[static_cast<std::size_t>(i)] : 0.f; };
-  std::array<float, kMaxBlock> out{};
-  float most = 0;
-  bool over = false;
-  for (int n = v.begin; n < frames && !over; ++n) {
-    const auto i = static_cast<std::ptrdiff_t>(v.at);
-    const auto part = static_cast<float>(v.at - static_cast<double>(i));
-    if (v.fades) v.fade = std::max(0.f, v.fade - fade_step_);
-    const float s = v.shot.gain * v.fade * between(sample(i - 1), sample(i), sample(i + 1), sample(i + 2), part);
-    out[static_cast<std::size_t>(n)] = s;
-    most = std::max(most, std::abs(s));
-    v.at += static_cast<double>(v.shot.step);
-    over = v.at >= static_cast<double>(size) || v.fade <= 0;
+  const double step = static_cast<double>(p.shot.step);
+  std::array<float, kMaxBlock> played{};
+  for (int n = 0; n < frames && p.at < static_cast<double>(size);) {
+    const int inside = stretch(x.data(), x.size(), p.at, step, &played[static_cast<std::size_t>(n)], frames - n);
+    n += inside;
+    p.at += inside * step;
+    if (inside > 0) continue;
+    const auto i = static_cast<std::ptrdiff_t>(p.at);
+    const auto part = static_cast<float>(p.at - static_cast<double>(i));
+    played[static_cast<std::size_t>(n++)] = between(sample(i - 1), sample(i), sample(i + 1), sample(i + 2), part);
+    p.at += step;
   }
-  v.ears.add(v.place, out.data(), mix, frames);
-  if (v.begin < frames) v.level = most / v.place.distance_m;
-  v.begin = std::max(0, v.begin - frames);
-  if (over) v.shot.recording = nullptr;
+  for (int n = 0; n < frames; ++n) out[n] += p.shot.gain * played[static_cast<std::size_t>(n)];
+  return p.at < static_cast<double>(size);
+}
+
+void Shots::render(Voice& v, int frames) {
+  std::array<float, kMaxBlock> out{};
+  const int begin = std::min(v.begin, frames);
+  v.begin -= begin;
+  bool sounds = false;
+  for (Playing& p : v.shots) {
+    if (!p.shot.recording) continue;
+    if (play(p, out.data() + begin, frames - begin))
+      sounds = true;
+    else
+      p.shot.recording = nullptr;
+  }
+  float most = 0;
+  for (int n = begin; n < frames; ++n) {
+    float& s = out[static_cast<std::size_t>(n)];
+    if (v.fades) s *= v.fade = std::max(0.f, v.fade - fade_step_);
+    most = std::max(most, std::abs(s));
+  }
+  const Place place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
+  if (begin < frames) v.level = most / place.distance_m;
+  const bool over = !sounds || v.fade <= 0;
+  v.on = !over || v.silent < spatialiser_.tail();
+  v.silent = over ? v.silent + frames : 0;
 }
 
 void Shots::render(float* mix, int frames) {
   for (Voice& v : voices_)
-    if (v.shot.recording) render(v, mix, frames);
+    if (v.on) render(v, frames);
+  spatialiser_.mix(mix, frames);
 }
 
 int Shots::active() const {
-  return static_cast<int>(
-      std::count_if(voices_.begin(), voices_.end(), [](const Voice& v) { return v.shot.recording; }));
+  return static_cast<int>(std::count_if(voices_.begin(), voices_.end(), [](const Voice& v) { return v.on; }));
 }
 
 std::int64_t Shots::oldest(std::int64_t none) const {
   for (const Voice& v : voices_)
-    if (v.shot.recording) none = std::min(none, v.database);
+    if (v.on) none = std::min(none, v.database);
   return none;
 }
 

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "audio_node/samples/ears.h"
 #include "audio_node/samples/shot.h"
+#include "audio_node/spatial/spatialiser.h"
 
 namespace tactus::audio {
 
@@ -14,13 +15,15 @@ namespace tactus::audio {
 // constructor.
 class Shots {
  public:
-  static constexpr int kMost = 64;  // at a time, as bodies
+  static constexpr int kMost = 64;  // impacts at a time, as bodies
 
-  explicit Shots(double rate_Hz);
+  explicit Shots(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2);
+
+  void hear_from(const Listener& listener) { listener_ = listener; }
 
   // From the frame `offset` of the next render() on, `gain` as strong as it says.
   void take(const RecordedStrike& strike, float gain, int offset);
-  // Adds `frames` <= kMaxBlock frames, left and right interleaved.
+  // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
   int active() const;
@@ -32,23 +35,31 @@ class Shots {
   static constexpr int kFading = 16;        // that give way while others sound (design)
   static constexpr double kFade_s = 0.005;  // shorter is heard as a click (design)
 
-  struct Voice {
+  struct Playing {
     Shot shot;
+    double at = 0;  // in the recording
+  };
+  // Those of one impact, summed before they are heard from its place.
+  struct Voice {
+    std::array<Playing, 4> shots;
+    bool on = false;
     std::int64_t database = 0;
     Place place;
-    Ears ears;
+    int silent = 0;  // frames since the last of which something came
     int begin = 0;  // frames until it starts
-    double at = 0;  // in the recording
     bool fades = false;
     float fade = 1;
     float level = 0;  // largest of the last block, as heard
   };
   Voice& free_voice();
   void leave_room();
-  void render(Voice& voice, float* mix, int frames) const;
+  void render(Voice& voice, int frames);
+  static bool play(Playing& playing, float* out, int frames);
 
   float fade_step_;
   std::vector<Voice> voices_;
+  Spatialiser spatialiser_;
+  std::optional<Listener> listener_;
 };
 
 }  // namespace tactus::audio

@@ -101,13 +101,15 @@ def damping_panel(box, a):
     decades = 10.0 ** np.arange(np.log10(panel.low), np.log10(panel.high) + 0.5)
     law = a.law
     panel.grid(decades, "damping, 1/s", f'alpha {law["rayleigh_alpha_1_s"]:.3g} 1/s, beta {law["rayleigh_beta_s"]:.3g} s (line); '
-               f'loss factor {law["loss_factor"]:.3g} (dashed); {law["better"]} fits better')
+               f'loss factor {law["loss_factor"]:.3g} (dashed); {"the line" if law["better"] == "rayleigh" else "the dashed one"} fits better')
     strongest = max(m.amplitude for m in a.modes)
     for m in a.modes:
         panel.circle(m.frequency_Hz, m.damping_1_s, MARK, m.agrees, 2 + 4 * max(0.0, 1 + np.log10(m.amplitude / strongest) / 3))
     f = np.geomspace(low_Hz, high_Hz, 80)
-    panel.line(f, damping.rayleigh(f, law["rayleigh_alpha_1_s"], law["rayleigh_beta_s"]), AGAIN, 1.5)
-    panel.line(f, damping.constant_loss(f, law["loss_factor"]), '#1b7837" stroke-dasharray="5 4', 1.5)
+    for curve, colour in ((damping.rayleigh(f, law["rayleigh_alpha_1_s"], law["rayleigh_beta_s"]), AGAIN),
+                          (damping.constant_loss(f, law["loss_factor"]), '#1b7837" stroke-dasharray="5 4')):
+        inside = (curve >= panel.low) & (curve <= panel.high)
+        panel.line(f[inside], curve[inside], colour, 1.5)
     return panel.out
 
 

@@ -7,6 +7,7 @@
 #include "sim_node/scene/attributes.h"
 #include "sim_node/scene/height_image.h"
 #include "sim_node/scene/materials.h"
+#include "sim_node/scene/measured_modes.h"
 #include "sync/identity.h"
 
 namespace tactus::sim {
@@ -57,6 +58,20 @@ void read_friction_map(LoadContext& context, const sdf::Element& element, Attrib
   material.friction_asset = image_hash(context, element, "friction_map", uri);
 }
 
+// The table of the modes that an object of this material was measured to have.
+void read_modes(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("modes")) return;
+  const std::string uri = attributes.required_text("modes");
+  const std::filesystem::path file = context.asset_file(uri, element);
+  try {
+    const sync::Bytes bytes = read_image_file(file);
+    material.modes = parse_measured_modes({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    material.mode_count = static_cast<int>(material.modes.size());
+  } catch (const std::exception& e) {
+    context.refuse(element, "names modes \"" + uri + "\", which cannot be read: " + e.what());
+  }
+}
+
 void read_material(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const std::string name = attributes.required_text("name");
@@ -76,6 +91,7 @@ void read_material(LoadContext& context, const sdf::Element& element) {
   }
   read_bump(context, element, attributes, material);
   read_friction_map(context, element, attributes, material);
+  read_modes(context, element, attributes, material);
   attributes.done();
   const auto [at, is_new] = context.material_of.try_emplace(name, static_cast<int>(context.world.materials.size()));
   if (is_new)

@@ -130,6 +130,31 @@ TEST_CASE("A restarted stream overwrites no recording") {
   }
 }
 
+TEST_CASE("The virtual card has as many channels as there are loudspeakers, and each is recorded in its own") {
+  const Folder folder;
+  {
+    StreamOptions options;
+    options.device = "virtual", options.folder = folder.path, options.channels = 8;
+    Stream stream(options, [](float* out, int frames, const BlockTime&) {
+      for (int n = 0; n < 8 * frames; ++n) out[n] = static_cast<float>(n % 8) / 16;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
+  SF_INFO info{};
+  SNDFILE* file = sf_open((folder.path + "/audio.wav").c_str(), SFM_READ, &info);
+  REQUIRE(file);
+  CHECK(info.channels == 8);
+  REQUIRE(info.frames > 100);
+  std::vector<float> samples(static_cast<std::size_t>(info.frames) * 8);
+  sf_readf_float(file, samples.data(), info.frames);
+  sf_close(file);
+  const auto played = std::find(samples.begin(), samples.end(), 7.f / 16);
+  REQUIRE(played != samples.end());
+  const auto first = static_cast<std::size_t>(played - samples.begin());
+  CHECK(first % 8 == 7);
+  for (std::size_t i = first; i < first + 64; ++i) CHECK(samples[i] == static_cast<float>(i % 8) / 16);
+}
+
 TEST_CASE("A card that does not exist is refused in one sentence that names it") {
   const Folder folder;
   StreamOptions options;

@@ -32,6 +32,9 @@ scene_t scene_of(const json& of) {
   material.density_kg_m3 = figures.at("density_kg_m3");
   material.rayleigh_alpha_1_s = figures.at("rayleigh_alpha_1_s"), material.rayleigh_beta_s = figures.at("rayleigh_beta_s");
   material.restitution = 0.5;
+  for (const json& mode : figures.value("modes", json::array()))
+    material.modes.push_back({mode.at(0), mode.at(1), mode.at(2)});
+  material.mode_count = static_cast<int>(material.modes.size());
   body_def_t hammer{}, body{};
   hammer.tool = body.tool = -1;
   hammer.mass_kg = 0.001;

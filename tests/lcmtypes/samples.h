@@ -288,6 +288,8 @@ class Samples {
     m.bump_size_u_m = real(0.001, 1), m.bump_size_v_m = real(0.001, 1), m.bump_height_m = real(1e-6, 0.01);
     m.friction_asset = whole(0, 1), m.friction_size_u_m = real(0.001, 1), m.friction_size_v_m = real(0.001, 1),
     m.friction_black = real(0, 2), m.friction_white = real(0, 2);
+    m.mode_count = whole(0, 5);
+    for (int i = 0; i < m.mode_count; ++i) m.modes.push_back({real(50, 9000), real(0.1, 90), real(0.01, 1)});
   }
   void fill(shape_def_t& s) {
     s.name = name(), s.body = 0, fill(s.pose), s.kind = static_cast<std::int8_t>(whole(0, 5));

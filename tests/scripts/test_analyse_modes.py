@@ -19,6 +19,7 @@ import decay  # noqa: E402
 import esprit  # noqa: E402
 
 RATE = 44100
+BELOW_HZ = 8000  # above the highest of the modes; half the bands, half the time
 # A pair 3 Hz apart, which 136 ms of sound are too short to show as a beat, and four alone.
 FREQUENCY_HZ = np.array([440.0, 443.0, 1213.0, 2376.0, 3930.0, 6100.0])
 DAMPING_1_S = np.array([8.0, 9.0, 15.0, 20.0, 30.0, 45.0])
@@ -45,7 +46,7 @@ def errors(found, frequency_Hz=FREQUENCY_HZ, damping_1_s=DAMPING_1_S):
 class Esprit(unittest.TestCase):
     # Bounds: what a full-band ESPRIT of 512 rows in C++ reached on these very modes and this length (design).
     def errors_at(self, snr_dB):
-        of = [errors(esprit.find_poles(ringing(6000, snr_dB, seed), RATE, 8000)) for seed in range(3)]
+        of = [errors(esprit.find_poles(ringing(6000, snr_dB, seed), RATE, BELOW_HZ)) for seed in range(3)]
         return np.max([e[0] for e in of], axis=0), np.max([e[1] for e in of], axis=0)
 
     def test_finds_six_modes_at_60_dB(self):
@@ -79,12 +80,12 @@ class Analysis(unittest.TestCase):
     def test_keeps_the_six_modes_and_nothing_else_at_any_level_of_noise(self):
         for snr_dB in (None, 60, 40, 20):
             with self.subTest(snr_dB=snr_dB):
-                modes = analysis.analyse(ringing(RATE // 2, snr_dB), RATE).modes
+                modes = analysis.analyse(ringing(RATE // 2, snr_dB), RATE, below_Hz=BELOW_HZ).modes
                 self.assertEqual(len(modes), 6)
                 np.testing.assert_allclose([m.amplitude for m in modes], AMPLITUDE, rtol=0.05)
 
     def test_both_ways_agree_on_modes_that_are_alone_and_not_on_a_beating_pair(self):
-        modes = analysis.analyse(ringing(RATE // 2, 60), RATE).modes
+        modes = analysis.analyse(ringing(RATE // 2, 60), RATE, below_Hz=BELOW_HZ).modes
         self.assertEqual([m.agrees for m in modes][ALONE], [True] * 4)
         self.assertFalse(all(m.agrees for m in modes[:2]))
 
@@ -97,25 +98,25 @@ class Analysis(unittest.TestCase):
     def test_leaves_out_what_is_60_dB_below_the_strongest(self):
         amplitude = np.array([1.0, 2e-3, 5e-4])
         modes = analysis.analyse(ringing(RATE // 2, None, 0, np.array([500.0, 1500.0, 2500.0]), np.array([10.0, 10.0, 10.0]), amplitude),
-                                 RATE).modes
+                                 RATE, below_Hz=BELOW_HZ).modes
         np.testing.assert_allclose([m.frequency_Hz for m in modes], [500.0, 1500.0], atol=0.01)
 
     def test_what_grows_is_no_mode(self):
         x = ringing(RATE // 4, 80, 0, np.array([500.0, 1500.0]), np.array([10.0, -4.0]), np.array([1.0, 0.3]))
-        modes = analysis.analyse(np.concatenate([np.zeros(2000), x]), RATE).modes
+        modes = analysis.analyse(np.concatenate([np.zeros(2000), x]), RATE, below_Hz=BELOW_HZ).modes
         np.testing.assert_allclose([m.frequency_Hz for m in modes], [500.0], atol=0.01)
 
     def test_begins_after_the_blow_and_says_the_amplitude_at_it(self):
         silence, blow = np.zeros(RATE // 5), 3 * np.random.default_rng(2).standard_normal(88)  # 2 ms
         x = ringing(RATE // 2, 60)
         x[:88] += blow
-        modes = analysis.analyse(np.concatenate([silence, x]), RATE).modes
+        modes = analysis.analyse(np.concatenate([silence, x]), RATE, below_Hz=BELOW_HZ).modes
         self.assertEqual(len(modes), 6)
         # The onset is found within 2 ms: 2 ms * 45 1/s = 9 %.
         np.testing.assert_allclose([m.amplitude for m in modes], AMPLITUDE, rtol=0.12)
 
     def test_what_its_modes_sound_like_is_what_was_analysed(self):
-        a = analysis.analyse(ringing(RATE // 2), RATE)
+        a = analysis.analyse(ringing(RATE // 2), RATE, below_Hz=BELOW_HZ)
         again = analysis.resynthesis(a, RATE // 4)
         original = a.samples[a.begins:a.begins + RATE // 4]
         self.assertLess(((again - original) ** 2).sum(), 1e-6 * (original ** 2).sum())
@@ -144,7 +145,7 @@ class Damping(unittest.TestCase):
     def test_is_found_in_a_sound(self):
         f = np.array([300.0, 830.0, 1620.0, 2680.0, 4000.0, 5600.0])
         x = ringing(RATE // 2, 50, 1, f, damping.rayleigh(f, 12, 4e-8), AMPLITUDE)
-        law = analysis.analyse(x, RATE).law
+        law = analysis.analyse(x, RATE, below_Hz=BELOW_HZ).law
         # Dampings err by 1 % at 50 dB, and alpha rests on the lowest.
         self.assertAlmostEqual(law["rayleigh_alpha_1_s"], 12, delta=0.24)
         self.assertAlmostEqual(law["rayleigh_beta_s"], 4e-8, delta=1.2e-9)
@@ -178,7 +179,7 @@ class TheProgram(unittest.TestCase):
         return path
 
     def run_it(self, *words):
-        return subprocess.run([os.path.join(SCRIPTS, "analyse_modes"), *words], capture_output=True, text=True, timeout=120)
+        return subprocess.run([os.path.join(SCRIPTS, "analyse_modes"), *words, "--max-frequency", str(BELOW_HZ)], capture_output=True, text=True, timeout=120)
 
     def refused(self, *words):
         done = self.run_it(*words)

@@ -1,5 +1,7 @@
 #include "audio_node/samples/database.h"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "tests/audio_node/samples/sounds.h"
@@ -78,6 +80,8 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
   folder.write("lost.wav", tone(500, 0.2));
   folder.text("oak/size.txt", "large");
   std::filesystem::create_directories(folder.path() + "/oak/roll");
+  // Who opened it would wait for ever.
+  REQUIRE(mkfifo((folder.path() + "/oak/impact/4.wav").c_str(), 0600) == 0);
   const Database d = read(folder);
   CHECK(d.find("oak", "oak", Interaction::kImpact).any());
   const auto named = [&](const std::string& end, const std::string& what) {
@@ -94,7 +98,8 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
   CHECK(named("lost.wav", "beside"));
   CHECK(named("oak/size.txt", "no size"));
   CHECK(named("oak/roll", "empty"));
-  CHECK(d.faults.size() == 9);
+  CHECK(named("oak/impact/4.wav", "no file"));
+  CHECK(d.faults.size() == 10);
 }
 
 TEST_CASE("An empty folder, and one that is not there, is said") {

@@ -1,0 +1,6 @@
+// With fused multiply-add: see CMakeLists.txt.
+#if defined(__x86_64__)
+#define TACTUS_FIR avx2
+#define TACTUS_FIR_WIDTH 8
+#include "audio_node/spatial/fir_loop.h"
+#endif

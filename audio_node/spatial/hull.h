@@ -1,0 +1,17 @@
+// Which three of many directions surround another: the triangles of their convex hull. Pure.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace tactus::audio {
+
+// Indices of its corners, anticlockwise as seen from outside.
+using Triangle = std::array<int, 3>;
+
+// Of points on the unit sphere. Where more than three lie in one plane it takes one of the ways to cut that into
+// triangles, the same each time. Empty when all lie in one plane.
+std::vector<Triangle> convex_hull(const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace tactus::audio

@@ -1,0 +1,97 @@
+#include "audio_node/spatial/layout.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+namespace tactus::audio {
+namespace {
+
+// In the order of channels of a WAV file; some cards want another, which a file of one's own gives.
+const std::map<std::string, std::string>& built_in() {
+  static const std::map<std::string, std::string> all{
+      {"stereo", "channel,azimuth_deg,elevation_deg\nleft,30,0\nright,-30,0\n"},
+      {"quad",
+       "channel,azimuth_deg,elevation_deg\nfront left,45,0\nfront right,-45,0\nback left,135,0\n"
+       "back right,-135,0\n"},
+      // ITU-R BS.775-3, figure 1.
+      {"5.1",
+       "channel,azimuth_deg,elevation_deg\nleft,30,0\nright,-30,0\ncentre,0,0\nsubwoofer,,\n"
+       "left surround,110,0\nright surround,-110,0\n"},
+      // The corners of a cube: asin(1 / sqrt(3)) over its middle.
+      {"cube",
+       "channel,azimuth_deg,elevation_deg\nlower front left,45,-35.2644\nlower front right,-45,-35.2644\n"
+       "lower back left,135,-35.2644\nlower back right,-135,-35.2644\nupper front left,45,35.2644\n"
+       "upper front right,-45,35.2644\nupper back left,135,35.2644\nupper back right,-135,35.2644\n"}};
+  return all;
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw std::runtime_error("the loudspeaker layout " + name + " " + why +
+                           "; choose stereo, quad, 5.1, cube or another layout_file");
+}
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const auto end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> cells(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> all(1);
+  for (const char c : line)
+    if (c == ',')
+      all.emplace_back();
+    else
+      all.back() += c;
+  return all;
+}
+
+}  // namespace
+
+Layout parse_layout(const std::string& csv, const std::string& name) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  if (cells(line) != std::vector<std::string>{"channel", "azimuth_deg", "elevation_deg"})
+    refuse(name, "does not begin with the line channel,azimuth_deg,elevation_deg");
+  Layout layout;
+  bool any = false;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> row = cells(line);
+    if (row.size() == 1 && row[0].empty()) continue;
+    const std::string which = "row " + std::to_string(layout.size() + 1);
+    if (row.size() != 3) refuse(name, "has in its " + which + " not three columns");
+    if (row[1].empty() && row[2].empty()) {
+      layout.push_back(std::nullopt);
+      continue;
+    }
+    const auto azimuth = number(row[1]), elevation = number(row[2]);
+    if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90)
+      refuse(name, "has in its " + which + " no azimuth of -360 to 360 and elevation of -90 to 90 degrees");
+    const double a = *azimuth * std::numbers::pi / 180, e = *elevation * std::numbers::pi / 180;
+    layout.push_back(Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
+    any = true;
+  }
+  if (!any) refuse(name, "has no loudspeaker");
+  if (layout.size() > kMostChannels) refuse(name, "has more than " + std::to_string(kMostChannels) + " channels");
+  return layout;
+}
+
+Layout load_layout(const std::string& name_or_path) {
+  if (const auto known = built_in().find(name_or_path); known != built_in().end())
+    return parse_layout(known->second, name_or_path);
+  std::ifstream file(name_or_path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");
+  return parse_layout(text.str(), name_or_path);
+}
+
+}  // namespace tactus::audio

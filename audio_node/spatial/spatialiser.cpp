@@ -1,0 +1,125 @@
+#include "audio_node/spatial/spatialiser.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "audio_node/pan.h"
+
+namespace tactus::audio {
+namespace {
+
+// A source that has turned by less stays where it was: a tenth of a degree, where ears tell one apart at best
+// (Mills, J. Acoust. Soc. Am. 30, 1958), so that a tracked head that trembles does not cost new filters in each
+// block.
+constexpr float kTurned = 0.00175f;
+
+// What has become no number is heard from ahead.
+const Place kNowhere;
+
+}  // namespace
+
+Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instructions instructions)
+    : space_(space), channels_(space.channels()), fir_(fir(instructions)) {
+  buses_.resize(static_cast<std::size_t>(channels_ * kMaxBlock));
+  sources_.assign(static_cast<std::size_t>(sources), Source(rate_Hz));
+  if (!space.hrtf) return;
+  taps_ = space.hrtf->taps();
+  past_ = static_cast<int>(std::ceil(space.hrtf->longest_delay())) + kLeastDelay + kDelayReach;
+  tail_ = taps_ + past_;
+  const auto taps = static_cast<std::size_t>(taps_), past = static_cast<std::size_t>(past_);
+  next_left_.resize(taps), next_right_.resize(taps);
+  for (Source& s : sources_) {
+    s.left.resize(taps), s.right.resize(taps);
+    s.input.resize(taps + kMaxBlock);
+    s.heard_left.resize(past + kMaxBlock), s.heard_right.resize(past + kMaxBlock);
+  }
+}
+
+void Spatialiser::begin(int source) {
+  Source& s = sources_[static_cast<std::size_t>(source)];
+  s.fresh = true;
+  s.distance.begin();
+  for (auto* past : {&s.input, &s.heard_left, &s.heard_right}) std::fill(past->begin(), past->end(), 0.f);
+}
+
+void Spatialiser::add(int source, const Place& told, const float* mono, int frames) {
+  const bool is_place = told.direction.allFinite() && told.distance_m > 0 && std::isfinite(told.distance_m);
+  const Place& place = is_place ? told : kNowhere;
+  Source& s = sources_[static_cast<std::size_t>(source)];
+  std::array<float, kMaxBlock> sound;
+  s.distance.apply(mono, place.distance_m, frames, sound.data());
+  // In every second block at most: new filters cost as much again as the old ones.
+  const bool moved = (place.direction - s.direction).squaredNorm() > kTurned * kTurned;
+  const bool turned = s.fresh || (moved && s.rested);
+  s.rested = !turned;
+  if (turned) s.direction = place.direction;
+  if (space_.hrtf)
+    add_by_ears(s, sound.data(), frames, turned);
+  else
+    add_by_gains(s, sound.data(), frames, turned);
+  s.fresh = false;
+}
+
+// Filter, then delay: both ears' filters read the same input. Where the direction changes, the output of the old
+// filters goes over into that of the new ones.
+void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool turned) {
+  float* const input = s.input.data() + taps_;
+  std::copy(sound, sound + frames, input);
+  float* const left = s.heard_left.data() + past_;
+  float* const right = s.heard_right.data() + past_;
+  const float later = s.left_later;
+  if (turned) s.left_later = space_.hrtf->at(s.direction, next_left_.data(), next_right_.data());
+  if (s.fresh) std::swap(s.left, next_left_), std::swap(s.right, next_right_);
+  std::array<float, kMaxBlock> new_left, new_right;
+  const float* const filters[] = {s.left.data(), s.right.data(), next_left_.data(), next_right_.data()};
+  float* const heard[] = {left, right, new_left.data(), new_right.data()};
+  const bool goes_over = turned && !s.fresh;
+  fir_(input, filters, goes_over ? 4 : 2, taps_, heard);
+  if (goes_over) {
+    for (int n = 0; n < frames; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      const float share = static_cast<float>(n + 1) / static_cast<float>(frames);
+      left[n] += share * (new_left[i] - left[n]);
+      right[n] += share * (new_right[i] - right[n]);
+    }
+    std::swap(s.left, next_left_), std::swap(s.right, next_right_);
+  }
+  // The ear that is nearer hears it at once.
+  const auto late = [](float by) { return static_cast<float>(kLeastDelay) + std::max(0.f, by); };
+  const float from = s.fresh ? s.left_later : later;
+  add_delayed(left, late(from), late(s.left_later), frames, bus(0));
+  add_delayed(right, late(-from), late(-s.left_later), frames, bus(1));
+  std::copy(input + frames - taps_, input + frames, s.input.begin());
+  std::copy(left + frames - past_, left + frames, s.heard_left.begin());
+  std::copy(right + frames - past_, right + frames, s.heard_right.begin());
+}
+
+void Spatialiser::gains(const Eigen::Vector3f& direction, float* of_channels) const {
+  if (space_.panning) return space_.panning->gains(direction, of_channels);
+  const auto [left, right] = pan({direction, 1});
+  of_channels[0] = left, of_channels[1] = right;
+}
+
+// Gains go straight to where they shall be at the end of the block.
+void Spatialiser::add_by_gains(Source& s, const float* sound, int frames, bool turned) {
+  std::array<float, kMostChannels> wanted = s.gains;
+  if (turned) gains(s.direction, wanted.data());
+  if (s.fresh) s.gains = wanted;
+  for (int c = 0; c < channels_; ++c) {
+    float& gain = s.gains[static_cast<std::size_t>(c)];
+    const float to = wanted[static_cast<std::size_t>(c)];
+    if (gain == 0 && to == 0) continue;
+    const float step = (to - gain) / static_cast<float>(frames);
+    float* const out = bus(c);
+    for (int n = 0; n < frames; ++n) out[n] += (gain + step * static_cast<float>(n + 1)) * sound[n];
+    gain = to;
+  }
+}
+
+void Spatialiser::mix(float* mix, int frames) {
+  for (int c = 0; c < channels_; ++c)
+    for (int n = 0; n < frames; ++n) mix[channels_ * n + c] += bus(c)[n];
+  std::fill(buses_.begin(), buses_.end(), 0.f);
+}
+
+}  // namespace tactus::audio
