@@ -30,7 +30,6 @@ class Library {
   // Once a tick. Those of before that nobody plays any more: freeing them may take milliseconds, not in a loop.
   std::vector<Shared> step();
 
-  bool reading() const { return opening_.has_value(); }
   // Null: none has been read yet, and none is needed or it is being read.
   const Database* database() const { return now_.get(); }
   // A database is on its way. Who renders without a clock steps until it is there.
