@@ -53,7 +53,8 @@ class RecordedRun {
  public:
   explicit RecordedRun(std::unique_ptr<sync::LogSink> sink, const scene_t& scene = struck_scene())
       : RecordedRun(std::move(sink), {{asset_ref_t::SCENE, "scene", sync::encode(scene)}}) {}
-  RecordedRun(std::unique_ptr<sync::LogSink> sink, const std::vector<sync::Asset>& assets) : writer_(std::move(sink)) {
+  RecordedRun(std::unique_ptr<sync::LogSink> sink, const std::vector<sync::Asset>& assets)
+      : writer_(std::move(sink)) {
     recorder_ = {"recorder", 1, 3, kRunId, kClockId};
     log_info_t info{};
     info.realtime_offset_ns = kLogOffset_ns;

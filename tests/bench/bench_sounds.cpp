@@ -1,5 +1,6 @@
-// Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and rolled on, all
-// alike, with silence after each. What audio_node --log makes of it is drawn by scripts/draw_sounds.
+// Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and
+// rolled on, all alike, with silence after each. What audio_node --log makes of it is drawn by
+// scripts/draw_sounds.
 //
 //   bin/bench_sounds LOG MATERIAL...
 #include <CLI/CLI.hpp>
@@ -26,19 +27,29 @@ int body_named(const scene_t& scene, const std::string& name) {
   throw std::runtime_error("materials_bench has no " + name + "; name a material that has a bar there");
 }
 
-int tool_body(const scene_t& scene) { return scene.tool_count > 0 ? scene.tools[0].body : 0; }
+// What strikes, scrapes and rolls: of steel, so that blows are short enough for every material to ring.
+int tip_material(const scene_t& scene) {
+  for (int i = 0; i < scene.material_count; ++i)
+    if (scene.materials[static_cast<std::size_t>(i)].name == "steel") return i;
+  throw std::runtime_error("materials_bench has no steel, which is to strike");
+}
+
+// Whose tip it is: the felt table, which is nearly silent itself.
+int striker(const scene_t& scene) { return body_named(scene, "table"); }
 
 contact_t contact(const scene_t& scene, int bar, int material, double slid_m, bool rolls) {
   const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);
   const Eigen::Vector3d on_bar(-0.05 + slid_m, 0, 0.01);
-  const int tool = tool_body(scene);
+  const int tool = striker(scene);
   contact_t c{};
-  c.contact_id = 1000 + bar, c.body_a = std::min(bar, tool), c.body_b = std::max(bar, tool), c.tool = 0;
+  c.contact_id = 1000 + bar, c.body_a = std::min(bar, tool), c.body_b = std::max(bar, tool), c.tool = -1;
   const bool bar_first = bar < tool;
-  c.material_a = bar_first ? material : scene.tools[0].material, c.material_b = bar_first ? scene.tools[0].material : material;
+  const int tip = tip_material(scene);
+  c.material_a = bar_first ? material : tip, c.material_b = bar_first ? tip : material;
   c.normal.z = bar_first ? 1 : -1;
   c.normal_force_N = static_cast<float>(kForce_N), c.area_m2 = 1e-5f, c.depth_m = 1e-4f;
-  (rolls ? c.rolling_velocity_m_s : c.sliding_velocity_m_s).x = static_cast<float>(bar_first ? kSpeed_m_s : -kSpeed_m_s);
+  (rolls ? c.rolling_velocity_m_s : c.sliding_velocity_m_s).x =
+      static_cast<float>(bar_first ? kSpeed_m_s : -kSpeed_m_s);
   contact_point_t p{};
   p.a_world_m = p.b_world_m = to_vec3f(lies * on_bar);
   (bar_first ? p.a_body_m : p.b_body_m) = to_vec3f(on_bar);
@@ -57,11 +68,11 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
 
   std::vector<std::string> warnings;
-  const auto assets = sim::make_assets(sim::load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/materials_bench.sdf", warnings));
+  const auto assets =
+      sim::make_assets(sim::load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/materials_bench.sdf", warnings));
   scene_t scene{};
   for (const sync::Asset& a : assets)
     if (a.kind == asset_ref_t::SCENE) scene = sync::decode_asset<scene_t>(a.bytes).value();
-  if (scene.tool_count == 0) throw std::runtime_error("materials_bench has no tool, which is to strike");
 
   std::remove(path.c_str());
   RecordedRun run(std::make_unique<sync::FileSink>(path), assets);
@@ -77,9 +88,11 @@ int main(int argc, char** argv) try {
     for (const shape_def_t& s : scene.shapes)
       if (s.body == bar) material = s.material;
     if (now >= kFirst_s && i == struck) {
-      const contact_t where = contact(scene, bar, material, 0.02, false);
-      contact_event_t e = RecordedRun::hit(static_cast<std::int64_t>(++struck), now, where.body_a, where.body_b, 0.5f);
-      e.material_a = where.material_a, e.material_b = where.material_b, e.tool = 0;
+      // Near its end, where no mode of a bar has a node.
+      const contact_t where = contact(scene, bar, material, -0.018, false);
+      contact_event_t e = RecordedRun::hit(static_cast<std::int64_t>(++struck), now, where.body_a, where.body_b);
+      e.material_a = where.material_a, e.material_b = where.material_b;
+      e.effective_mass_kg = 0.02f, e.curvature_1_m = 200;  // a tip of 5 mm on a light hammer
       e.point_m = where.points[0].a_world_m, e.normal = where.normal;
       run.hear(now, {e});
     }
