@@ -47,8 +47,6 @@ Relief half(const Relief& r) {
 ReliefLevels::ReliefLevels(Relief finest) {
   levels_.push_back(std::move(finest));
   while (levels_.back().columns > 1 || levels_.back().rows > 1) levels_.push_back(half(levels_.back()));
-  for (const Eigen::Vector2f& s : levels_.front().slopes) mean_square_slope_ += s.cast<double>().cwiseAbs2();
-  mean_square_slope_ /= std::max<double>(1, static_cast<double>(levels_.front().slopes.size()));
 }
 
 Eigen::Vector2d ReliefLevels::slope(const Eigen::Vector2d& at, const Eigen::Vector2d& step) const {

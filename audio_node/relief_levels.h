@@ -17,13 +17,10 @@ class ReliefLevels {
   // so many repetitions along u and v. Realtime-safe: yes.
   Eigen::Vector2d slope(const Eigen::Vector2d& at, const Eigen::Vector2d& step) const;
   const Relief& finest() const { return levels_.front(); }
-  // Along u and v, over all of it.
-  const Eigen::Vector2d& mean_square_slope() const { return mean_square_slope_; }
   double texel_m() const;  // the smaller side of a pixel
 
  private:
   std::vector<Relief> levels_;  // each of half the columns and rows of the one before, down to a single pixel
-  Eigen::Vector2d mean_square_slope_ = Eigen::Vector2d::Zero();
 };
 
 }  // namespace tactus::audio

@@ -30,6 +30,11 @@ bool sane(const Scrape& s) {
   return all;
 }
 
+// Of a step of a map that is none: as steep as 76 degrees (design).
+constexpr float kSteepest = 4;
+
+bool passes(const ScrapeSide& side) { return !side.slides.isZero(0) || !side.rolls.isZero(0); }
+
 Eigen::Vector2d on_map(const ScrapeSide& side, const Eigen::Vector3d& v) {
   const Relief& r = side.relief->finest();
   return {v[side.axes.u] / static_cast<double>(r.size_m.x()), v[side.axes.v] / static_cast<double>(r.size_m.y())};
@@ -120,26 +125,34 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
     c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
         c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));
   const double since_s = sync::to_seconds(first - s.at);
-  Block slope{}, rolling{}, friction;
+  Block slope{}, rolling{}, friction, steep;
   friction.fill(1);
+  std::array<Track, 2> tracks;
   for (std::size_t i = 0; i < 2; ++i) {
     const ScrapeSide& side = s.sides[i];
     if (!side.known) continue;
-    const Track track = follow(side, c.sides[i], since_s, c.fresh, frames);
-    const bool passes = !side.slides.isZero(0) || !side.rolls.isZero(0);
-    if (passes) add_slopes(side.roughness, track, side.slides, side.rolls, frames, slope.data(), rolling.data());
-    if (passes && side.relief) add_relief(side, track, frames, slope.data(), rolling.data());
+    tracks[i] = follow(side, c.sides[i], since_s, c.fresh, frames);
+    if (side.relief && passes(side)) add_relief(side, tracks[i], frames, slope.data(), rolling.data());
     for (int n = 0; side.friction && n < frames; ++n)
       friction[static_cast<std::size_t>(n)] *=
-          static_cast<float>(side.friction->factor(side.outward, track.at(n)));
+          static_cast<float>(side.friction->factor(side.outward, tracks[i].at(n)));
   }
+  // On a slope both the way and the force across it are longer than as told by sqrt(1 + slope^2), the root of
+  // their product as well.
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kSteepest * kSteepest));
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const ScrapeSide& side = s.sides[i]; side.known && passes(side))
+      add_slopes(side.roughness, tracks[i], side.slides, side.rolls, frames, slope.data(), rolling.data());
   const bool mapped = s.sides[0].friction || s.sides[1].friction;
   c.patch.set(s.cutoff_Hz, rate_Hz_);
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
     // Of a pair the root of the factors counts, and of power the root again.
     const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
-    c.force[k] = c.slide.next() * rubs * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
+    c.force[k] = c.slide.next() * rubs * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }
   c.fresh = false;
   if (c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0) c.on = false;

@@ -213,8 +213,8 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
     pressure += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
     if (!side.known) continue;
     const double share = static_cast<double>(std::max(side.slides.squaredNorm(), side.rolls.squaredNorm()));
-    const double map = side.relief ? 0.5 * side.relief->mean_square_slope().sum() : 0;
-    steep += share * (map + mean_square_slope(side.roughness));
+    // As of its material alone: a map makes it louder, not its roughness quieter.
+    steep += share * mean_square_slope({side.roughness.height_m, 0});
   }
   // Full scale per Pa: the reference stroke over these two is as loud as a blow of the pressure that is to be
   // expected, were the force white; others by their strength. Friction is that of the surfaces without their maps,
