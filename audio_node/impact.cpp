@@ -47,6 +47,24 @@ const shape_def_t* main_shape(const scene_t& scene, int body) {
   return best;
 }
 
+// What touches of a tool, which has no shape that collides. A ball of radius 0, a point, stays as nothing.
+std::optional<shape_def_t> shape_of(const tool_def_t& tool) {
+  shape_def_t shape{};
+  shape.pose.orientation.w = 1;
+  shape.body = tool.body, shape.material = tool.material;
+  shape.size_m = tool.size_m, shape.mesh_hash = tool.mesh_hash;
+  switch (tool.shape) {
+    case tool_def_t::BOX: shape.kind = shape_def_t::BOX; break;
+    case tool_def_t::CAPSULE: shape.kind = shape_def_t::CAPSULE; break;
+    case tool_def_t::MESH: shape.kind = shape_def_t::MESH; break;
+    default:
+      if (!(tool.radius_m > 0)) return std::nullopt;
+      shape.kind = shape_def_t::SPHERE;
+      shape.size_m.x = tool.radius_m;
+  }
+  return shape;
+}
+
 }  // namespace
 
 double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a, const Elastic& b) {
@@ -91,14 +109,17 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
     }
     return v;
   };
-  for (const body_def_t& body : scene.bodies) {
+  for (body_def_t body : scene.bodies) {
     const shape_def_t* shape = main_shape(scene, body.id);
-    const bool tool = body.tool >= 0 && body.tool < scene.tool_count;
+    std::optional<shape_def_t> held;
     int material_index = shape ? shape->material : -1;
-    if (material_index < 0 && tool) material_index = scene.tools[static_cast<std::size_t>(body.tool)].material;
+    if (body.tool >= 0 && body.tool < scene.tool_count) {
+      const tool_def_t& tool = scene.tools[static_cast<std::size_t>(body.tool)];
+      if (material_index < 0) material_index = tool.material;
+      if (!shape && (held = shape_of(tool))) shape = &*held;
+      body.mass_kg = std::max(1e-3, tool.mass_kg);
+    }
     voices_.push_back(add(body, shape, material_index));
-    if (tool)
-      voices_.back().sound.mass_kg = std::max(1e-3, scene.tools[static_cast<std::size_t>(body.tool)].mass_kg);
   }
   body_def_t none{};
   unknown_ = add(none, nullptr, -1);

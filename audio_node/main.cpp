@@ -14,16 +14,15 @@
 #include <memory>
 #include <thread>
 
-#include "audio_node/device/file_card.h"
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
+#include "audio_node/offline.h"
 #include "audio_node/output.h"
 #include "audio_node/samples/sampler.h"
 #include "audio_node/sliding.h"
 #include "lcmtypes/pointing.h"
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
-#include "sync/log_feed.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/pose_history.h"
@@ -51,46 +50,7 @@ constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
 constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
-constexpr sync::Nanoseconds kRingOn{1'000'000'000};      // after the end of a log (design)
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
-
-// A log in place of bus and card.
-struct Offline {
-  Offline(const std::string& log, std::string wav_path, sync::NodeOptions& options)
-      : feed(log, kAudio.rate_Hz), wav(std::move(wav_path)) {
-    options.bus = feed.bus(), options.run_id = feed.run_id(), options.realtime = "off";
-  }
-  audio::OpenCard open() {
-    return [this](const audio::StreamOptions& options, audio::Card::Render render) {
-      if (card) throw std::runtime_error("the log changes rate, period, ceiling or instructions midway; give them with --set");
-      auto made = std::make_unique<audio::FileCard>(options, wav, std::move(render));
-      card = made.get();
-      return made;
-    };
-  }
-  void say_progress(sync::HostTime now) {
-    const sync::HostTime clock = sync::host_now();
-    if (clock - said < std::chrono::seconds(1)) return;
-    said = clock;
-    std::cerr << kAudio.node << ": " << std::llround(1e2 * sync::to_seconds(now - feed.begin()) / sync::to_seconds(kRingOn + (feed.end() - feed.begin())))
-              << " % of the log" << std::endl;
-  }
-  void say_result(double rate_Hz, std::int64_t hits) const {
-    if (!card) throw std::runtime_error("the log has no scene; give one that scripts/run wrote from its beginning");
-    const double sound_s = static_cast<double>(card->frames()) / rate_Hz, took_s = sync::to_seconds(sync::host_now() - began);
-    std::cerr << kAudio.node << ": " << wav << ": " << sound_s << " s of sound, " << hits << " hits, in " << took_s << " s ("
-              << std::llround(sound_s / took_s) << " times as fast as time); its first sample was out at "
-              << sync::to_ns(*card->start()) << " ns" << std::endl;
-    if (feed.damaged_regions() > 0)
-      std::cerr << kAudio.node << ": skipped damage of the log: " << feed.damaged_regions() << " regions, "
-                << feed.damaged_bytes() << " bytes" << std::endl;
-  }
-
-  sync::LogFeed feed;
-  std::string wav;
-  const audio::FileCard* card = nullptr;
-  sync::HostTime began = sync::host_now(), said = began;
-};
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
   media_clock_t m{};
@@ -114,8 +74,11 @@ int main(int argc, char** argv) try {
   app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
   sync::parse_or_exit(app, kAudio.node, argc, argv);
   if (!log.empty() && wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
-  std::optional<Offline> offline;
-  if (!log.empty()) offline.emplace(log, wav, options);
+  std::optional<audio::Offline> offline;
+  if (!log.empty()) {
+    offline.emplace(log, wav, kAudio.rate_Hz, sync::host_now());
+    options.bus = offline->feed().bus(), options.run_id = offline->feed().run_id(), options.realtime = "off";
+  }
 
   audio::Settings checked;
   const auto refused =
@@ -172,11 +135,11 @@ int main(int argc, char** argv) try {
     return m ? audio::extent_of(*m) : std::nullopt;
   };
   configure({});
-  const sync::HostTime started = offline ? offline->feed.begin() : sync::host_now();
+  const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
   std::int64_t hits = 0;
 
-  while (node.running() && !(offline && offline->feed.over(kRingOn))) {
-    const sync::HostTime now = offline ? offline->feed.next(node.bus()) : node.wait();
+  while (node.running() && !(offline && offline->over())) {
+    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
@@ -274,7 +237,8 @@ int main(int argc, char** argv) try {
     for (const std::string& news : output.library().news()) std::cerr << kAudio.node << ": " << news << std::endl;
     if (sampler)
       for (const std::string& news : sampler->news()) std::cerr << kAudio.node << ": " << news << std::endl;
-    if (offline) offline->say_progress(now);
+    if (offline)
+      if (const auto line = offline->progress(now, sync::host_now())) std::cerr << kAudio.node << ": " << *line << std::endl;
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
     const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);
@@ -287,7 +251,8 @@ int main(int argc, char** argv) try {
     node.set_quality(output.quality(), static_cast<int>(audio::kQualities.size()));
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());
   }
-  if (offline) offline->say_result(output.settings().sample_rate_Hz, hits);
+  if (offline)
+    std::cerr << kAudio.node << ": " << offline->result(output.settings().sample_rate_Hz, hits, sync::host_now()) << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("audio_node", e);

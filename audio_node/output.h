@@ -16,8 +16,8 @@ namespace tactus::audio {
 
 class Output {
  public:
-  // device: replaces the setting of that name unless empty. open: what it plays on instead of a sound card; opened at
-  // once, and what it throws leaves keep_open().
+  // device: replaces the setting of that name unless empty. open: what it plays on instead of a sound card; opened
+  // at once, and what it throws leaves keep_open().
   Output(std::string folder, std::string device, int fifo_priority, OpenCard open = {});
 
   // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the

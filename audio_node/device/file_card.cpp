@@ -19,7 +19,8 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
   info.channels = options.channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
   file_.reset(sf_open(wav.c_str(), SFM_WRITE, &info));
-  if (!file_) throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
+  if (!file_)
+    throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
 }

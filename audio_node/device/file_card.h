@@ -1,5 +1,5 @@
-// A card that plays into a WAV file at an even rate on a clock that it is handed: no thread, no clock, no underflow.
-// What it is given at the same times it plays the same, to the bit.
+// A card that plays into a WAV file at an even rate on a clock that it is handed: no thread, no clock, no
+// underflow. What it is given at the same times it plays the same, to the bit.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,16 @@ namespace tactus::audio {
 
 class FileCard : public Card {
  public:
-  // Its first sample is out at the first play_until(). Throws std::runtime_error with one sentence when the file cannot
-  // be made.
+  // Its first sample is out at the first play_until(). Throws std::runtime_error with one sentence when the file
+  // cannot be made.
   FileCard(const StreamOptions& options, const std::string& wav, Render render);
   ~FileCard() override;
   FileCard(const FileCard&) = delete;
   FileCard& operator=(const FileCard&) = delete;
 
   bool alive(sync::HostTime) const override { return true; }
-  // Calls for every block that a card with its latency would have called for by then. Throws std::runtime_error with one
-  // sentence when the disk does not take it.
+  // Calls for every block that a card with its latency would have called for by then. Throws std::runtime_error
+  // with one sentence when the disk does not take it.
   void play_until(sync::HostTime now) override;
   std::int64_t callbacks() const override { return blocks_; }
   std::int64_t underflows() const override { return 0; }

@@ -91,8 +91,8 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
     add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, out.data(), frames);
     level = std::max(level, p.level);
   }
-  spatialiser_.add(static_cast<int>(&v - voices_.data()), listener_ ? heard_by(*listener_, v.now.place) : v.now.place,
-                   out.data(), frames);
+  spatialiser_.add(static_cast<int>(&v - voices_.data()),
+                   listener_ ? heard_by(*listener_, v.now.place) : v.now.place, out.data(), frames);
   // The comparison also ends one that has become no number.
   const bool over = !told && !(level > kOver);
   if (over && v.silent >= spatialiser_.tail()) v.on = false;

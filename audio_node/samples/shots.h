@@ -46,7 +46,7 @@ class Shots {
     std::int64_t database = 0;
     Place place;
     int silent = 0;  // frames since the last of which something came
-    int begin = 0;  // frames until it starts
+    int begin = 0;   // frames until it starts
     bool fades = false;
     float fade = 1;
     float level = 0;  // largest of the last block, as heard

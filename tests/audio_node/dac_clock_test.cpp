@@ -122,7 +122,8 @@ TEST_CASE("Stalls with underflows, each begun by a callback that is late, leave 
     clock.block(128, late, 0.008);
     double truth = 0;
     DacClock::Estimate e;
-    for (int block = 0; block < 750; ++block) truth = card.out_s(), e = clock.block(128, card.next(128), 0.008);  // 2 s
+    for (int block = 0; block < 750; ++block)
+      truth = card.out_s(), e = clock.block(128, card.next(128), 0.008);  // 2 s
     CHECK(std::abs(static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth) < kSample_s);
   }
   CHECK(clock.reseeds() == 6);

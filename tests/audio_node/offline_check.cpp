@@ -110,8 +110,8 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   const Folder folder;
   const std::vector<double> times = record(folder.file("run.lcmlog"));
   const auto words = [&](const char* wav) {
-    return std::vector<std::string>{"--log", folder.file("run.lcmlog"), "--wav", folder.file(wav), "--set",
-                                    "instructions=sse2"};
+    return std::vector<std::string>{"--log", folder.file("run.lcmlog"), "--wav", folder.file(wav),
+                                    "--set", "instructions=sse2"};
   };
   const Done first = render(folder, words("a.wav")), again = render(folder, words("b.wav"));
   CAPTURE(first.said);
@@ -125,9 +125,11 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   const double start_s = static_cast<double>(first_sample_ns(first.said) - kLogBegins_ns) * 1e-9;
   for (const double t : times) {
     const double due = (t + kDelay_s - start_s) * kRate;
-    const auto begin = static_cast<std::size_t>(due - 0.02 * kRate), end = static_cast<std::size_t>(due + 0.02 * kRate);
+    const auto begin = static_cast<std::size_t>(due - 0.02 * kRate),
+               end = static_cast<std::size_t>(due + 0.02 * kRate);
     float before = 0, most = 0;
-    for (std::size_t n = begin; n < static_cast<std::size_t>(due) - 4; ++n) before = std::max(before, std::abs(wav[n]));
+    for (std::size_t n = begin; n < static_cast<std::size_t>(due) - 4; ++n)
+      before = std::max(before, std::abs(wav[n]));
     for (std::size_t n = begin; n < end; ++n) most = std::max(most, std::abs(wav[n]));
     CAPTURE(t, before, most);
     REQUIRE(most > 100 * before);
@@ -149,8 +151,8 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
       const auto x = static_cast<double>(wav[n]), d = static_cast<double>(wide[n]) - x;
       power += x * x, difference += d * d;
     }
-    // Single-precision poles round alike in all of them; a fused multiply-add rounds once less, 6e-8 a sample, which
-    // 12,000 samples of ringing make 7e-4 of phase at the most.
+    // Single-precision poles round alike in all of them; a fused multiply-add rounds once less, 6e-8 a sample,
+    // which 12,000 samples of ringing make 7e-4 of phase at the most.
     CHECK(std::sqrt(difference / power) < 1e-3);
   }
 }
