@@ -12,8 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-// Slower decay than any metal object: keeps a material without damping from ringing for ever.
-constexpr double kLeastDamping_1_s = 0.5;  // T60 = 13.8 s, design
 // A body whose size nobody knows.
 constexpr double kUnknownSize_m = 0.05;  // design
 

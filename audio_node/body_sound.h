@@ -13,6 +13,9 @@
 
 namespace tactus::audio {
 
+// Slower decay than any metal object: keeps a material without damping from ringing for ever.
+inline constexpr double kLeastDamping_1_s = 0.5;  // T60 = 13.8 s, design
+
 struct Mode {
   double frequency_Hz;
   double damping_1_s;

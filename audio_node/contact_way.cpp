@@ -40,8 +40,12 @@ Vector3d rolling_of(const Vector3d& a, const Vector3d& b) {
   return (a + b).normalized() * (together / std::max(a.norm(), b.norm()));
 }
 
-double ContactWay::moving(const Vector3d& way_m) {
-  const double x = std::clamp(way_m.norm() / kPresliding_m - 1, 0.0, 1.0);
+void Presliding::step(const Vector3d& velocity_m_s, double dt_s) {
+  way_m_ = std::exp(-dt_s / kJitter_s) * way_m_ + dt_s * velocity_m_s;
+}
+
+double Presliding::moving() const {
+  const double x = std::clamp(way_m_.norm() / kPresliding_m - 1, 0.0, 1.0);
   return x * x * (3 - 2 * x);
 }
 
@@ -99,9 +103,8 @@ void ContactWay::step(const contact_t& c, const std::array<std::optional<Eigen::
     over_.surface[1 - surest] = over_.surface[surest] - by_other;
   }
   over_.rolling = rolling_of(over_.surface[0], over_.surface[1]);
-  const double stays = std::exp(-dt_s / kJitter_s);
-  slid_m_ = stays * slid_m_ + dt_s * past;
-  rolled_m_ = stays * rolled_m_ + dt_s * over_.rolling;
+  slid_.step(past, dt_s);
+  rolled_.step(over_.rolling, dt_s);
   for (std::size_t i = 0; i < 2; ++i)
     if (to_body[i]) follow(sides_[i], told[i], *to_body[i] * (dt_s * over_.surface[i]), dt_s);
 }

@@ -19,6 +19,18 @@ struct Over {
 // Continuous: while either of the two stays where it is, or they go apart, nothing rolls.
 Eigen::Vector3d rolling_of(const Eigen::Vector3d& over_a, const Eigen::Vector3d& over_b);
 
+// Whether something moves at all: a contact that rests under load creeps and jitters without slipping, since the
+// junctions give first, by some 10 um (Rabinowicz 1951, Proc. Phys. Soc. A 64, p. 668).
+class Presliding {
+ public:
+  void step(const Eigen::Vector3d& velocity_m_s, double dt_s);
+  // 0: it has not left its place lately; 1: it has.
+  double moving() const;
+
+ private:
+  Eigen::Vector3d way_m_ = Eigen::Vector3d::Zero();  // lately
+};
+
 // Of one contact, as long as it lasts.
 class ContactWay {
  public:
@@ -32,10 +44,9 @@ class ContactWay {
   const Eigen::Vector3d& place_m(std::size_t side) const { return sides_[side].place_m; }
   // Of the pairs of points that were told last that which the contact is at.
   std::size_t point() const { return point_; }
-  // 0 .. 1: whether it slides, or rolls, at all. A contact that rests under load creeps and jitters without
-  // slipping: the junctions give first, by some 10 um (Rabinowicz 1951, Proc. Phys. Soc. A 64, p. 668).
-  double slides() const { return moving(slid_m_); }
-  double rolls() const { return moving(rolled_m_); }
+  // 0 .. 1: whether it slides, or rolls, at all.
+  double slides() const { return slid_.moving(); }
+  double rolls() const { return rolled_.moving(); }
 
  private:
   struct Side {
@@ -43,14 +54,13 @@ class ContactWay {
     std::optional<Eigen::Vector3d> told_m;
     double since_s = 0;  // it was told
   };
-  static double moving(const Eigen::Vector3d& way_m);
   double share(const Eigen::Vector3d& place, const Eigen::Vector3d& along);
   static void follow(Side& side, const Eigen::Vector3d& told_m, const Eigen::Vector3d& step_m, double dt_s);
 
   std::array<Side, 2> sides_;
   Over over_;
   std::size_t point_ = 0;
-  Eigen::Vector3d slid_m_ = Eigen::Vector3d::Zero(), rolled_m_ = Eigen::Vector3d::Zero();  // lately
+  Presliding slid_, rolled_;
   // What of the sliding was a way over the surest surface, lately.
   std::optional<Eigen::Vector3d> looked_at_m_;
   double looked_way_m_ = 0, looked_s_ = 0, share_ = 1;

@@ -224,7 +224,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
     side.place = place;
   }
   // Full scale per Pa.
-  const double pressure = std::max(peak_Pa(strike), 1e-9), level = level_of(pressure, settings_);
+  const double pressure = std::max(peak_Pa(strike, rate_Hz_), 1e-9), level = level_of(pressure, settings_);
   const auto scale = static_cast<float>(settings_.gain * level / pressure);
   for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
   const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);

@@ -1,9 +1,9 @@
-// audio_node: sounds the hits and scrapes of the scene through a sound card, each on its sample: when PLAYOUT
+// audio_node: sounds what hits, scrapes and rolls in the scene through a sound card, each on its sample: when PLAYOUT
 // says, else at a delay of its own.
 //
 //   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); WORLD_STATE, how bodies lie; SCENE;
-//        TOOL_STATE of a head, where the ear is
-//   out  PRESENTED, MEDIA_CLOCK, audio.wav
+//        TOOL_STATE of a head, where the ear is; PLAYOUT; SETTING, of which method and recordings are followed
+//   out  PRESENTED, MEDIA_CLOCK, SETTING_REPLY, audio.wav
 //
 // Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends what scrapes and rolls, losing WORLD_STATE leaves bodies turned as they
 // were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
@@ -223,7 +223,8 @@ int main(int argc, char** argv) try {
       for (const audio::Rub& rub : sampler->rubs(lasting, heard_at)) output.submit(rub);
       if (slides)
         for (audio::Scrape scrape : sliding->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at))) {
-          scrape.slide *= sampler->modal_of(scrape.id), scrape.roll *= sampler->modal_of(scrape.id);
+          scrape.slide *= sampler->modal_of(scrape.id, audio::Interaction::kScrape);
+          scrape.roll *= sampler->modal_of(scrape.id, audio::Interaction::kRoll);
           output.submit(scrape);
         }
       if (slides) slid_at = now;

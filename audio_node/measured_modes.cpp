@@ -17,7 +17,10 @@ void sound_as_measured(BodySound& sound, const material_def_t& material, const S
   sound.radiates_as_Hz = measured.front().frequency_Hz;
   sound.modes.clear();
   for (const measured_mode_t& m : measured)
-    sound.modes.push_back({m.frequency_Hz, m.damping_1_s, m.amplitude / measured.front().amplitude, {}});
+    sound.modes.push_back({m.frequency_Hz,
+                           std::max(kLeastDamping_1_s, m.damping_1_s),
+                           m.amplitude / measured.front().amplitude,
+                           {}});
   std::stable_sort(sound.modes.begin(), sound.modes.end(),
                    [](const Mode& a, const Mode& b) { return a.frequency_Hz < b.frequency_Hz; });
 }

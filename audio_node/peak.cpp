@@ -6,8 +6,8 @@
 namespace tactus::audio {
 namespace {
 
-// 10 ms at 48 kHz: modes of a blow are loudest while they are in phase, and one of 40 Hz has had its first swing.
-constexpr int kListen = 480;  // design
+// Modes of a blow are loudest while they are in phase, and one of 40 Hz has had its first swing.
+constexpr double kListen_s = 0.01;  // design
 
 // Adds what one side sounds in the block that begins so many samples after the onset.
 void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& velocity, PerMode& displacement,
@@ -29,10 +29,10 @@ void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& ve
 
 }  // namespace
 
-double peak_Pa(const Strike& strike) {
+double peak_Pa(const Strike& strike, double rate_Hz) {
   std::array<PerMode, 2> velocity{}, displacement{};
   float peak = 0;
-  const int end = length_of(strike.pulse) + kListen;
+  const int end = length_of(strike.pulse) + static_cast<int>(kListen_s * rate_Hz);
   for (int begin = 0; begin < end; begin += kMaxBlock) {
     std::array<float, kMaxBlock> out{};
     for (std::size_t i = 0; i < 2; ++i)

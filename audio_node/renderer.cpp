@@ -147,8 +147,9 @@ void Renderer::render_some(float* out, int frames, const BlockTime& time) {
   const std::int64_t computed = clock();
   const int rubs = recorded_.render(out, frames, leaving.first_sample);
   crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
-  crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
-  crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
+  // A block in which nothing sounds is no contact's.
+  if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
+  if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
     for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
   limiter_.process(out, frames);

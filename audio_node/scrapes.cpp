@@ -26,8 +26,10 @@ bool sane(const Scrape& s) {
   bool all = std::abs(s.slide) <= kMostStrength && std::abs(s.roll) <= kMostStrength && std::isfinite(s.cutoff_Hz);
   for (const ScrapeSide& side : s.sides)
     all = all && within(side.place_m, kMostPlace_m) && within(side.velocity_m_s, kMostSpeed_m_s) &&
-          within(side.slides.cast<double>(), kMostWay) && within(side.rolls.cast<double>(), kMostWay);
-  return all;
+          within(side.slides.cast<double>(), kMostWay) && within(side.rolls.cast<double>(), kMostWay) &&
+          std::isfinite(side.beyond) && std::isfinite(side.beyond_Hz) &&
+          std::all_of(side.gains.begin(), side.gains.end(), [](float g) { return std::isfinite(g); });
+  return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
 }
 
 // Of a step of a map that is none: as steep as 76 degrees (design).

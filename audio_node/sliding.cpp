@@ -167,7 +167,9 @@ void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
   // A plate has as many modes in each Hz, which lose sound as the square of their frequency (beta of Rayleigh):
   // all above the highest that is rendered have together the variance of `count` such as it, of which a quarter
   // was added up. They die away before anybody could tell them apart.
-  const bool cut = count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
+  // A measured body has the modes that it was heard to have.
+  const bool measured = impacts_.body(body).radiates_as_Hz.has_value();
+  const bool cut = !measured && count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
   const double beyond = cut ? 4 * last : 0;
   k.live->heard_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
   k.live->beyond_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;

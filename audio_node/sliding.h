@@ -65,9 +65,6 @@ class Sliding {
     double friction, slide, roll, cutoff_Hz;
     double strength() const { return slide * slide + roll * roll; }
   };
-  struct Material {
-    double friction, finish_m;
-  };
   Ground ground(const contact_t& contact, std::size_t side, sync::SimTime t) const;
   std::optional<Candidate> candidate(const contact_t& contact, sync::SimTime t, double dt_s);
   Scrape scrape(const Candidate& candidate, sync::SimTime t, sync::HostTime at, double dt_s);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::audio {
 namespace {
@@ -43,14 +44,17 @@ Voices::Voice* Voices::sounding(std::int64_t id) {
   return nullptr;
 }
 
-// The weakest give way until no more than so many sound besides those that fade.
+// The weakest give way until no more than so many sound besides those that fade. One that a contact drives is
+// heard from this block on, however weak it has been: it would begin anew in each block.
 void Voices::leave_room(int at_most) {
   const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.whole.on; };
   auto count = std::count_if(voices_.begin(), voices_.end(), sounds);
   for (; count > at_most; --count) {
     Voice* weakest = nullptr;
     for (Voice& v : voices_)
-      if (sounds(v) && (!weakest || v.level < weakest->level)) weakest = &v;
+      if (sounds(v) &&
+          (!weakest || std::pair(v.driven > 0, v.level) < std::pair(weakest->driven > 0, weakest->level)))
+        weakest = &v;
     weakest->whole.on = true;
   }
 }
@@ -110,7 +114,9 @@ void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse,
   if (free != v.pulses.end()) {
     *free = {true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
   } else {
-    v.pulses.back().impulse += gain * side.impulse;
+    std::max_element(v.pulses.begin(), v.pulses.end(), [](const Pulse& a, const Pulse& b) {
+      return a.begin < b.begin;
+    })->impulse += gain * side.impulse;
   }
   float response = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i) response += std::abs(side.gains[i]);
@@ -201,13 +207,15 @@ void Voices::render(Voice& v, int frames) {
     end_cut(v);
   }
   fade(v.whole, out.data(), frames);
+  const bool numbers = std::all_of(out.begin(), out.begin() + frames, [](float x) { return std::isfinite(x); });
+  if (!numbers) out.fill(0);
   const Place place = listener_ ? heard_by(*listener_, v.place) : v.place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
   const bool pushed = pushes.count > 0;
   // What is on its way to the ears is still heard, but for a voice that has become no number.
   const bool over = v.whole.gain <= 0 || (!pushed && !(v.level > kOver));
-  if (!std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
+  if (!numbers || !std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
   v.silent = over ? v.silent + frames : 0;
   if (pushes.of_blows) v.level += v.expected;
 }

@@ -59,7 +59,7 @@ class Voices {
   static constexpr int kDrives = 32;
 
  private:
-  static constexpr int kPulses = 8;  // of one voice at a time; more are merged into the newest
+  static constexpr int kPulses = 16;  // of one voice at a time; more are merged into the newest
   // Voices that fade while others sound: so many may be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
   // Of what is cut. Shorter is heard as a click (design).

@@ -22,7 +22,7 @@ constexpr double kCalibration_s = 20e-6;
 double DacClock::offset_s(const CallbackTime& t) {
   const double now = sync::to_seconds(t.now - base_), offset = now - t.current_s;
   const bool jumped = calibrated_ && std::abs(offset - std::min(minimum_s_, older_minimum_s_)) > kMostLatency_s;
-  if (!calibrated_ || jumped || t.underflow) {
+  if (!calibrated_ || jumped) {
     minimum_s_ = older_minimum_s_ = offset;
     window_end_s_ = now + kWindow_s;
     calibrated_ = true;
@@ -68,7 +68,9 @@ DacClock::Estimate DacClock::block(int frames, const CallbackTime& t, double lat
   square_s2_ += kForget * (used * used - square_s2_);
   ++blocks_;
 
-  const double doubt = 3 * std::sqrt(square_s2_) + kCalibration_s + (plausible ? 0 : latency_s);
+  // An error that is not believed yet may be true.
+  const double unsure = outliers_ > 0 ? std::abs(error) : 0;
+  const double doubt = 3 * std::sqrt(square_s2_) + kCalibration_s + unsure + (plausible ? 0 : latency_s);
   return {base_ + sync::from_seconds(time), sync::from_seconds(doubt)};
 }
 

@@ -48,6 +48,9 @@ std::optional<MaterialPair> materials_of(const std::string& folder) {
   return pair_of(a, b);
 }
 
+// A layer that is weaker by more than 40 dB stays so: there is more noise in it than sound (design).
+constexpr float kMostGain = 100;
+
 void even_out(Layers& layers, Interaction interaction) {
   const auto loudness = [&](const Layer& layer) {
     float most = 0;
@@ -56,7 +59,7 @@ void even_out(Layers& layers, Interaction interaction) {
     return most;
   };
   const float fastest = loudness(layers.by_speed.back());
-  for (Layer& layer : layers.by_speed) layer.gain = fastest / loudness(layer);
+  for (Layer& layer : layers.by_speed) layer.gain = std::min(kMostGain, fastest / loudness(layer));
 }
 
 class Reader {
@@ -119,6 +122,10 @@ class Reader {
       return blame(folder, "is there twice, as its materials are in the other order too; keep one of the two");
     found.size_m = size_m;
     for (auto& [speed, layer] : layers) {
+      if (found.by_speed.size() == static_cast<std::size_t>(kMostLayers)) {
+        blame(folder, "has more than " + std::to_string(kMostLayers) + " speeds; the fastest are left out");
+        break;
+      }
       layer.speed_m_s = speed;
       found.by_speed.push_back(std::move(layer));
     }

@@ -26,9 +26,11 @@ struct Layer {
   std::vector<Recording> takes;
 };
 
+inline constexpr int kMostLayers = 8;  // of one sound (design)
+
 // Of one pair of materials and one interaction.
 struct Layers {
-  std::vector<Layer> by_speed;  // ascending, each with a take at least
+  std::vector<Layer> by_speed;  // ascending, each with a take at least; at most kMostLayers
   double size_m = 0.05;         // of what was recorded: radius of a ball of the same extent
 };
 

@@ -15,8 +15,7 @@ namespace tactus::audio {
 // and Pai 2001, section 4.2). Realtime-safe: yes.
 class Loops {
  public:
-  static constexpr int kMost = 32;       // at a time; more are not heard
-  static constexpr int kMostLayers = 8;  // of one sound
+  static constexpr int kMost = 32;  // at a time; more are not heard
 
   explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
       : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}

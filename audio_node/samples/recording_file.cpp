@@ -95,6 +95,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
   if (clipped(x)) faults.push_back({path, "is clipped; record it with less gain", false});
   const bool blow = interaction == Interaction::kImpact;
   x = resample(x, info.samplerate, rate_Hz);
+  if (peak_of(x) < kSilent) return refuse("holds nothing that can be heard; record it anew or take it away");
   x = blow ? cut_blow(std::move(x), rate_Hz) : std::move(x);
   const double length_s = static_cast<double>(x.size()) / rate_Hz;
   if (blow && length_s < kShortestBlow_s) return refuse("is shorter than 10 ms; give the whole sound of the blow");

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "audio_node/plausible.h"
+#include "audio_node/samples/loops.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -16,6 +17,8 @@ constexpr double kMostLevel = 4;
 constexpr double kLeastPitch = 0.5, kMostPitch = 2;
 // As for scrapes: below, nothing slides or rolls; beyond, nothing becomes louder or faster (design).
 constexpr double kLeastSpeed_m_s = 1e-3, kMostSpeed_m_s = 5, kMostForce_N = 50;
+// Between two looks at contacts; more is a gap (design).
+constexpr double kMostStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
 
 // That of a pair: a ball on a floor, a hand on a bar are told by the smaller of the two (design).
@@ -106,9 +109,14 @@ void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts
 }
 
 void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
-  const Database::Found found = find(c.material_a, c.material_b, interaction);
+  // What does not move needs no recording: nothing is said of it.
+  const Database::Found found = level > 0
+                                    ? find(c.material_a, c.material_b, interaction)
+                                    : database_->find(material(c.material_a), material(c.material_b), interaction);
   const std::array<const Layers*, 3> all{found.pair, found.alone[0], found.alone[1]};
   const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
+  if (found.any()) recorded_.insert({c.contact_id, interaction});
+  if (!(level > 0)) return;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i]) continue;
     Rub r;
@@ -123,36 +131,56 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
     r.place = place_of(listener_, 0.5 * (to_eigen(c.points[0].a_world_m) + to_eigen(c.points[0].b_world_m)),
                        settings_.nearest_m);
     rubs_.push_back(r);
-    recorded_.insert(c.contact_id);
   }
+}
+
+// What is beyond the loops that can be heard is computed instead.
+void Sampler::keep_loudest() {
+  constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMost);
+  if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
+  std::partial_sort(rubs_.begin(), rubs_.begin() + most, rubs_.end(),
+                    [](const Rub& a, const Rub& b) { return a.level > b.level; });
+  for (auto r = rubs_.begin() + most; r != rubs_.end(); ++r)
+    recorded_.erase({r->contact, static_cast<Interaction>(r->part / 2)});
+  rubs_.erase(rubs_.begin() + most, rubs_.end());
 }
 
 const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
   rubs_.clear();
   recorded_.clear();
-  if (!plays()) return rubs_;
+  const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMostStep_s);
+  rubbed_ = at;
+  if (!plays()) {
+    moves_.clear();
+    return rubs_;
+  }
+  for (auto& [id, moves] : moves_) moves.seen = false;
   const auto mu = [&](std::int32_t m) {
     return m >= 0 && static_cast<std::size_t>(m) < mu_.size() ? mu_[static_cast<std::size_t>(m)] : 1.0;
   };
   for (const contact_t& c : contacts) {
     if (c.points.empty() || !plausible(c)) continue;
     const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
-    const double slides = std::min(to_eigen(c.sliding_velocity_m_s).norm(), kMostSpeed_m_s);
-    const double rolls = std::min(to_eigen(c.rolling_velocity_m_s).norm(), kMostSpeed_m_s);
+    const Eigen::Vector3d past = to_eigen(c.sliding_velocity_m_s), round = to_eigen(c.rolling_velocity_m_s);
+    const double slides = std::min(past.norm(), kMostSpeed_m_s), rolls = std::min(round.norm(), kMostSpeed_m_s);
+    Moves& moves = moves_[c.contact_id];
+    moves.seen = true;
+    moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
     // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
-    if (slides >= kLeastSpeed_m_s) {
-      const double power_W = std::sqrt(mu(c.material_a) * mu(c.material_b)) * force_N * slides;
-      rub(c, Interaction::kScrape, slides, settings_.recorded_scrape_level * std::sqrt(power_W), at);
-    }
+    const double power_W = std::sqrt(mu(c.material_a) * mu(c.material_b)) * force_N * slides;
+    const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
+    rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
     // The point of contact of a body that slides moves too: that is no rolling.
-    if (rolls >= kLeastSpeed_m_s && rolls > slides)
-      rub(c, Interaction::kRoll, rolls, settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
+    const double rolling = rolls >= kLeastSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
+    rub(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
   }
+  std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
+  keep_loudest();
   return rubs_;
 }
 
-float Sampler::modal_of(std::int64_t contact) const {
-  return recorded_.contains(contact) ? gains_of(settings_).modal : 1;
+float Sampler::modal_of(std::int64_t contact, Interaction interaction) const {
+  return recorded_.contains({contact, interaction}) ? gains_of(settings_).modal : 1;
 }
 
 }  // namespace tactus::audio

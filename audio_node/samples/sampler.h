@@ -7,8 +7,10 @@
 #include <string>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <utility>
 #include <vector>
 
+#include "audio_node/contact_way.h"
 #include "audio_node/impact.h"
 #include "audio_node/samples/database.h"
 #include "audio_node/samples/shot.h"
@@ -49,8 +51,8 @@ class Sampler {
   void record(Strike& strike, const contact_event_t& event, const Impacts& impacts);
   // What of these contacts is to be heard at `at`.
   const std::vector<Rub>& rubs(const sync::Contacts& contacts, sync::HostTime at);
-  // Factor on what is computed of a contact that scrapes or rolls, as of the last rubs().
-  float modal_of(std::int64_t contact) const;
+  // Factor on what is computed of the scraping or the rolling of a contact, as of the last rubs().
+  float modal_of(std::int64_t contact, Interaction interaction) const;
 
   // One sentence for each pair and interaction that falls back, once.
   std::vector<std::string> news() { return std::exchange(news_, {}); }
@@ -59,6 +61,7 @@ class Sampler {
   Database::Found find(std::int32_t a, std::int32_t b, Interaction interaction);
   std::string material(std::int32_t index) const;
   void say(const std::string& a, const std::string& b, Interaction interaction, const Database::Found& found);
+  void keep_loudest();
   void rub(const contact_t& contact, Interaction interaction, double speed_m_s, double level, sync::HostTime at);
 
   Settings settings_;
@@ -68,7 +71,13 @@ class Sampler {
   const Database* database_ = nullptr;
   std::int64_t number_ = 0;
   std::vector<Rub> rubs_;
-  std::set<std::int64_t> recorded_;  // contacts of the last rubs()
+  sync::HostTime rubbed_{};  // when the last rubs() were to be heard
+  struct Moves {
+    Presliding slides, rolls;
+    bool seen = true;
+  };
+  std::map<std::int64_t, Moves> moves_;                      // of each contact
+  std::set<std::pair<std::int64_t, Interaction>> recorded_;  // contacts of the last rubs()
   std::set<Database::Key> said_;
   std::vector<std::string> news_;
 };

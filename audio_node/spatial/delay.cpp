@@ -15,7 +15,7 @@ std::array<float, 6> lagrange(float x) {
 
 void add_delayed(const float* signal, float from, float to, int frames, float* out) {
   if (from == to) {
-    const float whole = std::ceil(to);
+    const float whole = std::floor(to) + 1;
     const std::array<float, 6> w = lagrange(whole - to);
     const float* const s = signal - static_cast<int>(whole) - 2;
     for (int n = 0; n < frames; ++n)

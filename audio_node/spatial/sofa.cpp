@@ -59,6 +59,9 @@ MeasuredHrtf load_sofa(const std::string& path) {
   const auto finite = [](float x) { return std::isfinite(x); };
   if (!std::all_of(measured.responses.begin(), measured.responses.end(), finite))
     refuse(path, "holds values that are no numbers");
+  if (!std::all_of(measured.delays.begin(), measured.delays.end(),
+                   [&](double d) { return d >= 0 && d <= measured.samples; }))
+    refuse(path, "holds delays that are longer than its responses, or none");
   return measured;
 }
 

@@ -31,7 +31,8 @@ Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instru
   for (Source& s : sources_) {
     s.left.resize(taps), s.right.resize(taps);
     s.input.resize(taps + kMaxBlock);
-    s.heard_left.resize(past + kMaxBlock), s.heard_right.resize(past + kMaxBlock);
+    // And one that a delay of a whole number of samples reads, with the weight 0.
+    s.heard_left.resize(past + kMaxBlock + 1), s.heard_right.resize(past + kMaxBlock + 1);
   }
 }
 

@@ -15,6 +15,7 @@
 
 #include "audio_node/device/stream.h"
 #include "audio_node/impact.h"
+#include "audio_node/spatial/space_of.h"
 #include "sync/pacing.h"
 #include "tests/audio_node/bench.h"
 #include "tests/audio_node/callback_trap.h"
@@ -49,14 +50,52 @@ struct Folder {
   std::string path;
 };
 
-Scrape scrape(std::int64_t number, std::mt19937& random, const Relief* relief) {
+Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* surface, const Strike& of) {
   Scrape s;
   s.number = number;
   s.id = static_cast<std::int64_t>(random() % 24);  // more than are heard at a time
   s.at = sync::host_now();
-  s.relief = relief;
-  s.u_per_s = 50, s.along_u = 1, s.speed_m_s = 0.1, s.level = 0.05f;
+  s.slide = s.roll = 1e-4f, s.cutoff_Hz = 1000;
+  s.place = of.sides[1].place;
+  ScrapeSide& side = s.sides[0];
+  side.voice = of.sides[1].voice, side.resonators = of.sides[1].resonators, side.gains = of.sides[1].gains;
+  side.known = true;
+  side.beyond = 0.1f, side.beyond_Hz = 5000;
+  if (surface) side.relief = surface->relief.get(), side.friction = surface->friction.get();
+  side.roughness = {1e-6, 0};
+  side.velocity_m_s.x() = 0.1, side.slides.x() = 1, side.rolls.y() = 1;
   return s;
+}
+
+// Recordings of a blow and of a loop in two speeds.
+struct Recordings {
+  Layers blow, loop;
+  Recordings() {
+    Recording r;
+    for (int i = 0; i < 24000; ++i) r.samples.push_back(0.3f * std::sin(0.05f * static_cast<float>(i)));
+    r.peak = 0.3f, r.rms = 0.2f;
+    blow.by_speed = {{0.5, 1, {r}}};
+    loop.by_speed = {{0.1, 1, {r}}, {0.5, 1, {r}}};
+  }
+  void add_to(Strike& strike, std::int64_t database) const {
+    strike.recorded.database = database;
+    strike.recorded.shots[0] = {&blow.by_speed[0].takes[0], 0.1f, 1.3f};
+    strike.recorded.place = strike.sides[0].place;
+  }
+  Rub rub(std::int64_t database, std::mt19937& random) const {
+    Rub r;
+    r.contact = static_cast<std::int64_t>(random() % 40);
+    r.database = database, r.at = sync::host_now(), r.layers = &loop;
+    r.speed_m_s = 0.1 + 0.01 * static_cast<double>(random() % 50), r.level = 0.05f;
+    return r;
+  }
+};
+
+// Ears, the loudspeakers of a cube (a card of eight channels), and a pair.
+Space space_for(const std::string& spatial) {
+  Settings settings;
+  settings.spatial = spatial, settings.layout_file = "cube";
+  return space_of(settings, kRate);
 }
 
 }  // namespace
@@ -110,17 +149,23 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   const Impacts impacts(
       scene, [](std::int64_t) -> std::optional<Extent> { return std::nullopt; }, Settings{}, kRate, 1);
   const auto surfaces = wavy_surfaces();
-  const Relief* relief = surfaces->by_material[0].relief.get();
-  const int period = GENERATE(64, 256);
-  CAPTURE(period);
+  const Recordings recordings;
+  const auto [period, spatial] =
+      GENERATE(std::pair(64, "hrtf"), std::pair(256, "loudspeakers"), std::pair(128, "stereo"));
+  CAPTURE(period, spatial);
   Crossing crossing;
-  Renderer renderer(crossing, {.period_frames = period});
+  RendererDef def;
+  def.period_frames = period, def.space = space_for(spatial);
+  def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
+  Renderer renderer(crossing, def);
   std::mt19937 random(3);
   int reported = 0, steps = 0, struck = 0;
+  std::int64_t database = 0;
   forget_trapped();
   {
     StreamOptions options;
     options.device = "virtual", options.folder = folder.path, options.period_frames = period;
+    options.channels = renderer.channels();
     Stream stream(options,
                   [&](float* out, int frames, const BlockTime& time) { renderer.render(out, frames, time); });
     for (int i = 0; i < 400; ++i) {
@@ -130,9 +175,18 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
         Strike s = impacts.strike(RecordedRun::hit(struck, 0, 0, 1 + static_cast<int>(random() % 2)),
                                   sync::host_now() + sync::from_seconds(early_s));
         s.sides[1].voice += static_cast<std::int64_t>(random() % 100);
+        if (k == 0) recordings.add_to(s, database);
         crossing.strikes.push(s);
+        if (k == 1)
+          crossing.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
       }
-      crossing.scrapes.push(scrape(i, random, random() % 3 ? relief : nullptr));
+      // The head turns, and now and then there is another database.
+      Listener listener;
+      listener.T_W_listener.rotate(Eigen::AngleAxisf(0.1f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
+      listener.nearest_m = 0.3f;
+      crossing.listeners.push(listener);
+      if (i % 50 == 0) crossing.recorded.databases.push(++database);
+      crossing.recorded.rubs.push(recordings.rub(database, random));
       if (i % 10 == 0)
         crossing.orders.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
       for (presentation_t r; crossing.reports.pop(r);) ++reported;

@@ -198,6 +198,31 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
   }
 }
 
+TEST_CASE("A tool sounds as what touches of it, not as a body of a size that nobody knows") {
+  scene_t s = scene();
+  body_def_t body{};
+  body.id = s.body_count++, body.tool = 0;
+  s.bodies.push_back(body);
+  tool_def_t tool{};
+  tool.body = body.id, tool.material = 1, tool.mass_kg = 0.1, tool.radius_m = 0.006;
+  s.tools = {tool}, s.tool_count = 1;
+  const auto sound = [&] {
+    return Impacts(
+               s, [](std::int64_t) { return std::nullopt; }, {}, 48000, 1)
+        .body(body.id);
+  };
+  // The lowest mode of a solid steel ball of 6 mm lies at 2.64 c_s / (2 pi a) = 220 kHz (modal.h).
+  CHECK(sound().modes.empty());
+  CHECK(sound().mass_kg == Approx(0.1));
+  CHECK(sound().radius_m == Approx(0.006));
+  SECTION("also a bar in the hand") {
+    s.tools[0].shape = tool_def_t::BOX;
+    s.tools[0].size_m.x = 0.3, s.tools[0].size_m.y = 0.03, s.tools[0].size_m.z = 0.005;
+    REQUIRE_FALSE(sound().modes.empty());
+    CHECK(sound().modes[0].frequency_Hz == Approx(impacts().body(1).modes[0].frequency_Hz));
+  }
+}
+
 TEST_CASE(
     "A blow on a nodal line leaves the mode silent, and one whose place nobody knows sounds as the mean of all") {
   const Impacts all = impacts();

@@ -102,6 +102,25 @@ TEST_CASE("A body that nothing drives any more rings down and frees its voice") 
   }
 }
 
+TEST_CASE("What contacts drive keeps ringing when all voices are in use by louder bodies") {
+  Voices voices(4, kRate, kRing);
+  for (int i = 0; i < 4; ++i)
+    voices.strike(strike_of(0, i, 300 + 50 * i, 0.5, 0, 0.5f).sides[0], 1, one_hump(1), 0);
+  Pushed quiet;
+  const auto force = sine(1000, 48000 / kMaxBlock * kMaxBlock);
+  double most = 0;
+  for (std::size_t at = 0; at + kMaxBlock <= force.size(); at += kMaxBlock) {
+    std::vector<float> block(force.begin() + static_cast<std::ptrdiff_t>(at),
+                             force.begin() + static_cast<std::ptrdiff_t>(at + kMaxBlock));
+    for (std::int64_t id : {10, 11}) voices.drive({id, &quiet.resonators, &quiet.gains, {}, block.data()});
+    std::vector<float> mix(2 * kMaxBlock);
+    voices.render(mix.data(), kMaxBlock);
+    if (at > 24000) most = std::max<double>(most, voices.active());
+  }
+  // Two of the loud ones gave way, and nobody after that.
+  CHECK(most == 4);
+}
+
 TEST_CASE("More contacts than a body can hear at a time leave it whole") {
   Pushed body;
   const std::vector<float> force(kMaxBlock, 1e-6f);

@@ -98,11 +98,8 @@ class Rehearsal {
     return run(seconds, kSliding * seconds, [&](double now_s, sync::HostTime at) {
       for (const Rub& r : sampler_->rubs(contacts, at)) crossing_->recorded.rubs.push(r);
       for (const contact_t& c : contacts) {
-        Scrape s;
-        s.id = c.contact_id, s.number = number_++, s.at = at;
-        s.speed_m_s = static_cast<double>(c.sliding_velocity_m_s.x), s.travelled_m = s.speed_m_s * now_s;
-        s.level = 0.1f * sampler_->modal_of(c.contact_id);
-        if (s.level > 0) crossing_->scrapes.push(s);
+        const float share = sampler_->modal_of(c.contact_id, Interaction::kScrape);
+        if (share > 0) crossing_->scrapes.push(scrape(c, share, now_s, at));
       }
     });
   }
@@ -112,6 +109,25 @@ class Rehearsal {
     settings_.method = method;
     crossing_->recorded.databases.push(1);
     return Impacts(scene_, {}, settings_, settings_.sample_rate_Hz, 1);
+  }
+
+  // Of a over the roughness of b.
+  Scrape scrape(const contact_t& c, float share, double now_s, sync::HostTime at) {
+    Scrape s;
+    s.id = c.contact_id, s.number = number_++, s.at = at;
+    s.slide = 1e-4f * share;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int body = i == 0 ? c.body_a : c.body_b;
+      ScrapeSide& side = s.sides[i];
+      side.voice = impacts_.voice_id(body), side.resonators = impacts_.resonators(body);
+      side.gains = impacts_.gains(body, std::nullopt);
+      side.known = true;
+      side.roughness = {1e-6, 0};
+    }
+    const double speed_m_s = static_cast<double>(c.sliding_velocity_m_s.x);
+    s.sides[1].place_m.x() = speed_m_s * now_s, s.sides[1].velocity_m_s.x() = speed_m_s;
+    s.sides[1].slides.x() = 1;
+    return s;
   }
 
   template <class Tell>

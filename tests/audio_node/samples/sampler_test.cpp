@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "audio_node/samples/loops.h"
 #include "lcmtypes/vectors.h"
 #include "tests/audio_node/bench.h"
 #include "tests/audio_node/samples/sounds.h"
@@ -191,20 +192,54 @@ TEST_CASE(
     "Contacts that slide scrape by their recording, those that roll do not slide, and what is computed gives "
     "way") {
   World w(with("samples"));
-  const auto& rubs = w.sampler.rubs({sliding(0.2, 0, 4)}, {});
+  auto lasting = [&, ms = 0](const contact_t& c) mutable {
+    std::vector<Rub> rubs;
+    for (int i = 0; i < 100; ++i) rubs = w.sampler.rubs({c}, sync::host_time(1'000'000 * ++ms));
+    return rubs;
+  };
+  const auto rubs = lasting(sliding(0.2, 0, 4));
   REQUIRE(rubs.size() == 1);
   CHECK(rubs[0].database == 5);
   CHECK(rubs[0].speed_m_s == Approx(0.2));
   // The root of the power that friction takes: 0.5 * 4 N * 0.2 m/s.
   CHECK(static_cast<double>(rubs[0].level) == Approx(0.3 * std::sqrt(0.4)).epsilon(1e-6));
-  CHECK(w.sampler.modal_of(11) == 0);
-  CHECK(w.sampler.modal_of(12) == 1);
+  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
+  CHECK(w.sampler.modal_of(12, Interaction::kScrape) == 1);
   // No recording of rolling: it is computed.
-  CHECK(w.sampler.rubs({sliding(0, 0.3, 4)}, {}).empty());
-  CHECK(w.sampler.modal_of(11) == 1);
+  CHECK(lasting(sliding(0, 0.3, 4)).empty());
+  CHECK(w.sampler.modal_of(11, Interaction::kRoll) == 1);
   w.sampler.configure(with("modal"));
-  CHECK(w.sampler.rubs({sliding(0.2, 0, 4)}, {}).empty());
-  CHECK(w.sampler.modal_of(11) == 1);
+  CHECK(lasting(sliding(0.2, 0, 4)).empty());
+  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 1);
+}
+
+TEST_CASE("What rests under load and jitters does not scrape, neither as recorded nor as computed") {
+  World w(with("samples"));
+  for (int ms = 1; ms < 2000; ++ms) {
+    // 2 mm/s to and fro, 50 times a second: it never gets 20 um away.
+    const auto& rubs =
+        w.sampler.rubs({sliding(ms / 10 % 2 ? 0.002 : -0.002, 0, 50)}, sync::host_time(1'000'000 * ms));
+    REQUIRE(rubs.empty());
+    REQUIRE(w.sampler.modal_of(11, Interaction::kScrape) == 0);
+  }
+}
+
+TEST_CASE("Of more contacts than can be heard at a time the loudest are played, and the others computed") {
+  World w(with("samples"));
+  std::vector<Rub> rubs;
+  for (int ms = 1; ms < 100; ++ms) {
+    sync::Contacts all;
+    for (int i = 0; i < 2 * Loops::kMost; ++i) {
+      contact_t c = sliding(0.2, 0, 1 + i);
+      c.contact_id = i;
+      all.push_back(c);
+    }
+    rubs = w.sampler.rubs(all, sync::host_time(1'000'000 * ms));
+  }
+  REQUIRE(rubs.size() == Loops::kMost);
+  for (const Rub& r : rubs) CHECK(r.contact >= Loops::kMost);
+  CHECK(w.sampler.modal_of(0, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_of(2 * Loops::kMost - 1, Interaction::kScrape) == 0);
 }
 
 TEST_CASE("Absurd events and contacts play finite sound") {

@@ -1,5 +1,6 @@
 #include "audio_node/spatial/delay.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -40,4 +41,17 @@ TEST_CASE("A delay that changes goes straight from one value to the other") {
     const double delay = static_cast<double>(from) + static_cast<double>(to - from) * (n + 1) / kFrames;
     CHECK(std::abs(static_cast<double>(out[n]) - std::sin(w * (n - delay))) < 3e-5);
   }
+}
+
+TEST_CASE(
+    "Nothing is read beyond the frames that are there and one more, nor before the past that a delay reaches") {
+  const float from = GENERATE(2.f, 2.3f, 9.f), to = GENERATE(2.f, 9.f, 8.5f);
+  const int past = static_cast<int>(std::ceil(std::max(from, to))) + kDelayReach;
+  // No number wherever nothing may be read: whatever it is weighed with, it would be heard.
+  std::vector<float> x(static_cast<std::size_t>(past + kFrames + 1), 1.f);
+  x.insert(x.begin(), 8, NAN);
+  x.insert(x.end(), 8, NAN);
+  float out[kFrames] = {};
+  add_delayed(x.data() + 8 + past, from, to, kFrames, out);
+  for (const float y : out) CHECK(y == Approx(1));
 }

@@ -27,8 +27,8 @@ TEST_CASE("A source on a circle has the level difference between the ears that t
     INFO("azimuth " << azimuth << ", octave from " << from_Hz);
     const double ours = level_difference_dB(heard_from(towards(azimuth)), 48000, from_Hz, 2 * from_Hz);
     const double measured = level_difference_dB(measured_from(azimuth), kemar().rate_Hz, from_Hz, 2 * from_Hz);
-    // Around 8 kHz the far ear has notches, which the end of the response that is cut and the polynomial of the delay (0.3 dB
-    // at 11 kHz) fill a little: 2.0 dB in the worst direction.
+    // Around 8 kHz the far ear has notches, which the end of the response that is cut and the polynomial of the
+    // delay (0.3 dB at 11 kHz) fill a little: 2.0 dB in the worst direction.
     CHECK(std::abs(ours - measured) <= (from_Hz > 5000 ? 2.1 : 1));
   }
 }
