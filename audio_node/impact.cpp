@@ -101,7 +101,8 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
     for (const Mode& mode : v.sound.modes) {
       const double lost = mode.damping_1_s / (2 * pi);
       const ModeStep step =
-          mode_step(std::sqrt(mode.frequency_Hz * mode.frequency_Hz - lost * lost), mode.damping_1_s, rate_Hz);
+          mode_step(std::sqrt(std::max(1.0, mode.frequency_Hz * mode.frequency_Hz - lost * lost)),
+                    mode.damping_1_s, rate_Hz);
       v.resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
                            kSoundSpeed_m_s *

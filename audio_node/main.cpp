@@ -158,7 +158,12 @@ int main(int argc, char** argv) try {
     }
     while (offline && surfaces && !surfaces->done()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (surfaces && surfaces->done()) {
-      const std::shared_ptr<const audio::HeardSurfaces> heard = surfaces->take();
+      auto heard = std::make_shared<const audio::HeardSurfaces>();
+      try {
+        heard = surfaces->take();
+      } catch (const std::exception& e) {
+        std::cerr << kAudio.node << ": cannot read the maps of the scene (" << e.what() << "); what scrapes sounds without them" << std::endl;
+      }
       surfaces.reset();
       output.hear(heard);
       sliding = std::make_unique<audio::Sliding>(*scene.scene(), heard, bodies, *impacts, output.settings(),

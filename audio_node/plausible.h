@@ -15,6 +15,9 @@ inline constexpr double kMostSpeedOfWorld_m_s = 343;
 inline constexpr double kMostMassOfWorld_kg = 1e5, kMostForceOfWorld_N = 1e6, kMostCurvatureOfWorld_1_m = 1e6,
                         kMostWayOfWorld_m = 1e4;
 
+// Of no dry pair of materials there is more; it bounds how loud a scene can make what scrapes. Design.
+inline constexpr double kMostFriction = 2;
+
 // True only of numbers: every comparison with a NaN is false.
 template <class V>
 bool within(const V& v, double most) {

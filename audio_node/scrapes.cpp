@@ -84,6 +84,7 @@ void Scrapes::begin(Contact& c, const Scrape& scrape) const {
 
 void Scrapes::take(const Scrape& scrape) {
   if (!sane(scrape)) return;
+  const bool silent = scrape.slide == 0 && scrape.roll == 0;
   Contact* known = nullptr;
   Contact* free = nullptr;
   for (Contact& c : contacts_) {
@@ -99,7 +100,7 @@ void Scrapes::take(const Scrape& scrape) {
     for (std::size_t i = 0; i < 2; ++i)
       known->sides[i].changed |= known->now.sides[i].gains != scrape.sides[i].gains;
     known->now = scrape;
-  } else if (free) {
+  } else if (free && !silent) {
     begin(*(known = free), scrape);
   } else {
     return;

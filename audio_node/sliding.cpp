@@ -120,7 +120,7 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
     const auto i = static_cast<std::size_t>(g.material);
     if (g.material >= 0 && i < materials_.size()) mu *= materials_[i].friction_dynamic;
   }
-  k.friction = std::sqrt(std::max(0.0, mu));
+  k.friction = std::clamp(std::sqrt(std::max(0.0, mu)), 0.0, kMostFriction);
   const double rolling = std::min(way.over().rolling.norm(), kMostSpeed_m_s);
   k.slide = way.slides() * sliding_strength(k.friction, force_N, past.norm());
   k.roll = way.rolls() * sliding_strength(settings_.rolling_resistance, force_N, rolling) * turn(k);

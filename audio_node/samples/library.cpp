@@ -46,7 +46,12 @@ std::vector<Library::Shared> Library::step() {
     });
   }
   if (opening_ && opening_->done()) {
-    use(opening_->take());
+    try {
+      use(opening_->take());
+    } catch (const std::exception& e) {
+      news_.push_back("cannot read the recordings in " + reading_->folder + " (" + e.what() +
+                      "); contacts are computed");
+    }
     opening_.reset();
     read_ = reading_;
   }

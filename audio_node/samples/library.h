@@ -33,7 +33,7 @@ class Library {
   // Null: none has been read yet, and none is needed or it is being read.
   const Database* database() const { return now_.get(); }
   // A database is on its way. Who renders without a clock steps until it is there.
-  bool reading() const { return opening_ || next_ || (wanted_ && wanted_ != read_); }
+  bool reading() const { return opening_ || (wanted_ && wanted_ != read_); }
   // What whatever crosses with it carries.
   std::int64_t number() const { return told_; }
   // A sentence for people about each database that was read, once.

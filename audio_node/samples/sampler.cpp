@@ -29,6 +29,9 @@ double size_of(const BodySound& a, const BodySound& b) { return std::min(a.radiu
 MethodGains gains_of(const Settings& s) {
   if (s.method == "samples") return {0, 1};
   if (s.method != "both") return {1, 0};
+  // Exactly nothing of the one that is not wanted: it costs nothing then.
+  if (s.mix <= 0) return {1, 0};
+  if (s.mix >= 1) return {0, 1};
   const double angle = s.mix * std::numbers::pi / 2;
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }
@@ -167,7 +170,8 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
     moves.seen = true;
     moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
     // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
-    const double power_W = std::sqrt(mu(c.material_a) * mu(c.material_b)) * force_N * slides;
+    const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMostFriction);
+    const double power_W = friction * force_N * slides;
     const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
     rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
     // The point of contact of a body that slides moves too: that is no rolling.

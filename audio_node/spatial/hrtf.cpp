@@ -102,6 +102,8 @@ Mixture mixture(const std::vector<Corner>& corners, const Vector3d& direction) {
     const Vector3d w = c.weights_of * direction;
     if (w.minCoeff() > best.weights.minCoeff()) best = {c.triangle, w};
   }
+  if (best.weights.minCoeff() < -0.01)
+    throw std::runtime_error("the directions of the HRTF file do not surround the head; choose another hrtf_file");
   best.weights = best.weights.cwiseMax(0);
   best.weights /= best.weights.sum();
   return best;

@@ -32,3 +32,20 @@ TEST_CASE("A source on a circle has the level difference between the ears that t
     CHECK(std::abs(ours - measured) <= (from_Hz > 5000 ? 2.1 : 1));
   }
 }
+
+TEST_CASE("Ears that were measured from one side only are refused instead of being made up") {
+  MeasuredHrtf half = kemar();
+  const MeasuredHrtf whole = half;
+  half.directions.clear(), half.responses.clear(), half.delays.clear();
+  for (std::size_t i = 0; i < whole.directions.size(); ++i) {
+    if (whole.directions[i].z() < 0.1) continue;
+    half.directions.push_back(whole.directions[i]);
+    for (std::size_t ear = 0; ear < 2; ++ear) {
+      const auto response = whole.response(i, ear);
+      half.responses.insert(half.responses.end(), response.begin(), response.end());
+      half.delays.push_back(whole.delay(i, ear));
+    }
+  }
+  REQUIRE(half.directions.size() > 100);
+  CHECK_THROWS_WITH(Hrtf(half, 48000), Catch::Contains("surround"));
+}
