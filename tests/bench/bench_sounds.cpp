@@ -1,5 +1,5 @@
 // Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and
-// rolled on, all alike, with silence after each. What audio_node --log makes of it is drawn by
+// rolled on by a tip of its own material, all alike, with silence after each. What audio_node --log makes of it is drawn by
 // scripts/draw_sounds.
 //
 //   bin/bench_sounds LOG MATERIAL...
@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "audio_node/body_sound.h"
+#include "audio_node/contact_patch.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sync/node.h"
@@ -18,8 +20,9 @@ using audio::test::RecordedRun;
 namespace {
 
 // Of each material, s: scripts/draw_sounds draws it by the same.
-constexpr double kFirst_s = 1, kEach_s = 3, kScrape_s = 0.9, kRoll_s = 2, kLasts_s = 0.7;
+constexpr double kFirst_s = 1, kEach_s = 4.2, kScrape_s = 1.6, kRoll_s = 2.9, kLasts_s = 0.6;
 constexpr double kSpeed_m_s = 0.15, kForce_N = 4, kStep_s = 1.0 / 60;
+constexpr double kTip_1_m = 200;  // a round tip of 5 mm
 
 int body_named(const scene_t& scene, const std::string& name) {
   for (const body_def_t& b : scene.bodies)
@@ -27,32 +30,37 @@ int body_named(const scene_t& scene, const std::string& name) {
   throw std::runtime_error("materials_bench has no " + name + "; name a material that has a bar there");
 }
 
-// What strikes, scrapes and rolls: of steel, so that blows are short enough for every material to ring.
-int tip_material(const scene_t& scene) {
-  for (int i = 0; i < scene.material_count; ++i)
-    if (scene.materials[static_cast<std::size_t>(i)].name == "steel") return i;
-  throw std::runtime_error("materials_bench has no steel, which is to strike");
+// Whose tip it is: the bar of skin, which is nearly silent itself. The tip is of the material of the bar that it
+// strikes, so that nothing else is heard: a recording of a pair holds both.
+int striker(const scene_t& scene) { return body_named(scene, "skin_bar"); }
+
+double patch_m2(const scene_t& scene, int material) {
+  const audio::Elastic m = audio::elastic(scene.materials[static_cast<std::size_t>(material)]);
+  const double radius_m = audio::patch_radius_m(kForce_N, kTip_1_m, audio::reduced_modulus_Pa(m, m));
+  return M_PI * radius_m * radius_m;
 }
 
-// Whose tip it is: the felt table, which is nearly silent itself.
-int striker(const scene_t& scene) { return body_named(scene, "table"); }
-
-contact_t contact(const scene_t& scene, int bar, int material, double slid_m, bool rolls) {
+// As the simulation tells it (audio_node/contact_way.h): the contact goes over the bar; a tip that slides stays at
+// its place of the tip, one that rolls goes over both.
+contact_t contact(const scene_t& scene, int bar, int material, double went_m, bool rolls) {
   const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);
-  const Eigen::Vector3d on_bar(-0.05 + slid_m, 0, 0.01);
-  const int tool = striker(scene);
+  // Beside the middle of its width, where the bar twists too.
+  const Eigen::Vector3d on_bar(-0.05 + went_m, 0.008, 0.01), on_tip(rolls ? went_m : 0, 0, 0);
+  const int tip = striker(scene);
   contact_t c{};
-  c.contact_id = 1000 + bar, c.body_a = std::min(bar, tool), c.body_b = std::max(bar, tool), c.tool = -1;
-  const bool bar_first = bar < tool;
-  const int tip = tip_material(scene);
-  c.material_a = bar_first ? material : tip, c.material_b = bar_first ? tip : material;
+  c.contact_id = 1000 + bar, c.body_a = std::min(bar, tip), c.body_b = std::max(bar, tip), c.tool = -1;
+  const bool bar_first = bar < tip;
+  c.material_a = c.material_b = material;
   c.normal.z = bar_first ? 1 : -1;
-  c.normal_force_N = static_cast<float>(kForce_N), c.area_m2 = 1e-5f, c.depth_m = 1e-4f;
-  (rolls ? c.rolling_velocity_m_s : c.sliding_velocity_m_s).x =
-      static_cast<float>(bar_first ? kSpeed_m_s : -kSpeed_m_s);
+  c.normal_force_N = static_cast<float>(kForce_N), c.depth_m = 1e-5f;
+  c.area_m2 = static_cast<float>(patch_m2(scene, material));
+  c.sliding_velocity_m_s.x = static_cast<float>(rolls ? 0 : bar_first ? kSpeed_m_s : -kSpeed_m_s);
+  // The mean of the ways over both.
+  c.rolling_velocity_m_s.x = static_cast<float>(rolls ? kSpeed_m_s : kSpeed_m_s / 2);
   contact_point_t p{};
   p.a_world_m = p.b_world_m = to_vec3f(lies * on_bar);
   (bar_first ? p.a_body_m : p.b_body_m) = to_vec3f(on_bar);
+  (bar_first ? p.b_body_m : p.a_body_m) = to_vec3f(on_tip);
   c.point_count = 1, c.points = {p};
   return c;
 }
@@ -92,7 +100,7 @@ int main(int argc, char** argv) try {
       const contact_t where = contact(scene, bar, material, -0.018, false);
       contact_event_t e = RecordedRun::hit(static_cast<std::int64_t>(++struck), now, where.body_a, where.body_b);
       e.material_a = where.material_a, e.material_b = where.material_b;
-      e.effective_mass_kg = 0.02f, e.curvature_1_m = 200;  // a tip of 5 mm on a light hammer
+      e.effective_mass_kg = 0.02f, e.curvature_1_m = static_cast<float>(kTip_1_m);  // a light hammer
       e.point_m = where.points[0].a_world_m, e.normal = where.normal;
       run.hear(now, {e});
     }
