@@ -154,7 +154,7 @@ void Output::submit(const Strike& strike) {
 
 sync::Nanoseconds Output::latency() const {
   const double periods = settings_.latency_periods + kCallbackPeriods;
-  const int ears = settings_.spatial == "hrtf" ? kEarsLatency : 0;
+  const int ears = settings_.spatial == "hrtf" ? kMostEarsLatency : 0;
   return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
                             settings_.sample_rate_Hz);
 }

@@ -147,6 +147,21 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
   for (std::size_t i = 0; i < 2 * n; ++i) energy += static_cast<double>(ahead[i]) * static_cast<double>(ahead[i]);
   if (!(energy > 0)) throw std::runtime_error("the HRTF file is silent straight ahead; choose another hrtf_file");
   for (float& x : filters_) x *= static_cast<float>(1 / std::sqrt(energy));
+  begins_ = mean_beginning();
+}
+
+// Each node counts as much as the part of the sphere around it, by the cosine of its elevation.
+int Hrtf::mean_beginning() const {
+  double sum = 0, weights = 0;
+  for (int e = 0; e < kElevations; ++e)
+    for (int a = 0; a < kAzimuths; ++a) {
+      const std::size_t at = node(a, e);
+      const float* const nearer = filters(at) + (delays_[at] > 0 ? taps_ : 0);
+      const double weight = std::cos((e * kStep_deg - 90) * pi / 180);
+      sum += weight * static_cast<double>(first_heard({nearer, static_cast<std::size_t>(taps_)}));
+      weights += weight;
+    }
+  return static_cast<int>(std::lround(sum / weights));
 }
 
 std::size_t Hrtf::node(int azimuth, int elevation) const {

@@ -13,8 +13,8 @@ namespace tactus::audio {
 // beginnings lie on one sample, so that nothing is cancelled by a comb.
 class Hrtf {
  public:
-  // Frames before the beginning of a filter, for what comes before a fifth of its peak. Constant, so that it can
-  // be made up for.
+  // Frames of a filter before a fifth of its peak, for what comes before that. The same for all, so that mixed
+  // filters fit.
   static constexpr int kLead = 16;
 
   // Takes a tenth of a second: off the real-time threads. Throws std::runtime_error with one sentence when the
@@ -23,6 +23,9 @@ class Hrtf {
 
   // Of one filter, a multiple of 16.
   int taps() const { return taps_; }
+  // Frames after the beginning of its filters at which the nearer ear first hears anything (onset.h), in the mean
+  // over all directions: what makes a sound later whichever way it comes.
+  int begins() const { return begins_; }
   // No interaural delay is longer, samples.
   float longest_delay() const { return longest_delay_; }
 
@@ -35,6 +38,7 @@ class Hrtf {
   static constexpr int kAzimuths = 360 / kStep_deg, kElevations = 180 / kStep_deg + 1;
 
   std::size_t node(int azimuth, int elevation) const;
+  int mean_beginning() const;
   const float* filters(std::size_t node) const {
     return filters_.data() + node * 2 * static_cast<std::size_t>(taps_);
   }
@@ -43,6 +47,7 @@ class Hrtf {
   std::vector<float> filters_;  // of each node: left, right
   std::vector<float> delays_;   // of each node: left after right, samples
   float longest_delay_ = 0;
+  int begins_ = 0;
 };
 
 }  // namespace tactus::audio

@@ -12,6 +12,12 @@ using std::numbers::pi;
 constexpr double kHalfWidth = 16;  // zeros; design: -0.1 dB at 0.9 of half of the rate
 constexpr int kHalvings = 12;      // of one sample: 0.0002 of it is 5 ns
 
+double peak_of(std::span<const float> samples) {
+  float peak = 0;
+  for (const float x : samples) peak = std::max(peak, std::abs(x));
+  return static_cast<double>(peak);
+}
+
 }  // namespace
 
 double value_at(std::span<const float> samples, double t, double cutoff) {
@@ -30,9 +36,8 @@ double value_at(std::span<const float> samples, double t, double cutoff) {
 }
 
 double onset(std::span<const float> samples) {
-  float peak = 0;
-  for (const float x : samples) peak = std::max(peak, std::abs(x));
-  const auto reached = [&](double x) { return peak > 0 && std::abs(x) >= kOnset * static_cast<double>(peak); };
+  const double enough = kOnset * peak_of(samples);
+  const auto reached = [&](double x) { return enough > 0 && std::abs(x) >= enough; };
   const auto first = std::find_if(samples.begin(), samples.end(), reached);
   if (first == samples.end() || first == samples.begin()) return 0;
   double after = static_cast<double>(first - samples.begin()), before = after - 1;
@@ -41,6 +46,13 @@ double onset(std::span<const float> samples) {
     (reached(value_at(samples, middle)) ? after : before) = middle;
   }
   return after;
+}
+
+std::size_t first_heard(std::span<const float> samples) {
+  const double enough = kHeard * peak_of(samples);
+  const auto reached = [&](float x) { return enough > 0 && static_cast<double>(std::abs(x)) >= enough; };
+  const auto first = std::find_if(samples.begin(), samples.end(), reached);
+  return first == samples.end() ? 0 : static_cast<std::size_t>(first - samples.begin());
 }
 
 }  // namespace tactus::audio

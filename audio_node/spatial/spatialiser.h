@@ -15,8 +15,8 @@
 
 namespace tactus::audio {
 
-// Frames by which ears hear later than what went in: the lead of the filters and the least delay.
-inline constexpr int kEarsLatency = Hrtf::kLead + kLeastDelay;
+// Ears hear no later than so many frames after what went in: the lead of the filters and the least delay.
+inline constexpr int kMostEarsLatency = Hrtf::kLead + kLeastDelay;
 
 // What all sources share. Two channels and equal power by the azimuth (pan.h) where there is neither of the two.
 struct Space {
@@ -26,7 +26,7 @@ struct Space {
   int channels() const { return panning && !hrtf ? panning->channels() : 2; }
   // Frames by which what is heard comes after what went in, wherever it comes from; the ear that is further away
   // hears it later still.
-  int latency() const { return hrtf ? kEarsLatency : 0; }
+  int latency() const { return hrtf ? hrtf->begins() + kLeastDelay : 0; }
 };
 
 // A fixed number of sources, each one mono signal. Directions and distances go over within a block, without a

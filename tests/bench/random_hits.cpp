@@ -1,10 +1,11 @@
-// Stands in for sim_node in measurements of time: a dull board and a ball that strikes it at random times, alone,
-// for ever; each hit is told as the simulation tells it, in the step in which its time is reached and for 50 ms
-// after.
+// Stands in for sim_node in measurements of time: a dull board around the listener and a ball that strikes it at random
+// times and places, on every side, alone, for ever; each hit is told as the simulation tells it, in the step in which
+// its time is reached and for 50 ms after.
 //
 //   in   ASSET_REQUEST
 //   out  SCENE_MANIFEST, ASSET_CHUNK, CONTACT_EVENTS, CONTACTS
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
 #include <random>
 #include <tactus/contact_events_t.hpp>
@@ -19,6 +20,7 @@ using namespace tactus;
 namespace {
 
 constexpr double kLeastGap_s = 0.07, kMostGap_s = 0.13;  // 10 a second; the board has fallen silent by then
+constexpr double kAround_m = 0.08;                       // of the listener, who is amid the board
 constexpr sync::Nanoseconds kRepeat{50'000'000};         // as sim_node/publish repeats its events
 constexpr sync::Nanoseconds kGrace{3'000'000'000};       // in which the scene is read, as sim_node's scene_grace
 constexpr int kSnapshotEvery = 17;                       // ticks: 60 Hz
@@ -46,11 +48,13 @@ scene_t dull_board() {
   return s;
 }
 
-contact_event_t hit(std::int64_t id, std::int64_t time_ns) {
+contact_event_t hit(std::int64_t id, std::int64_t time_ns, double azimuth_rad) {
   contact_event_t e{};
   e.event_id = e.contact_id = id, e.kind = contact_event_t::HIT, e.time_ns = time_ns;
   e.body_b = 1, e.tool = -1;
-  e.point_m.x = 0.1f, e.point_m.y = 0.03f, e.normal.z = 1;
+  e.point_m.x = static_cast<float>(kAround_m * std::cos(azimuth_rad));
+  e.point_m.y = static_cast<float>(kAround_m * std::sin(azimuth_rad));
+  e.normal.z = 1;
   e.approach_speed_m_s = 1, e.effective_mass_kg = 0.01f, e.curvature_1_m = 100;
   return e;
 }
@@ -79,7 +83,7 @@ int main(int argc, char** argv) try {
   std::cerr << "sim_node: the world begins" << std::endl;
 
   std::mt19937_64 random(options.seed);
-  std::uniform_real_distribution<double> gap_s(kLeastGap_s, kMostGap_s);
+  std::uniform_real_distribution<double> gap_s(kLeastGap_s, kMostGap_s), azimuth_rad(-M_PI, M_PI);
   const sync::HostTime begin = sync::host_now();
   sync::Nanoseconds next = sync::from_seconds(1);
   std::int64_t hits = 0, ticks = 0;
@@ -89,7 +93,7 @@ int main(int argc, char** argv) try {
     scene_sender.poll(now);
     const sync::Nanoseconds time = now - begin;
     for (; next <= time; next += sync::from_seconds(gap_s(random)))
-      told.push_back(hit(sync::prefixed_id(node.bus().identity().incarnation, hits++), next.count()));
+      told.push_back(hit(sync::prefixed_id(node.bus().identity().incarnation, hits++), next.count(), azimuth_rad(random)));
     std::erase_if(told, [&](const contact_event_t& e) { return time.count() - e.time_ns > kRepeat.count(); });
     const sim_clock_t clock{time.count(), sync::to_ns(now), 1};
     if (!told.empty()) {
