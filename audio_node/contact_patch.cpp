@@ -20,4 +20,12 @@ double patch_cutoff_Hz(double speed_m_s, double patch_radius_m) {
   return speed_m_s / (2 * std::max(patch_radius_m, 1e-9));
 }
 
+double rolling_force_N(double patch_radius_m, double reduced_modulus_Pa, double effective_mass_kg,
+                       double speed_m_s) {
+  const double spring_N_m = 2 * reduced_modulus_Pa * patch_radius_m;
+  const double pushes_rad_s = 2 * M_PI * patch_cutoff_Hz(speed_m_s, patch_radius_m);
+  const double inertia = effective_mass_kg * pushes_rad_s * pushes_rad_s / spring_N_m;
+  return spring_N_m * patch_radius_m / M_PI * std::min(1.0, inertia);
+}
+
 }  // namespace tactus::audio

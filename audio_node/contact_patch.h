@@ -17,4 +17,11 @@ double patch_radius_m(double force_N, double curvature_1_m, double reduced_modul
 // is set by ear).
 double patch_cutoff_Hz(double speed_m_s, double patch_radius_m);
 
+// Newtons for a slope of 1 that a profile pushes what rolls over it with: by its waves as long as the patch is
+// wide, of height 2 a / (2 pi), on the patch as a spring of 2 E* a (Johnson, eq. 4.23), which is 2 E* a^2 / pi. A
+// body that is light or slow follows them instead: below the resonance of that spring with the mass its inertia is
+// the force, which is less by the square of the frequency over the resonance.
+double rolling_force_N(double patch_radius_m, double reduced_modulus_Pa, double effective_mass_kg,
+                       double speed_m_s);
+
 }  // namespace tactus::audio

@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 
 // Beyond these nothing becomes louder or faster: no hand does so, and nothing on the bus shall.
 constexpr double kMostSpeed_m_s = 5, kMostForce_N = 50;
+constexpr double kEdge_1_m = 1000;  // where nobody knows better: a corner that is round by 1 mm (design)
 // Gains go with the place: anew when it has gone so far, or so long ago. Design: below a tenth of the bending
 // waves that 64 modes of a floor board have.
 constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
@@ -25,8 +26,8 @@ constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
 constexpr std::size_t kMany = 50;
 // Who is heard gives way to who is so much stronger. Design.
 constexpr double kGivesWay = 2;
-// W^(1/2), of 1 N at 0.1 m/s with friction 0.5 (design).
-constexpr double kReferenceStrength = 0.22360679774997896;
+// What is as loud as the law of levels says: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
+constexpr double kReferenceForce_N = 1, kReferenceSpeed_m_s = 0.1, kReferenceStrength = 0.22360679774997896;
 // Of noise, over its rms (design).
 constexpr double kCrest = 3;
 constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker ones are no more raised than that
@@ -50,9 +51,13 @@ Sliding::Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surf
       bodies_(bodies),
       impacts_(impacts),
       materials_(scene.materials),
+      masses_kg_(scene.bodies.size()),
       curvatures_1_m_(scene.bodies.size()) {
-  for (const body_def_t& b : scene.bodies)
+  for (const body_def_t& b : scene.bodies) {
     if (b.is_static) standing_[b.id] = to_eigen(b.pose.orientation);
+    if (!b.is_static && b.id >= 0 && static_cast<std::size_t>(b.id) < masses_kg_.size())
+      masses_kg_[static_cast<std::size_t>(b.id)] = b.mass_kg;
+  }
   for (const shape_def_t& s : scene.shapes) {
     const bool round =
         s.kind == shape_def_t::SPHERE || s.kind == shape_def_t::CYLINDER || s.kind == shape_def_t::CAPSULE;
@@ -76,17 +81,32 @@ Sliding::Ground Sliding::ground(const contact_t& c, std::size_t side, sync::SimT
   return g;
 }
 
-// Of what is round by its shape; else as large as the simulation says.
-double Sliding::cutoff_Hz(const contact_t& c, double force_N, double speed_m_s) const {
-  double curvature = 0;
-  for (const std::int32_t body : {c.body_a, c.body_b})
-    if (body >= 0 && static_cast<std::size_t>(body) < curvatures_1_m_.size())
-      curvature += curvatures_1_m_[static_cast<std::size_t>(body)];
+// Of what is round by its shape; else as large as the simulation says. The profile does not throw up what rolls:
+// its force is as large as the load, root mean square, at the most.
+Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m_s, double rms_slope) const {
+  double curvature = 0, mobility_1_kg = 0;
+  for (const std::int32_t body : {c.body_a, c.body_b}) {
+    const auto i = static_cast<std::size_t>(body);
+    if (body < 0 || i >= curvatures_1_m_.size()) continue;
+    curvature += curvatures_1_m_[i];
+    if (masses_kg_[i] > 0) mobility_1_kg += 1 / masses_kg_[i];
+  }
   const double reduced =
       reduced_modulus_Pa(elastic_of(c.material_a, c.body_a), elastic_of(c.material_b, c.body_b));
+  if (curvature == 0 && !(c.area_m2 > 0)) curvature = kEdge_1_m;
   const double radius = curvature > 0 ? patch_radius_m(force_N, curvature, reduced)
-                                      : std::sqrt(std::max(0.0, static_cast<double>(c.area_m2)) / M_PI);
-  return patch_cutoff_Hz(speed_m_s, radius);
+                                      : std::sqrt(static_cast<double>(c.area_m2) / M_PI);
+  const double mass = mobility_1_kg > 0 ? 1 / mobility_1_kg : 1;
+  return {patch_cutoff_Hz(speed_m_s, radius),
+          std::min(rolling_force_N(radius, reduced, mass, speed_m_s), force_N / std::max(rms_slope, 1e-9))};
+}
+
+// Of the finish of both, since only what is known of a surface moves anything.
+double Sliding::rms_slope(const std::array<Ground, 2>& grounds) const {
+  double sum = 0;
+  for (const Ground& g : grounds)
+    if (g.to_body) sum += mean_square_slope({finish_m(elastic_of(g.material, g.body)), 0});
+  return std::sqrt(sum);
 }
 
 // Once a turn a body that rolls is heavier: as it lies on the place that it touches with.
@@ -122,9 +142,12 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   }
   k.friction = std::clamp(std::sqrt(std::max(0.0, mu)), 0.0, kMostFriction);
   const double rolling = std::min(way.over().rolling.norm(), kMostSpeed_m_s);
-  k.slide = way.slides() * sliding_strength(k.friction, force_N, past.norm());
-  k.roll = way.rolls() * sliding_strength(settings_.rolling_resistance, force_N, rolling) * turn(k);
-  k.cutoff_Hz = cutoff_Hz(c, force_N, rolling);
+  k.slide = way.slides() * settings_.scrape_force_N * sliding_strength(k.friction, force_N, past.norm());
+  if (way.rolls() > 0) {
+    const Patch rests_on = patch(c, force_N, rolling, rms_slope(k.grounds));
+    k.roll = way.rolls() * rests_on.force_N * turn(k);
+    k.cutoff_Hz = rests_on.cutoff_Hz;
+  }
   if (!(k.strength() > 0) || !std::isfinite(k.strength()) || !std::isfinite(k.cutoff_Hz)) return std::nullopt;
   return k;
 }
@@ -157,11 +180,14 @@ void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
   const auto count = static_cast<std::size_t>(r.count);
   // A mode that is pushed by white noise of variance 1 a sample has the variance g^2 / (1 - r^2) / 2 of an
   // oscillation whose envelope falls by r a sample.
-  double all = 0, last = 0;
+  const Patch reference = patch(*k.contact, kReferenceForce_N, kReferenceSpeed_m_s, 0);
+  const auto passes = [&](double f_Hz) { return 1 / (1 + std::pow(f_Hz / reference.cutoff_Hz, 4)); };
+  double all = 0, last = 0, rolled = 0;
   for (std::size_t m = 0; m < count; ++m) {
     const double one =
         0.5 * std::pow(static_cast<double>(gains[m]), 2) / std::max(1e-9, 1 - static_cast<double>(r.damping[m]));
     all += one;
+    rolled += one * passes(impacts_.body(body).modes[m].frequency_Hz);
     if (4 * m >= 3 * count) last += one;
   }
   // A plate has as many modes in each Hz, which lose sound as the square of their frequency (beta of Rayleigh):
@@ -173,6 +199,8 @@ void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
   const double beyond = cut ? 4 * last : 0;
   k.live->heard_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
   k.live->beyond_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;
+  if (beyond > 0) rolled += beyond * passes(impacts_.body(body).modes.back().frequency_Hz);
+  k.live->rolled_Pa_N[side] = std::sqrt(rolled) / rate_Hz_;
 }
 
 ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
@@ -209,24 +237,30 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
   s.at = at;
   s.over_s = period_s();
   s.cutoff_Hz = k.cutoff_Hz;
-  double steep = 0, pressure = 0;
+  double slid = 0, slid_Pa_N = 0, rolled_Pa_N = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     ScrapeSide& side = s.sides[i] = this->side(k, i);
-    pressure += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
-    if (!side.known) continue;
-    const double share = static_cast<double>(std::max(side.slides.squaredNorm(), side.rolls.squaredNorm()));
+    slid_Pa_N += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
+    rolled_Pa_N += k.live->rolled_Pa_N[i] * k.live->rolled_Pa_N[i];
     // As of its material alone: a map makes it louder, not its roughness quieter.
-    steep += share * mean_square_slope({side.roughness.height_m, 0});
+    if (side.known)
+      slid += static_cast<double>(side.slides.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
   }
-  // Full scale per Pa: the reference stroke over these two is as loud as a blow of the pressure that is to be
-  // expected, were the force white; others by their strength. Friction is that of the surfaces without their maps,
-  // which the callback reads on the way.
-  const double expected =
-      std::max(kHearing_Pa, kCrest * settings_.scrape_force_N * kReferenceStrength * std::sqrt(steep * pressure));
-  const double scale =
-      settings_.gain * level_of(expected, settings_) / expected * settings_.scrape_force_N / rate_Hz_;
-  s.slide = static_cast<float>(scale * k.slide);
-  s.roll = static_cast<float>(scale * k.roll);
+  // Full scale per N: the reference over these two is as loud as a blow of the pressure that is to be expected;
+  // others by their force. Friction is that of the surfaces without their maps, which the callback reads on the
+  // way.
+  const auto scale = [&](double force_N, double slope, double Pa_N) {
+    const double expected = std::max(kHearing_Pa, kCrest * force_N * slope * std::sqrt(Pa_N));
+    return settings_.gain * level_of(expected, settings_) / expected / rate_Hz_;
+  };
+  if (k.slide > 0)
+    s.slide = static_cast<float>(k.slide *
+                                 scale(settings_.scrape_force_N * kReferenceStrength, std::sqrt(slid), slid_Pa_N));
+  if (k.roll > 0) {
+    const double steep = rms_slope(k.grounds);
+    const Patch reference = patch(c, kReferenceForce_N, kReferenceSpeed_m_s, steep);
+    s.roll = static_cast<float>(k.roll * scale(reference.force_N, steep, rolled_Pa_N));
+  }
   s.place = place_of(listener_, to_eigen(c.points[k.live->way.point()].a_world_m), settings_.nearest_m);
   return s;
 }

@@ -19,7 +19,7 @@
 
 namespace tactus::audio {
 
-// Root of the powers that friction and rolling take of a contact, W^(1/2).
+// Root of the power that friction takes of a contact, W^(1/2).
 double sliding_strength(double friction, double force_N, double speed_m_s);
 
 // The contacts of one scene. What is fixed to a body that moves is silent until somebody has said how it is
@@ -54,10 +54,11 @@ class Sliding {
     std::array<PerMode, 2> gains;
     std::array<double, 2> heard_Pa_N{};       // of each body: rms of the pressure at 1 m per rms of a white force
     std::array<double, 2> beyond_Pa_N{};      // of its modes beyond those that are rendered, likewise
+    std::array<double, 2> rolled_Pa_N{};      // of all, by a force that went through the patch of the reference
     std::optional<Eigen::Vector3d> struck_m;  // where they are for, world
     double since_s = 0;                       // they were found
   };
-  // A contact and how strongly it slides and rolls.
+  // A contact and how strongly it slides and rolls, N for a slope of 1.
   struct Candidate {
     const contact_t* contact;
     Live* live;
@@ -72,7 +73,12 @@ class Sliding {
   void find_gains(const Candidate& candidate, sync::SimTime t, double dt_s) const;
   void find_loudness(const Candidate& candidate, std::size_t side) const;
   double turn(const Candidate& candidate) const;
-  double cutoff_Hz(const contact_t& contact, double force_N, double speed_m_s) const;
+  // Of what rolls with that force at that speed.
+  struct Patch {
+    double cutoff_Hz, force_N;
+  };
+  Patch patch(const contact_t& contact, double force_N, double speed_m_s, double rms_slope) const;
+  double rms_slope(const std::array<Ground, 2>& grounds) const;
   Elastic elastic_of(std::int32_t material, std::int32_t body) const;
 
   Settings settings_;
@@ -82,6 +88,7 @@ class Sliding {
   const sync::BodyHistory& bodies_;
   const Impacts& impacts_;
   std::vector<material_def_t> materials_;
+  std::vector<double> masses_kg_;                        // of those that move; 0: none, or nobody knows
   std::vector<double> curvatures_1_m_;                   // of bodies that are round; 0: flat, or nobody knows
   std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move, of which nobody tells often
   std::map<std::int64_t, Live> live_;

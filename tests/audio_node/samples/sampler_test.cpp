@@ -202,7 +202,7 @@ TEST_CASE(
   CHECK(rubs[0].database == 5);
   CHECK(rubs[0].speed_m_s == Approx(0.2));
   // The root of the power that friction takes: 0.5 * 4 N * 0.2 m/s.
-  CHECK(static_cast<double>(rubs[0].level) == Approx(0.3 * std::sqrt(0.4)).epsilon(1e-6));
+  CHECK(static_cast<double>(rubs[0].level) == Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
   CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
   CHECK(w.sampler.modal_of(12, Interaction::kScrape) == 1);
   // No recording of rolling: it is computed.
