@@ -85,6 +85,7 @@ int main(int argc, char** argv) try {
     std::vector<std::string> trouble;
     const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
                                                   visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), trouble));
+    if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
     for (const std::string& sentence : trouble) say(sentence);
     stage.load(view, composer.frame(now, 0).list, settings);
     recording.begin(view.width(), view.height(), settings);

@@ -44,6 +44,25 @@ std::unique_ptr<Program> surface_program(const Lighting& lighting, bool relief) 
 
 void enable(unsigned what, bool on) { on ? glEnable(what) : glDisable(what); }
 
+std::vector<View> views_in(const DrawList& list) {
+  return list.views.empty() ? std::vector<View>{{.camera = list.camera}} : list.views;
+}
+
+// Of a picture of that size. Between two parts no pixel is in both, and none in neither.
+void set(const View& view, std::pair<int, int> size) {
+  const auto at = [](float share, int pixels) {
+    return static_cast<int>(std::lround(share * static_cast<float>(pixels)));
+  };
+  const int x = at(view.x, size.first), y = at(view.y, size.second);
+  glViewport(x, y, at(view.x + view.width, size.first) - x, at(view.y + view.height, size.second) - y);
+  glColorMask(view.red, view.green, view.blue, GL_TRUE);
+}
+
+void unset(std::pair<int, int> size) {
+  glViewport(0, 0, size.first, size.second);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 int scaled(int pixels, double scale) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); }
 
 // Small pictures are scaled up as they are stored where the driver can read sRGB without decoding it.
@@ -116,11 +135,12 @@ void Renderer::draw_scene(const DrawList& list) {
 }
 
 void Renderer::draw_over(const DrawList& list) {
+  std::pair size{picture_.width(), picture_.height()};
   if (quality_.coarse)
-    bind_scene();
+    size = bind_scene();
   else
     picture_.bind();
-  draw_glows(list);
+  draw_glows(list, size);
   if (quality_.coarse) scale_up();
   glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
   glEnable(GL_BLEND);
@@ -132,22 +152,30 @@ void Renderer::draw_over(const DrawList& list) {
   glDisable(GL_BLEND);
 }
 
-void Renderer::draw_glows(const DrawList& list) {
+void Renderer::draw_glows(const DrawList& list, std::pair<int, int> size) {
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glow_.use();
-  glow_.set("clip_from_world", list.camera.clip_from_world());
   glow_.set("exposure", list.lighting.exposure);
-  glows_.draw(list.glows.data(), list.glows.size());
+  for (const View& view : views_in(list)) {
+    set(view, size);
+    glow_.set("clip_from_world", view.camera.clip_from_world());
+    glows_.draw(list.glows.data(), list.glows.size());
+  }
+  unset(size);
 }
 
-void Renderer::bind_scene() const {
-  if (quality_.scale < 1)
-    small_.bind(scaled(small_.width(), quality_.scale), scaled(small_.height(), quality_.scale));
-  else
+// The size of what is drawn into.
+std::pair<int, int> Renderer::bind_scene() const {
+  if (quality_.scale == 1) {
     picture_.bind();
+    return {picture_.width(), picture_.height()};
+  }
+  const std::pair size{scaled(small_.width(), quality_.scale), scaled(small_.height(), quality_.scale)};
+  small_.bind(size.first, size.second);
+  return size;
 }
 
 void Renderer::scale_up() {
@@ -189,13 +217,12 @@ void Renderer::draw_shadow(const DrawList& list, const ShadowTarget& shadow) {
 }
 
 void Renderer::draw_surfaces(const DrawList& list) {
-  bind_scene();
+  const std::pair size = bind_scene();
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
   const Eigen::Vector3f background = list.lighting.background * list.lighting.exposure;
   glClearColor(background.x(), background.y(), background.z(), 1);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glClear(GL_COLOR_BUFFER_BIT);
 
   std::vector<Light> lights = list.lighting.lights;
   if (lights.empty()) lights.push_back({});  // dark: its colours are 0
@@ -203,26 +230,37 @@ void Renderer::draw_surfaces(const DrawList& list) {
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(lights.size() * sizeof(Light)), lights.data(),
                GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights_.id());
-  describe(*surfaces_->smooth, list);
-  if (surfaces_->rough) describe(*surfaces_->rough, list);
   if (shadow()) {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, shadow()->texture());
   }
+  for (const View& view : views_in(list)) {
+    set(view, size);
+    draw_surfaces(list, view.camera);
+  }
+  unset(size);
+  glDisable(GL_CULL_FACE);
+}
+
+// One view of them, where the viewport is.
+void Renderer::draw_surfaces(const DrawList& list, const Camera& camera) {
+  describe(*surfaces_->smooth, list, camera);
+  if (surfaces_->rough) describe(*surfaces_->rough, list, camera);
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
   glDisable(GL_BLEND);
   for (const Batch& b : list.opaque) draw_surface(b);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
   for (const Batch& b : list.translucent) draw_surface(b);
-  glDisable(GL_CULL_FACE);
 }
 
-void Renderer::describe(const Program& surface, const DrawList& list) const {
+void Renderer::describe(const Program& surface, const DrawList& list, const Camera& camera) const {
   surface.use();
-  surface.set("clip_from_world", list.camera.clip_from_world());
+  surface.set("clip_from_world", camera.clip_from_world());
   surface.set("shadow_from_world", Eigen::Matrix4f(texture_from_clip() * list.lighting.shadow_clip));
-  surface.set("eye", list.camera.eye);
+  surface.set("eye", camera.eye);
   surface.set("ambient_light", list.lighting.ambient);
   surface.set("exposure", list.lighting.exposure);
   surface.set("shadow_map", 0);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "visual_node/gl/buffers.h"
@@ -20,8 +21,8 @@ class Renderer {
   // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are.
   void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
             const std::vector<Relief>& reliefs = {});
-  // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than others,
-  // whatever the quality. Takes half a second on a software renderer.
+  // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than
+  // others, whatever the quality. Takes half a second on a software renderer.
   void warm_up(DrawList list);
   // How the next pictures are drawn.
   void set_quality(const Quality& quality) { quality_ = quality; }
@@ -39,12 +40,13 @@ class Renderer {
   };
   static Surfaces surfaces(const Lighting& lighting, bool reliefs);
   const ShadowTarget* shadow() const;
-  void bind_scene() const;
+  std::pair<int, int> bind_scene() const;
   void draw_shadow(const DrawList& list, const ShadowTarget& shadow);
   void draw_surfaces(const DrawList& list);
-  void draw_glows(const DrawList& list);
+  void draw_surfaces(const DrawList& list, const Camera& camera);
+  void draw_glows(const DrawList& list, std::pair<int, int> size);
   void scale_up();
-  void describe(const Program& surface, const DrawList& list) const;
+  void describe(const Program& surface, const DrawList& list, const Camera& camera) const;
   void draw_surface(const Batch& batch);
   void draw_batch(const Batch& batch);
 

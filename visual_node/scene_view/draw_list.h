@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "visual_node/scene_view/camera.h"
+#include "visual_node/lens/camera.h"
+#include "visual_node/lens/stereo.h"
 
 namespace tactus::visual {
 
@@ -72,7 +73,8 @@ struct Rect {
 };
 
 struct DrawList {
-  Camera camera;
+  Camera camera;            // of the head: what is in front of what, how large flashes are
+  std::vector<View> views;  // what is drawn; none: what the camera sees, all over the picture
   Lighting lighting;
   std::vector<Instance> instances;
   std::vector<Batch> opaque;       // roughly front to back

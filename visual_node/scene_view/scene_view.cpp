@@ -17,8 +17,6 @@ namespace {
 constexpr std::array kSegments{12, 20, 40};
 constexpr std::array kCoarserBelow_px{22.0f, 61.0f};
 
-// Horizontal field of view of a scene that gives none: that of the SDF camera's default, 1.047 rad.
-constexpr double kDefaultFov_rad = 1.047;
 // A tool that is a point is drawn as large as a pencil's tip.
 constexpr double kSmallestTool_m = 0.004;
 // Colours of a tool without visuals: a blue that no material of ours has.
@@ -32,12 +30,10 @@ int multiple_of_4(int pixels) { return pixels / 4 * 4; }
 
 SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                      const HeightMaps& height_maps)
-    : width_(multiple_of_4(settings.width)), height_(multiple_of_4(settings.height)) {
-  const double fov = settings.fov_rad > 0       ? settings.fov_rad
-                     : scene.camera_fov_rad > 0 ? scene.camera_fov_rad
-                                                : kDefaultFov_rad;
-  camera_ = make_camera(to_eigen(scene.camera), std::min(fov, 3.0), width_, height_, settings.near_m,
-                        std::max(settings.far_m, 2 * settings.near_m));
+    : width_(multiple_of_4(settings.width)),
+      height_(multiple_of_4(settings.height)),
+      lens_(scene, settings, width_, height_),
+      settings_(settings) {
   lighting_ = make_lighting(scene, settings);
   geometries_ = {unit_plane(), unit_box()};
   for (const int n : kSegments) geometries_.push_back(unit_sphere(n));
@@ -188,9 +184,10 @@ SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& bo
 }
 
 DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
-                         const std::optional<Eigen::Isometry3d>& view) const {
+                         const std::optional<Eigen::Isometry3d>& head) const {
   DrawList list;
-  list.camera = view ? moved(camera_, *view) : camera_;
+  list.camera = lens_.at(head);
+  list.views = views_of(lens_, head, settings_);
   list.lighting = lighting_;
   std::vector<Placed> opaque, translucent;
   const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {

@@ -9,6 +9,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
+#include "visual_node/lens/lens.h"
 #include "visual_node/scene_view/draw_list.h"
 #include "visual_node/scene_view/relief.h"
 #include "visual_node/scene_view/triangles.h"
@@ -37,14 +38,15 @@ class SceneView {
   // The reliefs that batches refer to, by index.
   const std::vector<Relief>& reliefs() const { return reliefs_; }
   const Lighting& lighting() const { return lighting_; }
+  const Lens& lens() const { return lens_; }
   int missing_meshes() const { return missing_meshes_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
   // One pose T_world_body per body and one entry per tool; a tool that is known is drawn where its proxy is.
-  // view: T_world_view; nothing: as the scene's camera has it.
+  // head: T_world_head; nothing: where the scene's camera is.
   DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
-                const std::optional<Eigen::Isometry3d>& view = {}) const;
+                const std::optional<Eigen::Isometry3d>& head = {}) const;
 
  private:
   // The order is that of geometries_; levels are how finely round shapes are divided.
@@ -76,7 +78,8 @@ class SceneView {
   Placed place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const;
 
   int width_, height_;
-  Camera camera_;
+  Lens lens_;
+  Settings settings_;
   Lighting lighting_;
   std::vector<Triangles> geometries_;
   std::map<std::int64_t, int> mesh_geometry_;

@@ -1,4 +1,4 @@
-#include "visual_node/scene_view/camera.h"
+#include "visual_node/lens/camera.h"
 
 #include <cmath>
 

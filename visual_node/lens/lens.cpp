@@ -1,0 +1,75 @@
+#include "visual_node/lens/lens.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "lcmtypes/vectors.h"
+#include "visual_node/lens/off_axis.h"
+
+namespace tactus::visual {
+namespace {
+
+// Horizontal field of view of a scene that gives none: that of the SDF camera's default, 1.047 rad.
+constexpr double kDefaultFov_rad = 1.047;
+
+// A room of several walls has a level floor: it is turned about the vertical only, as the camera looks.
+Eigen::Isometry3d heading(const Eigen::Isometry3d& camera) {
+  const Eigen::Vector3d ahead = camera.linear().col(0);
+  Eigen::Isometry3d level = Eigen::Isometry3d::Identity();
+  level.linear() =
+      Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  level.translation() = camera.translation();
+  return level;
+}
+
+}  // namespace
+
+Lens::Lens(const scene_t& scene, const Settings& settings, int width, int height)
+    : width_(width),
+      near_m_(settings.near_m),
+      far_m_(std::max(settings.far_m, 2 * settings.near_m)),
+      rest_(to_eigen(scene.camera)) {
+  const double fov = settings.fov_rad > 0       ? settings.fov_rad
+                     : scene.camera_fov_rad > 0 ? scene.camera_fov_rad
+                                                : kDefaultFov_rad;
+  plain_ = make_camera(rest_, std::min(fov, 3.0), width, height, near_m_, far_m_);
+  half_width_ = std::tan(std::min(fov, 3.0) / 2);
+  half_height_ = half_width_ * height / width;
+  try {
+    stand_room(scene, settings);
+  } catch (const std::runtime_error& wrong) {
+    trouble_ = std::string(wrong.what()) + "; the picture is that of the scene's camera";
+  }
+}
+
+void Lens::stand_room(const scene_t& scene, const Settings& settings) {
+  if (settings.room == "none") return;
+  const Room room = load_room(settings.room);
+  const Wall* const wall = settings.wall == "first" ? &room.walls.front() : room.named(settings.wall);
+  if (!wall) {
+    std::string all;
+    for (const Wall& w : room.walls) all += (all.empty() ? "" : ", ") + w.name;
+    throw std::runtime_error("the room " + settings.room + " has no wall " + settings.wall + ", only " + all);
+  }
+  const Eigen::Isometry3d camera = to_eigen(scene.camera);
+  wall_ = moved(*wall, (room.walls.size() > 1 ? heading(camera) : camera) * Eigen::Translation3d(-room.eye));
+}
+
+Camera Lens::at(const std::optional<Eigen::Isometry3d>& head) const {
+  if (wall_) return off_axis(*wall_, head.value_or(rest_).translation(), width_, near_m_, far_m_);
+  return head ? moved(plain_, *head) : plain_;
+}
+
+std::array<Camera, 2> Lens::eyes(const std::optional<Eigen::Isometry3d>& head, double apart_m,
+                                 double window_m) const {
+  const Eigen::Isometry3d at = head.value_or(rest_);
+  const Wall window{"", at * Eigen::Vector3d(window_m, half_width_ * window_m, -half_height_ * window_m),
+                    at * Eigen::Vector3d(window_m, -half_width_ * window_m, -half_height_ * window_m),
+                    at * Eigen::Vector3d(window_m, half_width_ * window_m, half_height_ * window_m)};
+  const Wall& wall = wall_ ? *wall_ : window;
+  const auto [left, right] = visual::eyes(at, apart_m);
+  return {off_axis(wall, left, width_, near_m_, far_m_), off_axis(wall, right, width_, near_m_, far_m_)};
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,126 @@
+#include "visual_node/lens/wall.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace tactus::visual {
+namespace {
+
+constexpr const char* kColumns =
+    "wall,lower_left_x_m,lower_left_y_m,lower_left_z_m,lower_right_x_m,lower_right_y_m,lower_right_z_m,"
+    "upper_left_x_m,upper_left_y_m,upper_left_z_m";
+// Corners are measured by hand: sides that meet at 90 degrees but for this, 3 mm on 3 m (design).
+constexpr double kSquare = 1e-3;
+constexpr double kLeastSide_m = 0.01;
+constexpr std::size_t kMostWalls = 16;
+
+// Walls of 10 feet (Cruz-Neira, Sandin and DeFanti, "Surround-screen projection-based virtual reality", SIGGRAPH
+// 1993, section 2). The picture of the floor goes on below that of the front, that of the ceiling above it.
+constexpr const char* kFourWalls =
+    "eye,0,0,1.6,,,,,,\n"
+    "left,-1.524,1.524,0,1.524,1.524,0,-1.524,1.524,3.048\n"
+    "front,1.524,1.524,0,1.524,-1.524,0,1.524,1.524,3.048\n"
+    "right,1.524,-1.524,0,-1.524,-1.524,0,1.524,-1.524,3.048\n"
+    "floor,-1.524,1.524,0,-1.524,-1.524,0,1.524,1.524,0\n";
+constexpr const char* kTwoMore =
+    "back,-1.524,-1.524,0,-1.524,1.524,0,-1.524,-1.524,3.048\n"
+    "ceiling,1.524,1.524,3.048,1.524,-1.524,3.048,-1.524,1.524,3.048\n";
+// A screen of 24 inches at 16:9, an arm's length away (design). Eyes of who stands are 1.6 m high (design).
+constexpr const char* kDesk =
+    "eye,-0.6,0,0,,,,,,\n"
+    "screen,0,0.2657,-0.1494,0,-0.2657,-0.1494,0,0.2657,0.1494\n";
+
+std::map<std::string, std::string> built_in() {
+  const std::string head = std::string(kColumns) + "\n";
+  return {{"desk", head + kDesk}, {"cave4", head + kFourWalls}, {"cave6", head + kFourWalls + kTwoMore}};
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw std::runtime_error("the room " + name + " " + why +
+                           "; choose desk, cave4, cave6 or another file of walls");
+}
+
+std::vector<std::string> cells(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> all(1);
+  for (const char c : line)
+    if (c == ',')
+      all.emplace_back();
+    else
+      all.back() += c;
+  return all;
+}
+
+template <std::size_t kCount>
+std::optional<std::array<double, kCount>> numbers(const std::vector<std::string>& row) {
+  std::array<double, kCount> all{};
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const std::string& text = row[i + 1];
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), all[i]);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(all[i])) return {};
+  }
+  return all;
+}
+
+}  // namespace
+
+Wall moved(const Wall& wall, const Eigen::Isometry3d& by) {
+  return {wall.name, by * wall.lower_left, by * wall.lower_right, by * wall.upper_left};
+}
+
+const Wall* Room::named(const std::string& name) const {
+  const auto found = std::find_if(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == name; });
+  return found == walls.end() ? nullptr : &*found;
+}
+
+Room parse_room(const std::string& csv, const std::string& name) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  if (cells(line) != cells(kColumns)) refuse(name, std::string("does not begin with the line ") + kColumns);
+  Room room;
+  bool has_eye = false;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> row = cells(line);
+    if (row.size() == 1 && row[0].empty()) continue;
+    const std::string which = "row " + std::to_string(room.walls.size() + 1);
+    if (row.size() != 10) refuse(name, "has in its " + which + " not ten columns");
+    if (row[0] == "eye") {
+      const auto at = numbers<3>(row);
+      if (!at || has_eye) refuse(name, "has in a row eye not three numbers, or two such rows");
+      room.eye = {(*at)[0], (*at)[1], (*at)[2]};
+      has_eye = true;
+      continue;
+    }
+    const auto n = numbers<9>(row);
+    if (row[0].empty() || !n) refuse(name, "has in its " + which + " not a name and nine numbers");
+    const Wall wall{row[0], {(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}, {(*n)[6], (*n)[7], (*n)[8]}};
+    if (!(wall.width_m() >= kLeastSide_m) || !(wall.height_m() >= kLeastSide_m) ||
+        !(std::abs(wall.right().dot(wall.up())) <= kSquare))
+      refuse(name, "has in its " + which + " (" + wall.name + ") no rectangle of at least 1 cm");
+    if (room.named(wall.name)) refuse(name, "has two walls " + wall.name);
+    room.walls.push_back(wall);
+    if (room.walls.size() > kMostWalls) refuse(name, "has more than " + std::to_string(kMostWalls) + " walls");
+  }
+  if (room.walls.empty()) refuse(name, "has no wall");
+  return room;
+}
+
+Room load_room(const std::string& name_or_path) {
+  const auto known = built_in();
+  if (const auto found = known.find(name_or_path); found != known.end())
+    return parse_room(found->second, name_or_path);
+  std::ifstream file(name_or_path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");
+  return parse_room(text.str(), name_or_path);
+}
+
+}  // namespace tactus::visual
