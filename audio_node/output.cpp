@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "audio_node/sound_dose.h"
 #include "audio_node/spatial/space_of.h"
 
 namespace tactus::audio {
@@ -19,6 +20,7 @@ constexpr std::size_t kMostUnsounded = 1024;
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
          a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
+         a.full_scale_level_dB == b.full_scale_level_dB && a.level_limit_dB == b.level_limit_dB &&
          a.late_limit_s == b.late_limit_s && a.instructions == b.instructions && a.spatial == b.spatial &&
          a.hrtf_file == b.hrtf_file && a.layout_file == b.layout_file;
 }
@@ -80,6 +82,7 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
   def.ceiling = settings.limiter_ceiling;
+  def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
   def.space = space_of(settings, settings.sample_rate_Hz);
@@ -180,7 +183,7 @@ std::string Output::note() const {
   if (!stream_) return trouble_.empty() ? "sound card not opened yet" : trouble_;
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + costs();
+         " underflows" + costs() + hearing();
 }
 
 std::string Output::costs() const {
@@ -193,6 +196,15 @@ std::string Output::costs() const {
     text +=
         std::string(", ") + (i == 0 ? "modal " : "samples ") + std::to_string(std::lround(us)) + " us a contact";
   }
+  return text;
+}
+
+std::string Output::hearing() const {
+  const Heard& heard = crossing_->heard;
+  const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
+  std::string text = dose_in_words(days_of_sound(exposure, settings_.weekly_level_dB));
+  const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));
+  if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
   return text;
 }
 

@@ -66,6 +66,8 @@ class Output {
   const Settings& settings() const { return settings_; }
   // What each way of making sound costs a contact, in words; empty while nothing has sounded.
   std::string costs() const;
+  // What ears have had, and by how much it is turned down for them, in words; empty while nothing has sounded.
+  std::string hearing() const;
   // Step of the quality ladder in use.
   int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
 

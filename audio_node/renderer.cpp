@@ -39,6 +39,12 @@ constexpr double kCalm_s = 2;  // design: no better step without so much spare t
 // The onset of a sound is lost when a drop-out takes more than half of its amplitude.
 constexpr float kSilenced = 0.5f;
 
+HearingDef hearing_of(const RendererDef& def) {
+  HearingDef hearing = def.hearing;
+  hearing.ears = def.space.hrtf != nullptr;
+  return hearing;
+}
+
 }  // namespace
 
 sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
@@ -59,6 +65,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz, channels_),
+      level_limiter_(hearing_of(def), def.rate_Hz, channels_),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
@@ -152,7 +159,16 @@ void Renderer::render_some(float* out, int frames, const BlockTime& time) {
   if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
     for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
+  limit(out, frames);
+}
+
+// The level last: so it is that of what is played.
+void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
+  level_limiter_.process(out, frames);
+  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);  // nobody else writes it
+  crossing_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
+  crossing_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
 }
 
 // They cross in the order in which they are to be heard; one that is early waits.

@@ -8,6 +8,7 @@
 #include <tactus/presentation_t.hpp>
 
 #include "audio_node/dropout.h"
+#include "audio_node/level_limiter.h"
 #include "audio_node/limiter.h"
 #include "audio_node/samples/recorded.h"
 #include "audio_node/scheduler.h"
@@ -43,6 +44,13 @@ struct MethodCost {
   std::atomic<std::int64_t> contacts{0};  // impacts, and contacts that scrape or roll
 };
 
+// What ears were given so far.
+struct Heard {
+  std::atomic<double> exposure_Pa2_s{0};  // A-weighted
+  std::atomic<double> gain{1};            // by which it was turned down last
+  static_assert(std::atomic<double>::is_always_lock_free);
+};
+
 // What crosses between the node's loop and the callback.
 struct Crossing {
   Spsc<Strike> strikes{512};
@@ -57,6 +65,7 @@ struct Crossing {
   std::atomic<int> quality{0};  // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
   std::array<MethodCost, 2> costs;  // of what is computed, of what is recorded
+  Heard heard;
 };
 
 // A sound that comes late is weaker, to nothing at the limit: the ear would take its full strength for another
@@ -68,6 +77,7 @@ struct RendererDef {
   double rate_Hz = 48000;
   int period_frames = 128;  // of one call, usually
   double ceiling = 0.9;
+  HearingDef hearing = {};  // whether channels are ears says the space
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
   Instructions instructions = available_instructions().back();
   Space space = {};
@@ -100,6 +110,7 @@ class Renderer {
   void render_some(float* out, int frames, const BlockTime& time);
   void take_scrapes(sync::HostTime until);
   void let_go_of_scrapes();
+  void limit(float* out, int frames);
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
@@ -120,6 +131,7 @@ class Renderer {
   Dropout dropout_;
   std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the samples that are being rendered
   Limiter limiter_;
+  LevelLimiter level_limiter_;
   sync::QualityLadder ladder_;
   int pinned_ = -1;
   int last_frames_ = 0;        // of the block before

@@ -2,12 +2,24 @@
 #include <portaudio.h>
 
 #include <dlfcn.h>
+#include <poll.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdio.h>
+#include <sys/epoll.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/select.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <random>
@@ -137,6 +149,97 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
   forget_trapped();
   std::vector<int> outside(1000, 1);
   CHECK(trapped() == 0);
+}
+
+TEST_CASE(
+    "Each call that waits, maps, or reads and writes a file or a device is caught, and does what it always does") {
+  if (!traps_allocation()) {
+    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    return;
+  }
+  int pipe_ends[2];
+  REQUIRE(pipe(pipe_ends) == 0);
+  const int events = epoll_create1(0), in = pipe_ends[0], out = pipe_ends[1];
+  REQUIRE(events >= 0);
+  FILE* const file = fmemopen(nullptr, 16, "w+");
+  REQUIRE(file);
+  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
+  sem_t semaphore;
+  REQUIRE(sem_init(&semaphore, 0, 1) == 0);
+  const timespec past{1, 0}, none{0, 0};
+  const size_t page = 4096;
+  void* mapped = nullptr;
+  char byte = 'x';
+  pollfd fd{in, POLLIN, 0};
+  fd_set set;
+  FD_ZERO(&set);
+  timeval at_once{0, 0};
+  epoll_event event{};
+  int waiting = -1;
+  // Of conditions: nobody waits for ever, the time is over; and a thread that is woken.
+  pthread_mutex_lock(&mutex);
+  bool woken = false;
+  const auto wait_to_be_woken = [&] {
+    std::thread waker([&] {
+      pthread_mutex_lock(&mutex);
+      woken = true;
+      pthread_cond_signal(&condition);
+      pthread_mutex_unlock(&mutex);
+    });
+    forget_trapped();
+    {
+      const Trap trap;
+      while (!woken) pthread_cond_wait(&condition, &mutex);
+    }
+    waker.join();
+    return true;
+  };
+  struct Call {
+    const char* name;
+    std::function<bool()> does;  // true: as without the trap
+  };
+  const std::vector<Call> calls{
+      {"poll", [&] { return poll(&fd, 1, 0) == 0; }},
+      {"ppoll", [&] { return ppoll(&fd, 1, &none, nullptr) == 0; }},
+      {"select", [&] { return select(0, &set, nullptr, nullptr, &at_once) == 0; }},
+      {"pselect", [&] { return pselect(0, &set, nullptr, nullptr, &none, nullptr) == 0; }},
+      {"epoll_wait", [&] { return epoll_wait(events, &event, 1, 0) == 0; }},
+      {"epoll_pwait", [&] { return epoll_pwait(events, &event, 1, 0, nullptr) == 0; }},
+      {"pthread_cond_timedwait", [&] { return pthread_cond_timedwait(&condition, &mutex, &past) == ETIMEDOUT; }},
+      {"pthread_cond_clockwait",
+       [&] { return pthread_cond_clockwait(&condition, &mutex, CLOCK_MONOTONIC, &none) == ETIMEDOUT; }},
+      {"sem_wait", [&] { return sem_wait(&semaphore) == 0; }},
+      {"sem_timedwait", [&] { return sem_timedwait(&semaphore, &past) == -1 && errno == ETIMEDOUT; }},
+      {"mmap",
+       [&] {
+         mapped = mmap(nullptr, page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+         return mapped != MAP_FAILED;
+       }},
+      {"munmap", [&] { return munmap(mapped, page) == 0; }},
+      {"write", [&] { return ::write(out, &byte, 1) == 1; }},
+      {"ioctl", [&] { return ioctl(in, FIONREAD, &waiting) == 0 && waiting == 1; }},
+      {"read", [&] { return ::read(in, &byte, 1) == 1; }},
+      {"fwrite", [&] { return fwrite(&byte, 1, 1, file) == 1; }},
+      {"fread", [&] { return fread(&byte, 1, 1, file) == 0; }}};
+  for (const Call& call : calls) {
+    CAPTURE(call.name);
+    forget_trapped();
+    bool right = false;
+    {
+      const Trap trap;
+      right = call.does();
+    }
+    CHECK(right);
+    CHECK(first_trapped() == call.name);
+  }
+  CHECK(wait_to_be_woken());
+  CHECK(first_trapped() == "pthread_cond_wait");
+  pthread_mutex_unlock(&mutex);
+  sem_destroy(&semaphore);
+  fclose(file);
+  for (const int open_fd : {events, in, out}) ::close(open_fd);
+  forget_trapped();
 }
 
 TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatever is asked of it") {

@@ -6,7 +6,10 @@
 #include <semaphore.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/epoll.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <time.h>
@@ -43,7 +46,10 @@ F* next(std::atomic<void*>& kept, const char* name) {
   if (!f) {
     // dlsym() may allocate: that is of the trap, not of the callback.
     const int before = std::exchange(armed, 0);
-    f = dlsym(RTLD_NEXT, name);
+    // Conditions have an older entry of the same name, for another layout of them; where there is only one, it is
+    // the next.
+    f = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");
+    if (!f) f = dlsym(RTLD_NEXT, name);
     armed = before;
     kept.store(f, std::memory_order_relaxed);
   }
@@ -128,6 +134,11 @@ PASS_ON(int, pthread_rwlock_rdlock, (pthread_rwlock_t * m), (m))
 PASS_ON(int, pthread_rwlock_wrlock, (pthread_rwlock_t * m), (m))
 PASS_ON(int, pthread_cond_signal, (pthread_cond_t * c), (c))
 PASS_ON(int, pthread_cond_broadcast, (pthread_cond_t * c), (c))
+PASS_ON(int, pthread_cond_wait, (pthread_cond_t * c, pthread_mutex_t* m), (c, m))
+PASS_ON(int, pthread_cond_timedwait, (pthread_cond_t * c, pthread_mutex_t* m, const timespec* until),
+        (c, m, until))
+PASS_ON(int, pthread_cond_clockwait,
+        (pthread_cond_t * c, pthread_mutex_t* m, clockid_t clock, const timespec* until), (c, m, clock, until))
 PASS_ON(int, sem_wait, (sem_t * s), (s))
 PASS_ON(int, sem_post, (sem_t * s), (s))
 PASS_ON(ssize_t, read, (int fd, void* p, std::size_t n), (fd, p, n))
@@ -149,7 +160,20 @@ PASS_ON(int, sched_yield, (), ())
 PASS_ON(std::size_t, fwrite, (const void* p, std::size_t size, std::size_t n, FILE* f), (p, size, n, f))
 PASS_ON(int, fflush, (FILE * f), (f))
 PASS_ON(int, puts, (const char* text), (text))
+PASS_ON(std::size_t, fread, (void* p, std::size_t size, std::size_t n, FILE* f), (p, size, n, f))
 PASS_ON(int, munmap, (void* p, std::size_t n), (p, n))
+PASS_ON(void*, mmap, (void* p, std::size_t n, int protection, int flags, int fd, off_t at),
+        (p, n, protection, flags, fd, at))
+PASS_ON(void*, mmap64, (void* p, std::size_t n, int protection, int flags, int fd, off64_t at),
+        (p, n, protection, flags, fd, at))
+PASS_ON(int, ppoll, (pollfd * fds, nfds_t n, const timespec* t, const sigset_t* mask), (fds, n, t, mask))
+PASS_ON(int, select, (int n, fd_set* in, fd_set* out, fd_set* failed, timeval* t), (n, in, out, failed, t))
+PASS_ON(int, pselect, (int n, fd_set* in, fd_set* out, fd_set* failed, const timespec* t, const sigset_t* mask),
+        (n, in, out, failed, t, mask))
+PASS_ON(int, epoll_wait, (int fd, epoll_event* events, int n, int timeout_ms), (fd, events, n, timeout_ms))
+PASS_ON(int, epoll_pwait, (int fd, epoll_event* events, int n, int timeout_ms, const sigset_t* mask),
+        (fd, events, n, timeout_ms, mask))
+PASS_ON(int, sem_timedwait, (sem_t * s, const timespec* until), (s, until))
 
 // Opening a file takes further arguments.
 extern "C" int open(const char* path, int flags, ...) {
@@ -160,6 +184,16 @@ extern "C" int open(const char* path, int flags, ...) {
   const int mode = va_arg(list, int);
   va_end(list);
   return next<int(const char*, int, ...)>(kept, "open")(path, flags, mode);
+}
+// So does telling a device what to do.
+extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
+  static std::atomic<void*> kept{nullptr};
+  note("ioctl");
+  va_list list;
+  va_start(list, request);
+  void* const argument = va_arg(list, void*);
+  va_end(list);
+  return next<int(int, unsigned long, ...)>(kept, "ioctl")(fd, request, argument);
 }
 // What the C library has no name for, a futex first of all.
 extern "C" long syscall(long number, ...) noexcept {

@@ -67,6 +67,8 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   play(20);
   CHECK(outcome_of(1) == presentation_t::PRESENTED);
   CHECK(card->loudest > 0.01f);
+  CHECK(output.note().find("sound dose of this run below 1 % of a day's") != std::string::npos);
+  CHECK(output.note().find("turned down") == std::string::npos);
   const std::int64_t played = output.callbacks();
   CHECK(played >= 20);
 
