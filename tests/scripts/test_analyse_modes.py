@@ -210,6 +210,11 @@ class TheProgram(unittest.TestCase):
         self.assertIn("butter", self.refused(good, "--out", self.path("new.xml"), "--material", "bell", "--base", "butter"))
         self.refused(good, "--json", os.path.join(self.folder, "no", "such.json"))
 
+    def test_refuses_modes_higher_than_a_scene_takes(self):
+        done = subprocess.run([os.path.join(SCRIPTS, "analyse_modes"), "x.wav", "--max-frequency", "20001"], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("20000 Hz", done.stderr)
+
     def test_reads_mono_and_stereo_of_16_24_and_32_bits_alike(self):
         x = ringing(RATE // 3) / 4
         both = np.stack([x, x], axis=1)
