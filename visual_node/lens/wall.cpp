@@ -5,10 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+
+#include "visual_node/lens/room_text.h"
 
 namespace tactus::visual {
 namespace {
@@ -20,27 +21,6 @@ constexpr const char* kColumns =
 constexpr double kSquare = 1e-3;
 constexpr double kLeastSide_m = 0.01;
 constexpr std::size_t kMostWalls = 16;
-
-// Walls of 10 feet (Cruz-Neira, Sandin and DeFanti, "Surround-screen projection-based virtual reality", SIGGRAPH
-// 1993, section 2). The picture of the floor goes on below that of the front, that of the ceiling above it.
-constexpr const char* kFourWalls =
-    "eye,0,0,1.6,,,,,,\n"
-    "left,-1.524,1.524,0,1.524,1.524,0,-1.524,1.524,3.048\n"
-    "front,1.524,1.524,0,1.524,-1.524,0,1.524,1.524,3.048\n"
-    "right,1.524,-1.524,0,-1.524,-1.524,0,1.524,-1.524,3.048\n"
-    "floor,-1.524,1.524,0,-1.524,-1.524,0,1.524,1.524,0\n";
-constexpr const char* kTwoMore =
-    "back,-1.524,-1.524,0,-1.524,1.524,0,-1.524,-1.524,3.048\n"
-    "ceiling,1.524,1.524,3.048,1.524,-1.524,3.048,-1.524,1.524,3.048\n";
-// A screen of 24 inches at 16:9, an arm's length away (design). Eyes of who stands are 1.6 m high (design).
-constexpr const char* kDesk =
-    "eye,-0.6,0,0,,,,,,\n"
-    "screen,0,0.2657,-0.1494,0,-0.2657,-0.1494,0,0.2657,0.1494\n";
-
-std::map<std::string, std::string> built_in() {
-  const std::string head = std::string(kColumns) + "\n";
-  return {{"desk", head + kDesk}, {"cave4", head + kFourWalls}, {"cave6", head + kFourWalls + kTwoMore}};
-}
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
   throw std::runtime_error("the room " + name + " " + why +
@@ -114,9 +94,8 @@ Room parse_room(const std::string& csv, const std::string& name) {
 }
 
 Room load_room(const std::string& name_or_path) {
-  const auto known = built_in();
-  if (const auto found = known.find(name_or_path); found != known.end())
-    return parse_room(found->second, name_or_path);
+  if (const std::string_view known = room_text(name_or_path + ".csv"); !known.empty())
+    return parse_room(std::string(known), name_or_path);
   std::ifstream file(name_or_path);
   std::stringstream text;
   if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");
