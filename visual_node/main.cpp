@@ -50,6 +50,8 @@ int main(int argc, char** argv) try {
        sync::apply_settings(settings, visual::setting_fields(), declaration.node, no_scene, options.set))
     throw std::runtime_error(wrong);
   keep.folder = options.out;
+  // Several of a room write into one folder.
+  if (options.name.starts_with(declaration.node + "_")) keep.name += options.name.substr(declaration.node.size());
   keep.video = !no_video;
 
   visual::Stage stage(settings, window);

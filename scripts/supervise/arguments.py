@@ -8,6 +8,7 @@ import time
 import xml.etree.ElementTree
 
 import hands
+import walls
 from refusal import Refusal
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -29,6 +30,8 @@ class Plan:
     without: list
     devices: dict  # of --device, by tool; "": the first tool's
     hands: dict  # {process: tool} of the tools after the first
+    room: str  # of --room; "": none
+    walls: dict  # {process: wall}, all of its walls; the first is visual_node's
     degrade: pathlib.Path  # profile of what is wrong on purpose, or None
     playout: list  # options of sync_node: when each sense presents
     window: bool
@@ -41,7 +44,16 @@ class Plan:
 
     def nodes(self):
         """Names of the processes of this run; the order is that of starting."""
-        return [n for n in ("recorder", "sync_node", SENSES[0], *self.hands, *SENSES[1:], "sim_node") if n not in self.without]
+        return [n for n in ("recorder", "sync_node", *self.senses(), "sim_node") if n not in self.without]
+
+    def senses(self):
+        """Names of the processes of all senses, those that are left out too."""
+        each = {hands.FIRST: self.hands, walls.FIRST: self.walls}
+        return [name for sense in SENSES for name in dict.fromkeys((sense, *each.get(sense, ())))]
+
+    def program(self, name):
+        """What is started under that name."""
+        return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
 
 
 class Parser(argparse.ArgumentParser):
@@ -57,6 +69,7 @@ def parse(words, here):
     parser.add_argument("--out")
     parser.add_argument("--without", action="append", default=[])
     parser.add_argument("--device", action="append", default=[])
+    parser.add_argument("--room")
     parser.add_argument("--degrade")
     for option in PLAYOUT:
         parser.add_argument(f"--{option}")
@@ -75,21 +88,26 @@ def parse(words, here):
     scene = scene_file(here, a.scene)
     tools = hands.tools(scene)
     others = hands.processes(tools)
+    room, pictures = of_room(here, a.room)
+    several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
     for node in a.without:
         if node == "recorder":
             raise Refusal("--without recorder: it cannot be left out, all results are made from what it records")
-        if node not in (*REMOVABLE, *others):
-            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *others))}")
+        if node not in (*REMOVABLE, *several):
+            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *several))}")
     if hands.FIRST in a.without:  # the sense of touch, all of it
         others = {}
+    if walls.FIRST in a.without:  # the sense of sight, likewise
+        pictures = {}
     others = {process: tool for process, tool in others.items() if process not in a.without}
+    pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
     plan = Plan(scene=scene, seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
-                devices=devices(a.device, a.without, tools), hands=others,
+                devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
                 degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
-                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, others))
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several))
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
                       "--window away and look at video.mp4")
@@ -142,6 +160,17 @@ def strangers(plan):
     return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 
+def of_room(here, text):
+    """(room, {process: wall}) of --room."""
+    if text is None:
+        return "", {}
+    try:
+        name, names = walls.room(here, text)
+    except ValueError as error:
+        raise Refusal(f"visual_node: {error}") from None
+    return name, walls.processes(names)
+
+
 def playout(a):
     """The options for sync_node, which checks itself what is in them."""
     words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
@@ -183,8 +212,10 @@ def devices(words, without, tools):
 
 def settings(words, others):
     """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check). What is said of
-    haptic_node holds for every hand; what is said of one by its own name comes last there, and so wins."""
+    haptic_node or visual_node holds for every hand or wall; what is said of one by its own name comes last there, and so wins.
+    others: the processes beside the first of its kind."""
     found, own = {}, {}
+    program = lambda node: next((n for n in (hands.FIRST, walls.FIRST) if node in others and node.startswith(n)), node)
     for word in words:
         left, equals, value = word.partition("=")
         node, _, name = left.rpartition(".")
@@ -192,13 +223,13 @@ def settings(words, others):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
         if node not in ("sim_node", *SENSES, *others):
             raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
-        folder = hands.FIRST if node in others else node
-        with open(REPOSITORY / folder / "settings.csv", newline="", encoding="utf-8") as file:
+        with open(REPOSITORY / program(node) / "settings.csv", newline="", encoding="utf-8") as file:
             names = [row["name"] for row in csv.DictReader(file)]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
         if node in others:
             own.setdefault(node, []).append(f"{name}={value}")
-        for process in (node, *others) if node == hands.FIRST else (node,) if node not in others else ():
+            continue
+        for process in (node, *(other for other in others if program(other) == node)):
             found.setdefault(process, []).append(f"{name}={value}")
     return {process: found.get(process, []) + own.get(process, []) for process in {**found, **own}}

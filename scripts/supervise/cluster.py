@@ -8,7 +8,6 @@ import signal
 import subprocess
 import time
 
-import hands
 import services
 from arguments import REPOSITORY, SENSES
 from refusal import Interrupted, Refusal
@@ -42,11 +41,12 @@ def commands(plan, run_id, git):
     own["sync_node"] = list(plan.playout)
     for name, tool in plan.hands.items():
         own[name] = ["--name", name, "--tool", tool, *device_words(plan, tool)]
+    for name, wall in plan.walls.items():
+        own[name] = [*own.get(name, []), *(["--name", name] if name != plan.program(name) else []), "--set", f"room={plan.room}", "--set", f"wall={wall}"]
     if plan.degrade:
-        for name in (*SENSES, *plan.hands, "sync_node"):
+        for name in (*plan.senses(), "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
-    program = lambda name: hands.FIRST if name in plan.hands else name
-    return {name: [str(BIN / program(name)), *own.get(name, []), *common,
+    return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common,
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
 
 
@@ -138,7 +138,7 @@ class Cluster:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
         self.write_address()
-        for group in (("recorder", "sync_node"), (*SENSES, *self.plan.hands), ("sim_node",)):
+        for group in (("recorder", "sync_node"), tuple(self.plan.senses()), ("sim_node",)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
@@ -193,7 +193,7 @@ class Cluster:
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
-            names = (*names, *self.plan.hands) if names == SENSES else names
+            names = tuple(self.plan.senses()) if names == SENSES else names
             services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == ("sim_node",):
                 time.sleep(PRESENT_THE_LAST_S)

@@ -19,6 +19,7 @@ import network
 import priority
 import services
 import terminal
+import walls
 from refusal import Interrupted, Refusal, sentence_of
 from terminal import say
 
@@ -132,7 +133,7 @@ def run(plan):
     stop = Stop()
     git = git_commit()
     run_id = time.time_ns()
-    for name in [*(n for n in plan.nodes() if n not in plan.hands), "watch", "summarise", "export_csv", "export_events"]:
+    for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
@@ -180,7 +181,7 @@ def run(plan):
 
 def names_its_speaker(sentence):
     speaker = sentence.split(":")[0]
-    return speaker.endswith("_node") or speaker.startswith(f"{hands.FIRST}_") or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
+    return speaker.endswith("_node") or speaker.startswith((f"{hands.FIRST}_", f"{walls.FIRST}_")) or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
 
 
 def main(words):

@@ -96,7 +96,7 @@ class Arguments(unittest.TestCase):
     def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
         plan = arguments.parse(["--degrade", __file__], os.getcwd())
         with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
-        self.assertEqual({*arguments.SENSES, *plan.hands, "sync_node"}, set(with_it))
+        self.assertEqual({*plan.senses(), "sync_node"}, set(with_it))
 
     def test_a_profile_in_an_encoding_that_nobody_knows_is_refused_in_a_sentence(self):
         for encoding in ("foo", "UTF-32"):
@@ -165,6 +165,55 @@ class Hands(Folders):
         plan, _ = self.of("a", "b", words=["--without", "haptic_node"])
         self.assertFalse([n for n in plan.nodes() if n.startswith("haptic")])
         self.assertIn("haptic_node_lamp", refusal_of("--without", "haptic_node_nose"))
+
+
+class Walls(Folders):
+    """Every wall of a room has a process of its own."""
+
+    def of(self, *words):
+        plan = arguments.parse(list(words), os.getcwd())
+        return plan, cluster.commands(plan, 1, "")
+
+    after = staticmethod(Hands.after)
+
+    def test_the_first_is_visual_node_and_the_others_bear_the_names_of_their_walls(self):
+        plan, commands = self.of("--room", "cave4", "--without", "haptic_node")
+        drawing = ["visual_node", "visual_node_front", "visual_node_right", "visual_node_floor"]
+        self.assertEqual(["recorder", "sync_node", "audio_node", *drawing, "thermal_node", "sim_node"], plan.nodes())
+        for process, wall in zip(drawing, ("left", "front", "right", "floor")):
+            self.assertEqual("visual_node", os.path.basename(commands[process][0]))
+            self.assertEqual(["room=cave4", f"wall={wall}"], self.after(commands[process], "--set"))
+            self.assertEqual([] if process == "visual_node" else [process], self.after(commands[process], "--name"))
+
+    def test_without_a_room_there_is_one_picture(self):
+        plan, commands = self.of()
+        self.assertEqual({}, plan.walls)
+        self.assertEqual([], self.after(commands["visual_node"], "--set"))
+
+    def test_a_file_of_ones_own_is_told_by_its_whole_path(self):
+        mine = self.folder / "mine.csv"
+        head = (arguments.REPOSITORY / "visual_node" / "rooms" / "desk.csv").read_text(encoding="utf-8").split("\n", maxsplit=1)[0]
+        mine.write_text(head + "\neye,0,0,1,,,,,,\na/b,1,1,0,1,-1,0,1,1,2\na b,1,-1,0,-1,-1,0,1,-1,2\nc,-1,1,0,1,1,0,-1,1,2\n", encoding="utf-8")
+        plan, commands = self.of("--room", os.path.relpath(mine))
+        self.assertEqual({"visual_node": "a/b", "visual_node_a_b": "a b", "visual_node_c": "c"}, plan.walls)
+        self.assertEqual([f"room={mine}", "wall=c"], self.after(commands["visual_node_c"], "--set"))
+
+    def test_a_room_that_is_none_is_refused_in_a_sentence(self):
+        (self.folder / "empty.csv").write_text("wall\n", encoding="utf-8")
+        for room, said in (("cave5", "choose cave4, cave6, desk"), (str(self.folder / "empty.csv"), "has no wall"),
+                           (str(self.folder), "is no file of walls"), (__file__, "is no file of walls")):
+            self.assertIn(said, refusal_of("--room", room))
+
+    def test_a_setting_of_visual_node_is_one_of_every_wall_but_its_own_comes_last(self):
+        _, commands = self.of("--room", "cave4", "--set", "visual_node_floor.width=400", "--set", "visual_node.width=320", "--set", "haptic_node.force_limit=3")
+        self.assertEqual(["room=cave4", "wall=left", "width=320"], self.after(commands["visual_node"], "--set"))
+        self.assertEqual(["room=cave4", "wall=floor", "width=320", "width=400"], self.after(commands["visual_node_floor"], "--set"))
+
+    def test_one_or_all_may_be_left_out(self):
+        plan, _ = self.of("--room", "cave4", "--without", "visual_node_floor")
+        self.assertEqual(["visual_node", "visual_node_front", "visual_node_right"], [n for n in plan.nodes() if n.startswith("visual")])
+        plan, _ = self.of("--room", "cave4", "--without", "visual_node")
+        self.assertFalse([n for n in plan.nodes() if n.startswith("visual")])
 
 
 class Checks(Folders):

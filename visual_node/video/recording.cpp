@@ -61,10 +61,10 @@ constexpr std::size_t kSnapshotQueue = 2;
 
 }  // namespace
 
-std::string next_video(const std::string& folder) {
+std::string next_video(const std::string& folder, const std::string& name) {
   const std::filesystem::path out(folder);
-  std::filesystem::path file = out / "video.mp4";
-  for (int n = 2; std::filesystem::exists(file); ++n) file = out / ("video." + std::to_string(n) + ".mp4");
+  std::filesystem::path file = out / (name + ".mp4");
+  for (int n = 2; std::filesystem::exists(file); ++n) file = out / (name + "." + std::to_string(n) + ".mp4");
   return file.string();
 }
 
@@ -82,7 +82,7 @@ void Recording::begin(int width, int height, const Settings& settings) {
                                                return write_png(file, p.rgba, width, height);
                                              });
   if (!options_.video) return;
-  file_ = next_video(options_.folder);
+  file_ = next_video(options_.folder, options_.name);
   clock_.emplace();
   const auto complain = [shared = shared_](std::string text) {
     const std::lock_guard lock(shared->mutex);

@@ -21,10 +21,11 @@ struct RecordingOptions {
   bool video = true;
   std::string snapshot;         // PNG file; empty: none
   double snapshot_every_s = 1;  // it is written anew so often
+  std::string name = "video";   // of the video file
 };
 
-// "video.mp4" in the folder, or "video.2.mp4" and so on when that exists.
-std::string next_video(const std::string& folder);
+// With the name "video": "video.mp4" in the folder, or "video.2.mp4" and so on when that exists.
+std::string next_video(const std::string& folder, const std::string& name = "video");
 
 class Recording {
  public:
