@@ -1,0 +1,66 @@
+// Two walls of one room, each drawn by a process of its own.
+#include <csignal>
+
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+struct TwoWalls : Running {
+  static constexpr const char* kLeft = "visual_node";
+  static constexpr const char* kFront = "visual_node_front";
+  std::vector<std::string> nodes = kNodes;
+
+  TwoWalls() { nodes.push_back(kFront); }
+  static std::vector<std::string> draws(const std::string& wall) {
+    return {"--no-video", "--set",     "room=cave4", "--set",     "wall=" + wall,
+            "--set",      "width=320", "--set",      "height=320"};
+  }
+  void start_all() {
+    processes.start("sync_node");
+    for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
+    processes.start(kLeft, draws("left"));
+    start_front();
+    processes.start("sim_node", {tapping_scene()});
+    const bool alive = ear.wait_until([&] { return all_live(nodes) && ear.hits() > 0; }, kPatience_s);
+    UNSCOPED_INFO(words());
+    REQUIRE(alive);
+  }
+  void start_front() {
+    std::vector<std::string> words{
+        programs() / "visual_node", "--run-id", std::to_string(kRunId), "--out", folder.path(), "--name", kFront};
+    const auto options = draws("front");
+    words.insert(words.end(), options.begin(), options.end());
+    processes.spawn(kFront, words);
+  }
+  bool draws_on(const std::string& node) {
+    const std::int64_t before = ear.rendered(node);
+    return ear.wait_until([&] { return ear.rendered(node) > before + 2; }, kPatience_s);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Of two walls of a room each shows every event, and one that is frozen or killed is missed by nobody") {
+  TwoWalls c;
+  c.start_all();
+  CHECK(c.draws_on(TwoWalls::kLeft));
+  CHECK(c.draws_on(TwoWalls::kFront));
+  const auto before = c.rates(1);
+
+  c.processes.signal(TwoWalls::kFront, SIGSTOP);
+  c.check_rates_hold(before, 2);
+  CHECK(c.draws_on(TwoWalls::kLeft));
+  c.processes.signal(TwoWalls::kFront, SIGCONT);
+  CHECK(c.ear.wait_until([&] { return c.all_live(c.nodes); }, kPatience_s));
+  CHECK(c.draws_on(TwoWalls::kFront));
+
+  c.processes.kill(TwoWalls::kFront);
+  c.check_rates_hold(before, 2);
+  CHECK(c.draws_on(TwoWalls::kLeft));
+  c.start_front();
+  CHECK(c.ear.wait_until([&] { return c.all_live(c.nodes); }, kPatience_s));
+  CHECK(c.draws_on(TwoWalls::kFront));
+}
