@@ -148,6 +148,20 @@ void Sampler::keep_loudest() {
   rubs_.erase(rubs_.begin() + most, rubs_.end());
 }
 
+void Sampler::end_others(sync::HostTime at) {
+  std::set<std::pair<std::int64_t, std::int32_t>> heard;
+  for (const Rub& r : rubs_) heard.insert({r.contact, r.part});
+  std::vector<Rub> ends;
+  for (const auto& [contact, part] : heard_) {
+    if (heard.contains({contact, part})) continue;
+    Rub& end = ends.emplace_back();
+    end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
+  }
+  // First, to make room.
+  rubs_.insert(rubs_.begin(), ends.begin(), ends.end());
+  heard_ = std::move(heard);
+}
+
 const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
   rubs_.clear();
   recorded_.clear();
@@ -155,6 +169,7 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
   rubbed_ = at;
   if (!plays()) {
     moves_.clear();
+    heard_.clear();
     return rubs_;
   }
   for (auto& [id, moves] : moves_) moves.seen = false;
@@ -180,6 +195,7 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
   }
   std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
   keep_loudest();
+  end_others(at);
   return rubs_;
 }
 
