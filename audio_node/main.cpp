@@ -14,18 +14,17 @@
 #include <memory>
 #include <thread>
 
+#include "audio_node/ear.h"
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/offline.h"
 #include "audio_node/output.h"
 #include "audio_node/samples/sampler.h"
 #include "audio_node/sliding.h"
-#include "lcmtypes/pointing.h"
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
 #include "sync/opening.h"
-#include "sync/pose_history.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 #include "sync/setting_changes.h"
@@ -93,8 +92,7 @@ int main(int argc, char** argv) try {
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   // Past the profile, which makes events late or rare: where the ear is, is none.
   auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
-  sync::PoseHistory head(node.bus().clocks());
-  int head_tool = -1;  // of the scene; -1: the ear stays
+  audio::Ear ear(node.bus().clocks());
   sync::ContactStream contacts(node.bus().clocks());
   sync::BodyHistory bodies(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority, offline ? offline->open() : audio::OpenCard{});
@@ -143,8 +141,7 @@ int main(int argc, char** argv) try {
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
-      head_tool = head_of(*scene.scene());
-      head.forget();
+      ear.set_scene(*scene.scene());
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
@@ -183,15 +180,11 @@ int main(int argc, char** argv) try {
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
-    if (const auto ear = head.at(now + output.latency()); head_tool >= 0 && ear.how != sync::How::kNone)
-      output.hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
-    else if (scene.scene())
-      output.hear_from(to_eigen(scene.scene()->listener));
+    if (scene.scene()) output.hear_from(ear.at(now + output.latency()));
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = world.pop()) bodies.push(m->message, m->arrival);
-    while (const auto m = tools.pop())
-      if (m->message.tool == head_tool) head.push(m->message, m->arrival);
+    while (const auto m = tools.pop()) ear.push(m->message, m->arrival);
 
     if (const auto map = contacts.map(now); map && impacts) {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
@@ -199,9 +192,7 @@ int main(int argc, char** argv) try {
         ++hits;
         const sync::HostTime scheduled =
             sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
-        // One that is lost hears from where it was.
-        if (const auto ear = head.at(scheduled); head_tool >= 0 && ear.how != sync::How::kNone)
-          impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
+        impacts->hear_from(ear.at(scheduled));
         audio::Strike strike = impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
           const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
           if (pose.how == sync::How::kNone) return std::nullopt;
@@ -214,11 +205,8 @@ int main(int argc, char** argv) try {
     const bool slides = sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
     if (const auto map = contacts.map(now); map && sampler && (slides || sampler->plays())) {
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
-      if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone) {
-        const auto listener = listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation));
-        if (sliding) sliding->hear_from(listener);
-        sampler->hear_from(listener);
-      }
+      if (sliding) sliding->hear_from(ear.at(heard_at));
+      sampler->hear_from(ear.at(heard_at));
       const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
       contacts.keep(sense.delay());
       bodies.keep(sense.delay());
