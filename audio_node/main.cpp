@@ -14,6 +14,7 @@
 #include <memory>
 #include <thread>
 
+#include "audio_node/due_hits.h"
 #include "audio_node/ear.h"
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
@@ -49,6 +50,8 @@ constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
 constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
+// Design: half a tick; a blow takes up to 0.3 ms to prepare. Those that come together wait for the next ticks.
+constexpr sync::Nanoseconds kStrikesFor{500'000};
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
@@ -135,6 +138,8 @@ int main(int argc, char** argv) try {
   configure({});
   const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
   std::int64_t hits = 0;
+  audio::DueHits due;
+  const auto drop = [&](const contact_event_t& event, sync::HostTime scheduled) { output.drop(event.event_id, scheduled); };
 
   while (node.running() && !(offline && offline->over())) {
     const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
@@ -142,6 +147,7 @@ int main(int argc, char** argv) try {
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
       ear.set_scene(*scene.scene());
+      due.clear(drop);
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
@@ -190,8 +196,15 @@ int main(int argc, char** argv) try {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
         ++hits;
-        const sync::HostTime scheduled =
-            sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
+        due.push(event, sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns))));
+      }
+    }
+    if (impacts && sampler) {
+      // A log is heard as fast as it can be, however long a tick of it takes.
+      const sync::HostTime begun = sync::host_now();
+      const auto goes_on = [&] { return offline || sync::host_now() - begun < kStrikesFor; };
+      const auto late = audio::late_policy(output.settings().sample_rate_Hz, sync::from_seconds(output.settings().late_limit_s));
+      const auto sound = [&](const contact_event_t& event, sync::HostTime scheduled) {
         impacts->hear_from(ear.at(scheduled));
         audio::Strike strike = impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
           const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
@@ -200,7 +213,8 @@ int main(int argc, char** argv) try {
         });
         sampler->record(strike, event, *impacts);
         output.submit(strike);
-      }
+      };
+      due.handle(now, late, goes_on, sound, drop);
     }
     const bool slides = sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
     if (const auto map = contacts.map(now); map && sampler && (slides || sampler->plays())) {

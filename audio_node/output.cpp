@@ -142,11 +142,15 @@ void Output::hear_from(const Eigen::Isometry3d& listener) {
 }
 
 void Output::submit(const Strike& strike) {
-  if ((stream_ && crossing_->strikes.push(strike)) || unsounded_.size() >= kMostUnsounded) return;
+  if (!stream_ || !crossing_->strikes.push(strike)) drop(strike.event_id, strike.scheduled);
+}
+
+void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
+  if (unsounded_.size() >= kMostUnsounded) return;
   presentation_t report{};
-  report.event_id = strike.event_id;
+  report.event_id = event_id;
   report.part = presentation_t::WHOLE;
-  report.scheduled_ns = sync::to_ns(strike.scheduled);
+  report.scheduled_ns = sync::to_ns(scheduled);
   report.presented_ns = -1;
   report.outcome = presentation_t::DROPPED_LATE;
   unsounded_.push_back(report);

@@ -32,6 +32,8 @@ class Output {
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
   void submit(const Strike& strike);
+  // One that is never made: it is reported as dropped.
+  void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Scrapes from now on are of these surfaces; null: of none. It keeps those before as long as the callback may
   // read them.
   void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
