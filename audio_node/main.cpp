@@ -103,7 +103,7 @@ int main(int argc, char** argv) try {
   std::unique_ptr<audio::Sliding> sliding;
   std::unique_ptr<audio::Sampler> sampler;
   std::optional<sync::Opening<audio::HeardSurfaces>> surfaces;
-  sync::HostTime slid_at{};
+  sync::HostTime slid_at{}, told_at{};
   std::int64_t scenes = 0;
 
   auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
@@ -175,11 +175,11 @@ int main(int argc, char** argv) try {
     // Of scenes that are over: tables of 200 MB take 20 ms to free.
     if (auto unread = output.take_unread(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
-    if (auto unread = output.library().step(); !unread.empty())
+    if (auto unread = output.step_library(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
     while (offline && output.library().reading()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      output.library().step();
+      output.step_library();
     }
     if (sampler) sampler->play(output.library().database(), output.library().number());
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
@@ -216,8 +216,13 @@ int main(int argc, char** argv) try {
       };
       due.handle(now, late, goes_on, sound, drop);
     }
-    const bool slides = sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
-    if (const auto map = contacts.map(now); map && sampler && (slides || sampler->plays())) {
+    const sync::Nanoseconds every = output.tell_every(kScrapeLead);
+    const bool tells = now - told_at >= every;
+    if (sliding) sliding->tell_every(sync::to_seconds(every));
+    const bool slides = tells && sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
+    if (const auto map = contacts.map(now); map && sampler && tells && (slides || sampler->plays())) {
+      told_at = now;
+      sampler->tell_every(sync::to_seconds(every));
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
       if (sliding) sliding->hear_from(ear.at(heard_at));
       sampler->hear_from(ear.at(heard_at));

@@ -13,6 +13,8 @@ namespace {
 constexpr double kLevel_s = 0.005;
 // A contact that is not told of any more fades. Design, as of scrapes: a few lost messages are no gap.
 constexpr sync::Nanoseconds kSilence{30'000'000};
+constexpr double kMostOver_s =
+    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
 constexpr float kOver = 1e-6f;
 // An octave either way; beyond it a recording sounds of another material (design).
 constexpr double kLeastStep = 0.5, kMostStep = 2;
@@ -89,7 +91,9 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
 }
 
 void Loops::render(Voice& v, int frames, sync::HostTime first) {
-  const bool told = v.ends_in < 0 && first - v.now.at < kSilence;
+  const bool told =
+      v.ends_in < 0 &&
+      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMostOver_s)));
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
   float level = 0;

@@ -127,6 +127,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
     r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
     r.database = number_;
     r.at = at;
+    r.over_s = std::max(r.over_s, period_s_);
     r.layers = all[i];
     r.speed_m_s = speed_m_s;
     r.level = each * gains_of(settings_).recorded *

@@ -39,6 +39,8 @@ class Sampler {
   void configure(const Settings& settings) { settings_ = settings; }
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  // Contacts are told so often.
+  void tell_every(double period_s) { period_s_ = period_s; }
   // Of which database recordings are from now on; null: of none. It outlives all calls until the next of this.
   void play(const Database* database, std::int64_t number) {
     if (number != number_) said_.clear();
@@ -72,6 +74,7 @@ class Sampler {
   std::vector<double> mu_;  // by material
   const Database* database_ = nullptr;
   std::int64_t number_ = 0;
+  double period_s_ = 0;
   std::vector<Rub> rubs_;
   std::set<std::pair<std::int64_t, std::int32_t>> heard_;  // contacts and parts of the last rubs()
   sync::HostTime rubbed_{};                                // when the last rubs() were to be heard

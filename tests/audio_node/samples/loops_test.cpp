@@ -181,3 +181,14 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
     CHECK(again.most(again.left.size() - 4800, again.left.size()) == Approx(0.1).epsilon(1e-3));
   }
 }
+
+TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
+  const Layers l = layers({{1, 400}});
+  Sliding s;
+  for (int i = 0; i < 10; ++i) {
+    const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
+    s.play(1, tell);
+    s.play(65, nullptr);  // 88 ms in all
+  }
+  for (std::size_t n = 24000; n + 480 < s.left.size(); n += 480) CHECK(s.most(n, n + 480) > 0.09f);
+}
