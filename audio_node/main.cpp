@@ -14,18 +14,18 @@
 #include <memory>
 #include <thread>
 
+#include "audio_node/due_hits.h"
+#include "audio_node/ear.h"
 #include "audio_node/impact.h"
 #include "audio_node/mesh_extent.h"
 #include "audio_node/offline.h"
 #include "audio_node/output.h"
 #include "audio_node/samples/sampler.h"
 #include "audio_node/sliding.h"
-#include "lcmtypes/pointing.h"
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
 #include "sync/node.h"
 #include "sync/opening.h"
-#include "sync/pose_history.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 #include "sync/setting_changes.h"
@@ -50,6 +50,8 @@ constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
 constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
+// Design: half a tick; a blow takes up to 0.3 ms to prepare. Those that come together wait for the next ticks.
+constexpr sync::Nanoseconds kStrikesFor{500'000};
 constexpr sync::Nanoseconds kEarly{20'000'000};          // events of the next moments, should a map run behind
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaPair& pair) {
@@ -93,8 +95,7 @@ int main(int argc, char** argv) try {
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   // Past the profile, which makes events late or rare: where the ear is, is none.
   auto& tools = node.bus().queue<tool_state_t>(channels::kToolState, 512);
-  sync::PoseHistory head(node.bus().clocks());
-  int head_tool = -1;  // of the scene; -1: the ear stays
+  audio::Ear ear(node.bus().clocks());
   sync::ContactStream contacts(node.bus().clocks());
   sync::BodyHistory bodies(node.bus().clocks());
   audio::Output output(options.out, device, kCallbackPriority, offline ? offline->open() : audio::OpenCard{});
@@ -102,7 +103,7 @@ int main(int argc, char** argv) try {
   std::unique_ptr<audio::Sliding> sliding;
   std::unique_ptr<audio::Sampler> sampler;
   std::optional<sync::Opening<audio::HeardSurfaces>> surfaces;
-  sync::HostTime slid_at{};
+  sync::HostTime slid_at{}, told_at{};
   std::int64_t scenes = 0;
 
   auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
@@ -137,14 +138,16 @@ int main(int argc, char** argv) try {
   configure({});
   const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
   std::int64_t hits = 0;
+  audio::DueHits due;
+  const auto drop = [&](const contact_event_t& event, sync::HostTime scheduled) { output.drop(event.event_id, scheduled); };
 
   while (node.running() && !(offline && offline->over())) {
     const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
-      head_tool = head_of(*scene.scene());
-      head.forget();
+      ear.set_scene(*scene.scene());
+      due.clear(drop);
       configure(scene.scene()->settings);
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
@@ -172,36 +175,37 @@ int main(int argc, char** argv) try {
     // Of scenes that are over: tables of 200 MB take 20 ms to free.
     if (auto unread = output.take_unread(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
-    if (auto unread = output.library().step(); !unread.empty())
+    if (auto unread = output.step_library(); !unread.empty())
       std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
     while (offline && output.library().reading()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      output.library().step();
+      output.step_library();
     }
     if (sampler) sampler->play(output.library().database(), output.library().number());
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
-    if (const auto ear = head.at(now + output.latency()); head_tool >= 0 && ear.how != sync::How::kNone)
-      output.hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
-    else if (scene.scene())
-      output.hear_from(to_eigen(scene.scene()->listener));
+    if (scene.scene()) output.hear_from(ear.at(now + output.latency()));
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = world.pop()) bodies.push(m->message, m->arrival);
-    while (const auto m = tools.pop())
-      if (m->message.tool == head_tool) head.push(m->message, m->arrival);
+    while (const auto m = tools.pop()) ear.push(m->message, m->arrival);
 
     if (const auto map = contacts.map(now); map && impacts) {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
         ++hits;
-        const sync::HostTime scheduled =
-            sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
-        // One that is lost hears from where it was.
-        if (const auto ear = head.at(scheduled); head_tool >= 0 && ear.how != sync::How::kNone)
-          impacts->hear_from(listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation)));
+        due.push(event, sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns))));
+      }
+    }
+    if (impacts && sampler) {
+      // A log is heard as fast as it can be, however long a tick of it takes.
+      const sync::HostTime begun = sync::host_now();
+      const auto goes_on = [&] { return offline || sync::host_now() - begun < kStrikesFor; };
+      const auto late = audio::late_policy(output.settings().sample_rate_Hz, sync::from_seconds(output.settings().late_limit_s));
+      const auto sound = [&](const contact_event_t& event, sync::HostTime scheduled) {
+        impacts->hear_from(ear.at(scheduled));
         audio::Strike strike = impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
           const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
           if (pose.how == sync::How::kNone) return std::nullopt;
@@ -209,16 +213,19 @@ int main(int argc, char** argv) try {
         });
         sampler->record(strike, event, *impacts);
         output.submit(strike);
-      }
+      };
+      due.handle(now, late, goes_on, sound, drop);
     }
-    const bool slides = sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
-    if (const auto map = contacts.map(now); map && sampler && (slides || sampler->plays())) {
+    const sync::Nanoseconds every = output.tell_every(kScrapeLead);
+    const bool tells = now - told_at >= every;
+    if (sliding) sliding->tell_every(sync::to_seconds(every));
+    const bool slides = tells && sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
+    if (const auto map = contacts.map(now); map && sampler && tells && (slides || sampler->plays())) {
+      told_at = now;
+      sampler->tell_every(sync::to_seconds(every));
       const sync::HostTime heard_at = now + output.latency() + kScrapeLead;
-      if (const auto ear = head.at(heard_at); head_tool >= 0 && ear.how != sync::How::kNone) {
-        const auto listener = listener_of(*scene.scene(), view_of(*scene.scene(), ear.value.position, ear.value.orientation));
-        if (sliding) sliding->hear_from(listener);
-        sampler->hear_from(listener);
-      }
+      if (sliding) sliding->hear_from(ear.at(heard_at));
+      sampler->hear_from(ear.at(heard_at));
       const sync::SimTime t = map->to_sim(std::min(now, heard_at - sense.delay()));
       contacts.keep(sense.delay());
       bodies.keep(sense.delay());

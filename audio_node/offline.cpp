@@ -31,9 +31,10 @@ std::optional<std::string> Offline::progress(sync::HostTime now, sync::HostTime 
   return std::to_string(std::lround(100 * share)) + " % of the log";
 }
 
-std::string Offline::result(double rate_Hz, std::int64_t hits, sync::HostTime clock) const {
+std::string Offline::result(double rate_Hz, std::int64_t hits, sync::HostTime clock) {
   if (!card_ || !card_->start())
     throw std::runtime_error("the log has no scene; give one that scripts/run wrote from its beginning");
+  card_->finish();
   const double sound_s = static_cast<double>(card_->frames()) / rate_Hz, took_s = sync::to_seconds(clock - began_);
   std::ostringstream text;
   text << wav_ << ": " << sound_s << " s of sound, " << hits << " hits, in " << took_s << " s ("
@@ -42,6 +43,10 @@ std::string Offline::result(double rate_Hz, std::int64_t hits, sync::HostTime cl
   if (feed_.damaged_regions() > 0)
     text << "\nskipped damage of the log: " << feed_.damaged_regions() << " regions, " << feed_.damaged_bytes()
          << " bytes";
+  if (feed_.misdated() > 0)
+    text << "\n"
+         << feed_.misdated()
+         << " events bear damaged times, far from the others; they were heard with those before them";
   return text.str();
 }
 

@@ -29,15 +29,16 @@ class Offline {
 
   // Once a second a line for people.
   std::optional<std::string> progress(sync::HostTime now, sync::HostTime clock);
-  // What came of it, in lines. Throws std::runtime_error with one sentence when nothing was played.
-  std::string result(double rate_Hz, std::int64_t hits, sync::HostTime clock) const;
+  // The file gets its name; before, there is none. What came of it, in lines. Throws std::runtime_error with one
+  // sentence when nothing was played or the disk does not take it.
+  std::string result(double rate_Hz, std::int64_t hits, sync::HostTime clock);
 
  private:
   static constexpr sync::Nanoseconds kRingOn{1'000'000'000};  // design
 
   sync::LogFeed feed_;
   std::string wav_;
-  const FileCard* card_ = nullptr;
+  FileCard* card_ = nullptr;
   sync::HostTime began_, said_;
 };
 

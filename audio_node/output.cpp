@@ -38,6 +38,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
       fifo_priority_(fifo_priority),
       crossing_(std::make_shared<Crossing>()),
       scrapes_(*crossing_),
+      rubs_(crossing_->recorded.rubs),
       library_(crossing_->recorded),
       open_(std::move(open)) {}
 
@@ -51,6 +52,8 @@ void Output::configure(Settings settings) {
 
 bool Output::keep_open(sync::HostTime now) {
   if (stream_ && stream_->alive(now)) {
+    scrapes_.tell_ends();
+    rubs_.tell_ends();
     stream_->play_until(now);
     return true;
   }
@@ -145,11 +148,18 @@ void Output::hear_from(const Eigen::Isometry3d& listener) {
 }
 
 void Output::submit(const Strike& strike) {
-  if ((stream_ && crossing_->strikes.push(strike)) || unsounded_.size() >= kMostUnsounded) return;
+  if (!stream_ || !crossing_->strikes.push(strike)) drop(strike.event_id, strike.scheduled);
+}
+
+void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
+  if (unsounded_.size() >= kMostUnsounded) {
+    ++reports_lost_;
+    return;
+  }
   presentation_t report{};
-  report.event_id = strike.event_id;
+  report.event_id = event_id;
   report.part = presentation_t::WHOLE;
-  report.scheduled_ns = sync::to_ns(strike.scheduled);
+  report.scheduled_ns = sync::to_ns(scheduled);
   report.presented_ns = -1;
   report.outcome = presentation_t::DROPPED_LATE;
   unsounded_.push_back(report);
@@ -160,6 +170,13 @@ sync::Nanoseconds Output::latency() const {
   const int ears = settings_.spatial == "hrtf" ? kMostEarsLatency : 0;
   return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
                             settings_.sample_rate_Hz);
+}
+
+// A telling waits until the callback's turn after its sample has been reached. Two of the tellings are for ticks
+// that are not evenly spaced.
+sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
+  const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
+  return (latency() + lead + period) / (kTellings - 2);
 }
 
 std::optional<presentation_t> Output::next_report() {
@@ -180,10 +197,19 @@ std::optional<std::string> Output::news() {
 }
 
 std::string Output::note() const {
-  if (!stream_) return trouble_.empty() ? "sound card not opened yet" : trouble_;
+  if (!stream_) return (trouble_.empty() ? "sound card not opened yet" : trouble_) + losses();
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + costs() + hearing();
+         " underflows" + costs() + hearing() + losses();
+}
+
+std::string Output::losses() const {
+  std::string text;
+  if (const std::int64_t states = scrapes_.lost() + rubs_.lost(); states > 0)
+    text += ", " + std::to_string(states) + " states of contacts lost";
+  const std::int64_t reports = reports_lost_ + crossing_->reports_lost.load(std::memory_order_relaxed);
+  if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
+  return text;
 }
 
 std::string Output::costs() const {

@@ -8,6 +8,7 @@
 
 #include "audio_node/device/stream.h"
 #include "audio_node/samples/library.h"
+#include "audio_node/samples/rub_line.h"
 #include "audio_node/scrape_line.h"
 #include "audio_node/settings.gen.h"
 #include "sync/opening.h"
@@ -32,6 +33,8 @@ class Output {
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
   void submit(const Strike& strike);
+  // One that is never made: it is reported as dropped.
+  void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Scrapes from now on are of these surfaces; null: of none. It keeps those before as long as the callback may
   // read them.
   void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
@@ -39,15 +42,19 @@ class Output {
   std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
   // Where the ear is, from now on, and how near a source may come.
   void hear_from(const Eigen::Isometry3d& listener);
-  // What is not taken at once is not heard: the next one is.
+  // A state that does not fit is not heard, the next one is; note() counts it. An end is told later.
   void submit(const Scrape& scrape) {
     if (stream_) scrapes_.submit(scrape);
   }
   void submit(const Rub& rub) {
-    if (stream_) crossing_->recorded.rubs.push(rub);
+    if (stream_) rubs_.submit(rub);
   }
+  // How often contacts may be told so that all fit that wait for their sample, latency() and `lead` later.
+  sync::Nanoseconds tell_every(sync::Nanoseconds lead) const;
   // The recordings that are played. What crosses must be of its newest database.
   Library& library() { return library_; }
+  // Once a tick: its step(), which knows whether a callback may play any.
+  std::vector<Library::Shared> step_library() { return library_.step(stream_ || opening_); }
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
@@ -68,6 +75,8 @@ class Output {
   std::string costs() const;
   // What ears have had, and by how much it is turned down for them, in words; empty while nothing has sounded.
   std::string hearing() const;
+  // What did not fit, in words; empty while nothing has been lost.
+  std::string losses() const;
   // Step of the quality ladder in use.
   int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
 
@@ -85,7 +94,8 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<Crossing> crossing_;
   std::shared_ptr<Renderer> renderer_;
-  ScrapeLine scrapes_;                  // goes after the stream, whose callback reads what it keeps
+  ScrapeLine scrapes_;  // goes after the stream, whose callback reads what it keeps
+  RubLine rubs_;
   Library library_;                     // as well
   std::optional<Orders> ordered_;       // what the renderer has been told; nothing: it is new
   std::optional<Listener> heard_from_;  // likewise
@@ -101,6 +111,7 @@ class Output {
   std::optional<sync::Opening<Opened>> opening_;
   std::unique_ptr<Card> stream_;
   std::deque<presentation_t> unsounded_;
+  std::int64_t reports_lost_ = 0;
 };
 
 }  // namespace tactus::audio

@@ -107,7 +107,7 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
   r.presented_ns = presented_ns;
   r.uncertainty_ns = uncertainty.count();
   r.outcome = outcome;
-  crossing_.reports.push(r);
+  if (!crossing_.reports.push(r)) crossing_.reports_lost.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Renderer::render(float* out, int frames, const BlockTime& time) {

@@ -56,13 +56,14 @@ struct Crossing {
   Spsc<Strike> strikes{512};
   Spsc<Orders> orders{16};
   Spsc<Listener> listeners{64};  // the newest counts
-  Spsc<Scrape> scrapes{512};
+  Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMost};
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
   RecordedCrossing recorded;
   Spsc<presentation_t> reports{4096};
-  std::atomic<int> quality{0};  // step in use
+  std::atomic<std::int64_t> reports_lost{0};  // which did not fit
+  std::atomic<int> quality{0};                // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
   std::array<MethodCost, 2> costs;  // of what is computed, of what is recorded
   Heard heard;

@@ -3,6 +3,12 @@
 #include <utility>
 
 namespace tactus::audio {
+namespace {
+
+// Ends that are still to be told. Design: four times what is heard at a time; what is older has faded by itself.
+constexpr std::size_t kMostOwed = 4 * Scrapes::kMost;
+
+}  // namespace
 
 void ScrapeLine::change(Surfaces next) {
   // Into which none points nobody reads, whatever the callback does.
@@ -12,6 +18,24 @@ void ScrapeLine::change(Surfaces next) {
 }
 
 bool ScrapeLine::submit(Scrape scrape) {
+  std::erase(owed_, scrape.id);
+  tell_ends();
+  if (push(scrape)) return true;
+  if (!scrape.ends) return ++lost_, false;
+  owed_.push_back(scrape.id);
+  if (owed_.size() > kMostOwed) owed_.pop_front(), ++lost_;
+  return false;
+}
+
+void ScrapeLine::tell_ends() {
+  for (; !owed_.empty(); owed_.pop_front()) {
+    Scrape end;
+    end.id = owed_.front(), end.ends = true;
+    if (!push(end)) return;
+  }
+}
+
+bool ScrapeLine::push(Scrape& scrape) {
   scrape.number = submitted_;
   if (!crossing_.scrapes.push(scrape)) return false;
   ++submitted_;

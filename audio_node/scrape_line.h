@@ -22,8 +22,12 @@ class ScrapeLine {
   // Scrapes that are submitted from now on point into these; null: into none. Those of before are kept while the
   // callback may read them. While it stands still no more than the queue holds scrapes.
   void change(Surfaces next);
-  // False when the queue is full: it is not heard.
+  // False when the queue is full: a state is not heard, and counted as lost; an end is told as soon as there is
+  // room, unless its contact goes on.
   bool submit(Scrape scrape);
+  // Once a tick.
+  void tell_ends();
+  std::int64_t lost() const { return lost_; }
   // Those of before that nobody reads any more. Freeing them may take milliseconds: not in a loop.
   std::vector<Surfaces> take_unread();
 
@@ -32,7 +36,11 @@ class ScrapeLine {
     std::int64_t end;  // number after that of its last scrape
     Surfaces surfaces;
   };
+  bool push(Scrape& scrape);
+
   Crossing& crossing_;
+  std::deque<std::int64_t> owed_;  // contacts whose end has not been told
+  std::int64_t lost_ = 0;
   std::int64_t submitted_ = 0, first_ = 0;  // scrapes so far; number of the first into `now_`
   Surfaces now_;
   std::deque<Kept> kept_;

@@ -15,6 +15,8 @@ constexpr double kLeap_m = 0.005;  // design
 constexpr double kStrength_s = 0.002;
 // One that is not told of any more, nor that it ends, fades.
 constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are no gap
+constexpr double kMostOver_s =
+    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
 
 // Of this world. Design: far beyond what any scene has, so that no number overflows.
 constexpr double kMostPlace_m = 1e5, kMostSpeed_m_s = 1e3, kMostWay = 10, kMostStrength = 10;
@@ -124,7 +126,8 @@ Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool f
 
 void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
-  if (first - c.heard >= kSilence && (c.slide.target != 0 || c.roll.target != 0))
+  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMostOver_s))) &&
+      (c.slide.target != 0 || c.roll.target != 0))
     c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
         c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));
   const double since_s = sync::to_seconds(first - s.at);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,8 +34,10 @@ class Sliding {
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
-  // How often to look at contacts: at every tick, or when there are many as often as they are told.
-  double period_s() const { return many_ ? kSnapshot_s : 0; }
+  // How often to look at contacts: at every tick, when there are many as often as they are told, and never more
+  // often than that.
+  double period_s() const { return std::max(period_s_, many_ ? kSnapshot_s : 0); }
+  void tell_every(double period_s) { period_s_ = period_s; }
   // What of the contacts of the instant t is to be heard at `at`; each that is heard no more ends once. dt_s:
   // since the instant before.
   const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::SimTime t, sync::HostTime at,
@@ -93,6 +96,7 @@ class Sliding {
   std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move, of which nobody tells often
   std::map<std::int64_t, Live> live_;
   bool many_ = false;
+  double period_s_ = 0;
   std::vector<Candidate> candidates_;
   std::vector<Scrape> out_;
 };

@@ -1,10 +1,12 @@
-// A log in place of the bus: hands what was recorded to the inboxes, tick by tick, at the recorder's times, so that a
-// node renders it as it would have rendered the run, as fast as it can. Pure but for the mapping of the file.
+// A log in place of the bus: hands what was recorded to the inboxes, tick by tick, at the recorder's times, so
+// that a node renders it as it would have rendered the run, as fast as it can. Pure but for the mapping of the
+// file.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <tactus/log_info_t.hpp>
+#include <vector>
 
 #include "sync/bus.h"
 #include "sync/log_reader.h"
@@ -14,18 +16,19 @@ namespace tactus::sync {
 
 class LogFeed {
  public:
-  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no run that our recorder has
-  // written.
+  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no run that our
+  // recorder has written.
   LogFeed(const std::string& path, double rate_Hz);
 
-  // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour would.
+  // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour
+  // would.
   std::int64_t run_id() const { return info_.header.run_id; }
   std::int32_t clock() const { return info_.header.clock; }
   // That node's options: in memory, with the run and the clock of the log.
   BusOptions bus() const;
 
-  // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of the
-  // recorder.
+  // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
+  // the recorder.
   HostTime next(Bus& bus);
   // All has been handed over, and `after` has passed since.
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
@@ -36,13 +39,26 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
+  // Events whose stamps are damaged: further than SummaryClock::kLargestStep from those of the run, and too few to
+  // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
+  std::int64_t misdated() const;
 
  private:
+  // Design: who takes part in a run says ten times a second how it is; so few in a row are no run.
+  static constexpr std::int64_t kFewestOfARun = 32;
+  // Events whose stamps lie near each other.
+  struct Age {
+    HostTime first, last;
+    std::int64_t events;
+  };
+  HostTime stamp(const LogEvent& event) const;
   HostTime arrival(const LogEvent& event);
 
   MappedFile file_;
   LogScanner whole_, scanner_;
   SummaryClock clock_;
+  std::vector<Age> damaged_ages_;
+  HostTime arrived_{};  // the event before
   LogEvent pending_;
   bool has_pending_ = false;
   log_info_t info_{};

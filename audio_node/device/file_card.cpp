@@ -2,12 +2,25 @@
 
 #include <sndfile.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 namespace tactus::audio {
+namespace {
+
+// What is there and no plain file, such as /dev/null, is written to as it is.
+std::string part_of(const std::string& wav) {
+  std::error_code ignored;
+  const bool plain = !std::filesystem::exists(wav, ignored) || std::filesystem::is_regular_file(wav, ignored);
+  return plain ? wav + ".part" : wav;
+}
+
+}  // namespace
+
 FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render render)
     : wav_(wav),
+      part_(part_of(wav)),
       render_(std::move(render)),
       rate_Hz_(options.rate_Hz),
       period_frames_(options.period_frames),
@@ -18,14 +31,29 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
   info.samplerate = options.rate_Hz;
   info.channels = options.channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
-  file_.reset(sf_open(wav.c_str(), SFM_WRITE, &info));
+  file_.reset(sf_open(part_.c_str(), SFM_WRITE, &info));
   if (!file_)
     throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
 }
 
-FileCard::~FileCard() = default;
+FileCard::~FileCard() {
+  file_.reset();
+  std::error_code ignored;
+  if (!finished_ && part_ != wav_) std::filesystem::remove(part_, ignored);
+}
+
+void FileCard::finish() {
+  if (std::exchange(finished_, true)) return;
+  std::error_code error;
+  const bool closed = sf_close(file_.release()) == 0;
+  if (closed && part_ != wav_) std::filesystem::rename(part_, wav_, error);
+  if (closed && !error) return;
+  finished_ = false;
+  throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "it does not close") +
+                           "); free some disk or choose another --wav");
+}
 
 sync::HostTime FileCard::out_at(std::int64_t frame) const {
   const std::int64_t seconds = frame / rate_Hz_, rest = frame % rate_Hz_;

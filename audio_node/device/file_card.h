@@ -13,8 +13,9 @@ namespace tactus::audio {
 
 class FileCard : public Card {
  public:
-  // Its first sample is out at the first play_until(). Throws std::runtime_error with one sentence when the file
-  // cannot be made.
+  // Its first sample is out at the first play_until(). Until finish() the file is WAV.part, which goes with this,
+  // so that what bears the name is whole. Throws std::runtime_error with one sentence when the file cannot be
+  // made.
   FileCard(const StreamOptions& options, const std::string& wav, Render render);
   ~FileCard() override;
   FileCard(const FileCard&) = delete;
@@ -30,6 +31,10 @@ class FileCard : public Card {
   const std::string& medium() const override { return wav_; }
   std::optional<MediaPair> next_pair() override;
 
+  // The file is whole and gets its name; nothing is played any more. Throws std::runtime_error with one sentence
+  // when the disk does not take it.
+  void finish();
+
   // When the first sample was out.
   std::optional<sync::HostTime> start() const { return start_; }
   std::int64_t frames() const { return blocks_ * period_frames_; }
@@ -37,7 +42,8 @@ class FileCard : public Card {
  private:
   sync::HostTime out_at(std::int64_t frame) const;
 
-  std::string wav_, card_ = "file";
+  std::string wav_, part_, card_ = "file";
+  bool finished_ = false;
   Render render_;
   int rate_Hz_, period_frames_;
   sync::Nanoseconds ahead_;

@@ -25,10 +25,12 @@ class Library {
 
   explicit Library(RecordedCrossing& crossing) : crossing_(crossing) {}
 
-  // Begins to read when the method needs recordings and folder, rate or size are others than before.
+  // Begins to read when the method needs recordings and folder, rate or size are others than before. One that
+  // needs none gives back what there is.
   void configure(const Settings& settings);
   // Once a tick. Those of before that nobody plays any more: freeing them may take milliseconds, not in a loop.
-  std::vector<Shared> step();
+  // heard: there is a callback, or one is being made; false: nobody plays any.
+  std::vector<Shared> step(bool heard = true);
 
   // Null: none has been read yet, and none is needed or it is being read.
   const Database* database() const { return now_.get(); }
@@ -49,7 +51,9 @@ class Library {
     std::int64_t number;
     Shared database;
   };
-  void use(std::unique_ptr<Database> database);
+  void take_read(std::vector<Shared>& unread);
+  void use(Shared database);
+  bool tell(Shared next);
 
   RecordedCrossing& crossing_;
   std::optional<Source> wanted_, reading_, read_;

@@ -13,6 +13,8 @@ namespace {
 constexpr double kLevel_s = 0.005;
 // A contact that is not told of any more fades. Design, as of scrapes: a few lost messages are no gap.
 constexpr sync::Nanoseconds kSilence{30'000'000};
+constexpr double kMostOver_s =
+    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
 constexpr float kOver = 1e-6f;
 // An octave either way; beyond it a recording sounds of another material (design).
 constexpr double kLeastStep = 0.5, kMostStep = 2;
@@ -20,12 +22,19 @@ constexpr double kLeastStep = 0.5, kMostStep = 2;
 }  // namespace
 
 bool Loops::take(const Rub& rub) {
+  if (rub.ends) {
+    for (Voice& v : voices_)
+      if (v.on && v.ends_in < 0 && v.now.contact == rub.contact && v.now.part == rub.part)
+        v.ends_in = static_cast<int>(kEnd_s * rate_Hz_);
+    return false;
+  }
   if (!rub.layers) return false;
   Voice* free = nullptr;
   for (Voice& v : voices_) {
     // Of another database it is another sound; the one before fades.
     if (v.on && v.now.contact == rub.contact && v.now.part == rub.part && v.now.layers == rub.layers) {
       v.now = rub;
+      v.ends_in = -1;
       return false;
     }
     if (!v.on && !free) free = &v;
@@ -45,7 +54,7 @@ bool Loops::take(const Rub& rub) {
   return true;
 }
 
-void Loops::add(Playing& p, double step, float wanted, float* out, int frames) const {
+void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, int frames) const {
   const std::vector<float>& x = p.recording->samples;
   const auto size = x.size();
   const auto length = static_cast<double>(size);
@@ -64,6 +73,15 @@ void Loops::add(Playing& p, double step, float wanted, float* out, int frames) c
     p.at += step;
     if (p.at >= length) p.at -= length;
   }
+  if (ends_in >= 0) {
+    // Straight to nothing, to the bit.
+    const float begin = p.level, fall = begin / static_cast<float>(std::max(ends_in, 1));
+    const int sounding = std::min(frames, ends_in);
+    for (int n = 0; n < sounding; ++n)
+      out[n] += (begin - static_cast<float>(n + 1) * fall) * played[static_cast<std::size_t>(n)];
+    p.level = ends_in > frames ? begin - static_cast<float>(frames) * fall : 0;
+    return;
+  }
   // Straight to where it shall be at the end of the block.
   const auto left = static_cast<float>(std::exp(-frames / (kLevel_s * rate_Hz_)));
   const float begin = p.level, rise = (wanted + (begin - wanted) * left - begin) / static_cast<float>(frames);
@@ -73,7 +91,9 @@ void Loops::add(Playing& p, double step, float wanted, float* out, int frames) c
 }
 
 void Loops::render(Voice& v, int frames, sync::HostTime first) {
-  const bool told = first - v.now.at < kSilence;
+  const bool told =
+      v.ends_in < 0 &&
+      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMostOver_s)));
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
   float level = 0;
@@ -88,11 +108,13 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
       p.level = 0;
       continue;
     }
-    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, out.data(), frames);
+    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, v.ends_in, out.data(),
+        frames);
     level = std::max(level, p.level);
   }
   spatialiser_.add(static_cast<int>(&v - voices_.data()),
                    listener_ ? heard_by(*listener_, v.now.place) : v.now.place, out.data(), frames);
+  v.ends_in = v.ends_in < 0 ? -1 : std::max(0, v.ends_in - frames);
   // The comparison also ends one that has become no number.
   const bool over = !told && !(level > kOver);
   if (over && v.silent >= spatialiser_.tail()) v.on = false;

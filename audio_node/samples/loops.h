@@ -16,13 +16,15 @@ namespace tactus::audio {
 class Loops {
  public:
   static constexpr int kMost = 32;  // at a time; more are not heard
+  // Design: as what is computed (scrapes.cpp), so that both are silent equally soon.
+  static constexpr double kEnd_s = 0.002;
 
   explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
       : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}
 
   void hear_from(const Listener& listener) { listener_ = listener; }
 
-  // One that is to be heard from its instant on. True when it begins.
+  // One that is to be heard from its instant on. True when it begins. One that ends is silent kEnd_s later.
   bool take(const Rub& rub);
   // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
   void render(float* mix, int frames, sync::HostTime first);
@@ -41,11 +43,13 @@ class Loops {
   struct Voice {
     Rub now;
     bool on = false;
-    int silent = 0;  // frames since the last of which something came
+    int ends_in = -1;  // frames until it is silent; -1: nobody has said that it ends
+    int silent = 0;    // frames since the last of which something came
     std::array<Playing, kMostLayers> layers;
   };
   void render(Voice& voice, int frames, sync::HostTime first);
-  void add(Playing& playing, double step, float wanted, float* out, int frames) const;
+  // ends_in: as of its voice.
+  void add(Playing& playing, double step, float wanted, int ends_in, float* out, int frames) const;
 
   double rate_Hz_;
   std::array<Voice, kMost> voices_;

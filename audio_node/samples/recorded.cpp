@@ -5,6 +5,12 @@
 
 namespace tactus::audio {
 
+void let_go_unheard(RecordedCrossing& crossing) {
+  for (Rub r; crossing.rubs.pop(r);) continue;
+  for (std::int64_t number; crossing.databases.pop(number);)
+    crossing.let_go.store(number, std::memory_order_release);
+}
+
 void Recorded::take_databases() {
   const std::int64_t before = database_;
   for (std::int64_t number; crossing_.databases.pop(number);) database_ = number;

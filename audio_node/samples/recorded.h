@@ -12,15 +12,22 @@
 
 namespace tactus::audio {
 
+// Contacts are told so often that no more tellings than these wait for their sample at a time, and in each all
+// that can be heard begin and as many end (Output::tell_every).
+inline constexpr int kTellings = 64;
+
 // What crosses between the node's loop and the callback besides strikes.
 struct RecordedCrossing {
-  Spsc<Rub> rubs{1024};
+  Spsc<Rub> rubs{kTellings * 2 * Loops::kMost};
   // Strikes and rubs that cross after one of these are of the database of that number.
   Spsc<std::int64_t> databases{16};
   // The callback holds nothing of a database of a number below this, and will never again: it may go.
   std::atomic<std::int64_t> let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 };
+
+// Where no callback is and none is being made, the loop says in its place that nothing is held but the newest.
+void let_go_unheard(RecordedCrossing& crossing);
 
 // Realtime-safe: yes, all but the constructor.
 class Recorded {

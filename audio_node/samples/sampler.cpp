@@ -127,6 +127,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
     r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
     r.database = number_;
     r.at = at;
+    r.over_s = std::max(r.over_s, period_s_);
     r.layers = all[i];
     r.speed_m_s = speed_m_s;
     r.level = each * gains_of(settings_).recorded *
@@ -148,6 +149,20 @@ void Sampler::keep_loudest() {
   rubs_.erase(rubs_.begin() + most, rubs_.end());
 }
 
+void Sampler::end_others(sync::HostTime at) {
+  std::set<std::pair<std::int64_t, std::int32_t>> heard;
+  for (const Rub& r : rubs_) heard.insert({r.contact, r.part});
+  std::vector<Rub> ends;
+  for (const auto& [contact, part] : heard_) {
+    if (heard.contains({contact, part})) continue;
+    Rub& end = ends.emplace_back();
+    end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
+  }
+  // First, to make room.
+  rubs_.insert(rubs_.begin(), ends.begin(), ends.end());
+  heard_ = std::move(heard);
+}
+
 const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
   rubs_.clear();
   recorded_.clear();
@@ -155,6 +170,7 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
   rubbed_ = at;
   if (!plays()) {
     moves_.clear();
+    heard_.clear();
     return rubs_;
   }
   for (auto& [id, moves] : moves_) moves.seen = false;
@@ -180,6 +196,7 @@ const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::Host
   }
   std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
   keep_loudest();
+  end_others(at);
   return rubs_;
 }
 

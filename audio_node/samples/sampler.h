@@ -39,6 +39,8 @@ class Sampler {
   void configure(const Settings& settings) { settings_ = settings; }
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  // Contacts are told so often.
+  void tell_every(double period_s) { period_s_ = period_s; }
   // Of which database recordings are from now on; null: of none. It outlives all calls until the next of this.
   void play(const Database* database, std::int64_t number) {
     if (number != number_) said_.clear();
@@ -49,7 +51,8 @@ class Sampler {
   bool plays() const { return database_ && gains_of(settings_).recorded > 0; }
   // Gives a strike the recordings of its event, and its modes what the method leaves to them.
   void record(Strike& strike, const contact_event_t& event, const Impacts& impacts);
-  // What of these contacts is to be heard at `at`.
+  // What of these contacts is to be heard at `at`; each that is heard no more ends once. When the method changes
+  // they fade by themselves.
   const std::vector<Rub>& rubs(const sync::Contacts& contacts, sync::HostTime at);
   // Factor on what is computed of the scraping or the rolling of a contact, as of the last rubs().
   float modal_of(std::int64_t contact, Interaction interaction) const;
@@ -62,6 +65,7 @@ class Sampler {
   std::string material(std::int32_t index) const;
   void say(const std::string& a, const std::string& b, Interaction interaction, const Database::Found& found);
   void keep_loudest();
+  void end_others(sync::HostTime at);
   void rub(const contact_t& contact, Interaction interaction, double speed_m_s, double level, sync::HostTime at);
 
   Settings settings_;
@@ -70,8 +74,10 @@ class Sampler {
   std::vector<double> mu_;  // by material
   const Database* database_ = nullptr;
   std::int64_t number_ = 0;
+  double period_s_ = 0;
   std::vector<Rub> rubs_;
-  sync::HostTime rubbed_{};  // when the last rubs() were to be heard
+  std::set<std::pair<std::int64_t, std::int32_t>> heard_;  // contacts and parts of the last rubs()
+  sync::HostTime rubbed_{};                                // when the last rubs() were to be heard
   struct Moves {
     Presliding slides, rolls;
     bool seen = true;

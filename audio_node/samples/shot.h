@@ -30,6 +30,8 @@ struct Rub {
   std::int32_t part = 0;  // of the same contact: another sound
   std::int64_t database = 0;
   sync::HostTime at{};  // when that is to be heard
+  bool ends = false;    // the contact scrapes or rolls no more: nothing but contact, part, database and at counts
+  double over_s = 0.001;  // until it is told anew
   const Layers* layers = nullptr;
   double speed_m_s = 0;
   float level = 0;  // at 1 m, of a loop as it was recorded

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <memory>
+#include <optional>
+#include <tuple>
 
 #include "tests/audio_node/bench.h"
 
@@ -37,6 +39,45 @@ struct FakeCard : Card {
   std::int64_t blocks = 0;
   float loudest = 0;
 };
+
+// One that asks for a period at a time, at which it is heard: what is told ahead waits longest.
+struct SlowCard : FakeCard {
+  SlowCard(Render r, const StreamOptions& o)
+      : FakeCard(std::make_shared<Plug>(), std::move(r)),
+        options(o),
+        out(2 * static_cast<std::size_t>(o.period_frames)) {}
+  void play_until(sync::HostTime now) override {
+    if (now < next) return;
+    render(out.data(), options.period_frames, {now, sync::Nanoseconds(0), sync::Nanoseconds(0)});
+    next = now + sync::from_seconds(static_cast<double>(options.period_frames) / options.rate_Hz);
+  }
+  StreamOptions options;
+  std::vector<float> out;
+  sync::HostTime next{};
+};
+
+// What health says after ten seconds in which all contacts that can be heard begin, and as many end, whenever it
+// is time to tell of them.
+std::string note_after_telling(const Settings& settings, std::optional<sync::Nanoseconds> every = {}) {
+  constexpr sync::Nanoseconds kLead{2'000'000};
+  Output output(".", "", 0, [](const StreamOptions& options, Card::Render render) {
+    return std::make_unique<SlowCard>(std::move(render), options);
+  });
+  output.configure(settings);
+  sync::HostTime told{};
+  for (std::int64_t ms = 0; ms < 10'000; ++ms) {
+    const sync::HostTime now = sync::host_time(kStart_ns + 1'000'000 * ms);
+    output.keep_open(now);
+    if (now - told < every.value_or(output.tell_every(kLead))) continue;
+    told = now;
+    Scrape scrape;
+    Rub rub;
+    scrape.at = rub.at = now + output.latency() + kLead;
+    for (int i = 0; i < 2 * Scrapes::kMost; ++i) output.submit(scrape);
+    for (int i = 0; i < 2 * Loops::kMost; ++i) output.submit(rub);
+  }
+  return output.note();
+}
 
 sync::HostTime at_block(int n) { return sync::host_time(kStart_ns + std::llround(n * 128e9 / kRate)); }
 
@@ -88,4 +129,31 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   play(20);
   CHECK(outcome_of(4) == presentation_t::PRESENTED);
   CHECK(output.callbacks() > played + 15);  // counted over both
+}
+
+TEST_CASE("However long the card's periods are, no contact that is told of is lost on the way to the callback") {
+  Settings settings;
+  settings.spatial = "stereo";
+  for (const auto& [rate_Hz, period_frames, latency_periods] : {std::tuple{48000., 128, 2.},
+                                                                {48000., 4096, 2.},
+                                                                {48000., 4096, 8.},
+                                                                {8000., 4096, 8.},
+                                                                {48000., 1024, 4.}}) {
+    settings.sample_rate_Hz = rate_Hz, settings.period_frames = period_frames;
+    settings.latency_periods = latency_periods;
+    CAPTURE(rate_Hz, period_frames, latency_periods);
+    CHECK_THAT(note_after_telling(settings), !Catch::Contains("lost"));
+  }
+  // Where they are told all the same every tick, health says what has been lost.
+  settings.sample_rate_Hz = 48000, settings.period_frames = 4096;
+  CHECK_THAT(note_after_telling(settings, sync::Nanoseconds(0)), Catch::Contains(" states of contacts lost"));
+}
+
+TEST_CASE("Reports that nobody takes are counted when there is no room for more") {
+  Output output(".", "", 0, [](const StreamOptions&, Card::Render) -> std::unique_ptr<Card> { return {}; });
+  for (std::int64_t id = 0; id < 1030; ++id) output.drop(id, {});
+  CHECK_THAT(output.note(), Catch::Contains("6 reports of hits lost"));
+  std::int64_t taken = 0;
+  while (output.next_report()) ++taken;
+  CHECK(taken == 1024);
 }

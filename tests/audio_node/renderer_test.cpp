@@ -192,3 +192,12 @@ TEST_CASE("What never sounds is reported when the stream is given up") {
   REQUIRE(bench->reports.size() == 2);
   for (const presentation_t& r : bench->reports) CHECK(r.outcome == presentation_t::DROPPED_LATE);
 }
+
+TEST_CASE("A report that does not fit is counted") {
+  auto bench = std::make_unique<Bench>();
+  while (bench->crossing.reports.push({})) continue;
+  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 20, kStart_ns + 1'000'000)));
+  std::vector<float> block(2 * 480);
+  bench->renderer.render(block.data(), 480, {sync::host_time(kStart_ns), {}, {}});
+  CHECK(bench->crossing.reports_lost == 1);
+}

@@ -208,3 +208,32 @@ TEST_CASE(
   CHECK(loudest < kLoudest);
   CHECK(freed + l.line.take_unread().size() == kScenes);
 }
+
+TEST_CASE(
+    "An end for which there was no room is told when there is, unless its contact goes on; lost states are "
+    "counted") {
+  auto crossing = std::make_unique<Crossing>();
+  ScrapeLine line(*crossing);
+  const auto tell = [&](std::int64_t id, bool ends) {
+    Scrape s;
+    s.id = id, s.ends = ends;
+    return line.submit(s);
+  };
+  while (tell(1, false)) continue;
+  CHECK(line.lost() == 1);
+  CHECK_FALSE(tell(1, true));
+  CHECK_FALSE(tell(2, true));
+  CHECK_FALSE(tell(2, false));  // it goes on
+  CHECK(line.lost() == 2);
+  line.tell_ends();  // there is no room yet
+  std::int64_t next = 0;
+  for (Scrape s; crossing->scrapes.pop(s);) CHECK(s.number == next++);
+  line.tell_ends();
+  line.tell_ends();
+  Scrape end;
+  REQUIRE(crossing->scrapes.pop(end));
+  CHECK(end.ends);
+  CHECK(end.id == 1);
+  CHECK(end.number == next);
+  CHECK_FALSE(crossing->scrapes.pop(end));
+}

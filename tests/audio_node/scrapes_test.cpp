@@ -261,3 +261,15 @@ TEST_CASE("More contacts than there is room for leave those that are heard alone
   CHECK(scrapes->active() == Scrapes::kMost);
   CHECK(scrapes->force(0) != nullptr);
 }
+
+TEST_CASE("One that is told of rarely goes on until it is told anew") {
+  const ReliefLevels relief(make_relief(waves(), rough()));
+  const auto tell = [&](double ms) {
+    Scrape s = along_x(&relief, 0.1, ms);
+    s.over_s = 0.088;
+    return s;
+  };
+  const Rubbed r = rub(tell, 900, 900, 88);
+  const double steady = rms(rub(tell, 900, 900).force, 0.4, 0.9);
+  for (double t = 0.4; t < 0.86; t += 0.02) CHECK(rms(r.force, t, t + 0.02) > 0.5 * steady);
+}

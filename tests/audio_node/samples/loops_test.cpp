@@ -155,3 +155,40 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
   }
   CHECK(loops.active() == Loops::kMost);
 }
+
+TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {
+  const Layers l = layers({{1, 400}});
+  Sliding s;
+  const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1; };
+  s.play(kSecond, tell);
+  const std::size_t ended = s.left.size();
+  const auto end = [](Rub& r) { r.ends = true; };
+  s.play(2, end);  // told twice, it ends no later
+  s.play(kSecond / 10, nullptr);
+  const auto over = ended + static_cast<std::size_t>(Loops::kEnd_s * kRate);
+  CHECK(s.most(over - 48, over) > 0.01f);  // halfway it is heard
+  CHECK(s.most(over, s.left.size()) == 0);
+  CHECK(s.loops.active() == 0);
+  // The wave's own slope, and that of a level that falls from 0.1 within 96 samples.
+  CHECK(s.steepest(ended) <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
+
+  SECTION("and one that begins again before it was silent goes on from where it is") {
+    Sliding again;
+    again.play(kSecond, tell);
+    again.play(1, end);
+    again.play(kSecond, tell);
+    CHECK(again.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
+    CHECK(again.most(again.left.size() - 4800, again.left.size()) == Approx(0.1).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
+  const Layers l = layers({{1, 400}});
+  Sliding s;
+  for (int i = 0; i < 10; ++i) {
+    const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
+    s.play(1, tell);
+    s.play(65, nullptr);  // 88 ms in all
+  }
+  for (std::size_t n = 24000; n + 480 < s.left.size(); n += 480) CHECK(s.most(n, n + 480) > 0.09f);
+}

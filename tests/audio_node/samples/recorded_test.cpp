@@ -118,3 +118,103 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   callback.let_go(none);
   CHECK(library.step().size() == 1);
 }
+
+namespace {
+
+// A library and a callback that is called by hand, with one folder of recordings, or two by turns.
+struct Lent {
+  SoundFolder one, two;
+  RecordedCrossing crossing;
+  Recorded callback{crossing, 48000};
+  Scheduler none{1};
+  Library library{crossing};
+  std::size_t given_back = 0;
+  Lent() {
+    one.write("oak/impact/1.wav", tone(300, 0.1));
+    two.write("oak/impact/1.wav", tone(300, 0.1));
+  }
+  // Until all that is to be read has been.
+  void read(bool heard = true) {
+    for (std::int64_t spins = 0; library.reading() && spins < 2'000'000'000; ++spins) {
+      given_back += library.step(heard).size();
+      std::this_thread::yield();
+    }
+    REQUIRE_FALSE(library.reading());
+    given_back += library.step(heard).size();
+  }
+  void want(const std::string& method, const SoundFolder& folder) {
+    Settings settings;
+    settings.method = method, settings.sounds = folder.path();
+    library.configure(settings);
+  }
+  void call() {
+    callback.take_databases();
+    callback.let_go(none);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("When contacts are computed again the recordings are given back, and read again when they are wanted") {
+  Lent l;
+  l.want("samples", l.one);
+  l.read();
+  l.call();
+  REQUIRE(l.library.database());
+  l.want("modal", l.one);
+  CHECK(l.library.step().empty());  // the callback may still play them
+  CHECK_FALSE(l.library.database());
+  l.call();
+  CHECK(l.library.step().size() == 1);
+  l.want("both", l.one);
+  l.read();
+  CHECK(l.library.database());
+
+  SECTION("and so are some that are still being read then") {
+    l.want("both", l.two);
+    l.library.step();
+    l.want("modal", l.two);
+    for (std::int64_t spins = 0; l.library.reading() && spins < 2'000'000'000; ++spins) {
+      l.given_back += l.library.step().size();
+      l.call();
+    }
+    l.call();
+    l.given_back += l.library.step().size();
+    CHECK_FALSE(l.library.database());
+    CHECK(l.given_back == 2);
+  }
+}
+
+TEST_CASE("Without a card recordings are given back as soon as others replace them") {
+  Lent l;
+  for (std::size_t i = 0; i < 40; ++i) {
+    l.want("samples", i % 2 ? l.two : l.one);
+    l.read(false);
+    REQUIRE(l.library.database());
+    CHECK(l.given_back == i);
+  }
+  // A callback that comes then plays the newest.
+  Recorded callback(l.crossing, 48000);
+  callback.take_databases();
+  callback.let_go(l.none);
+  l.want("modal", l.one);
+  l.library.step();
+  callback.take_databases();
+  callback.let_go(l.none);
+  CHECK(l.library.step().size() == 1);
+}
+
+TEST_CASE("A callback that stands still makes no more than four databases wait") {
+  Lent l;
+  for (std::size_t i = 0; i < 20; ++i) {
+    l.want("samples", i % 2 ? l.two : l.one);
+    l.read();
+  }
+  // Two that it might play, one that is told, one that is next.
+  CHECK(l.given_back == 16);
+  CHECK(l.library.number() == 3);
+  l.call();
+  CHECK(l.library.step().size() == 2);
+  l.library.step();
+  CHECK(l.library.number() == 4);
+}

@@ -202,7 +202,8 @@ TEST_CASE(
   CHECK(rubs[0].database == 5);
   CHECK(rubs[0].speed_m_s == Approx(0.2));
   // The root of the power that friction takes: 0.5 * 4 N * 0.2 m/s.
-  CHECK(static_cast<double>(rubs[0].level) == Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
+  CHECK(static_cast<double>(rubs[0].level) ==
+        Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
   CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
   CHECK(w.sampler.modal_of(12, Interaction::kScrape) == 1);
   // No recording of rolling: it is computed.
@@ -222,6 +223,29 @@ TEST_CASE("What rests under load and jitters does not scrape, neither as recorde
     REQUIRE(rubs.empty());
     REQUIRE(w.sampler.modal_of(11, Interaction::kScrape) == 0);
   }
+}
+
+TEST_CASE("A recorded contact that ends or comes to rest ends once") {
+  World w(with("samples"));
+  int ms = 0;
+  const auto rubs = [&](const sync::Contacts& all) {
+    return w.sampler.rubs(all, sync::host_time(1'000'000 * ++ms));
+  };
+  const auto scrape = [&] {
+    for (int i = 0; i < 100; ++i) rubs({sliding(0.2, 0, 4)});
+  };
+  const auto ends_in = [&](const sync::Contacts& all) {
+    const auto told = rubs(all);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].ends);
+    CHECK(told[0].contact == 11);
+    CHECK(told[0].database == 5);
+    CHECK(rubs(all).empty());
+  };
+  scrape();
+  ends_in({});
+  scrape();
+  ends_in({sliding(0, 0, 4)});
 }
 
 TEST_CASE("Of more contacts than can be heard at a time the loudest are played, and the others computed") {

@@ -1,0 +1,27 @@
+#include "audio_node/samples/rub_line.h"
+
+#include "audio_node/samples/loops.h"
+
+namespace tactus::audio {
+namespace {
+
+// Design: four times what is heard at a time; what is older has faded by itself.
+constexpr std::size_t kMostOwed = 4 * Loops::kMost;
+
+}  // namespace
+
+bool RubLine::submit(const Rub& rub) {
+  std::erase_if(owed_, [&](const Rub& end) { return end.contact == rub.contact && end.part == rub.part; });
+  tell_ends();
+  if (queue_.push(rub)) return true;
+  if (!rub.ends) return ++lost_, false;
+  owed_.push_back(rub);
+  if (owed_.size() > kMostOwed) owed_.pop_front(), ++lost_;
+  return false;
+}
+
+void RubLine::tell_ends() {
+  while (!owed_.empty() && queue_.push(owed_.front())) owed_.pop_front();
+}
+
+}  // namespace tactus::audio
