@@ -105,19 +105,32 @@ void Voices::bring_back(Voice& v) const {
     v.rendered = v.kept = allowed(v);
 }
 
+// It begins when it does and is as strong as it is; only its place on the body becomes that of the strongest that
+// has room, which is where most of the force is. One that finds none is masked by the 80 humps that push.
+void Voices::join(Voice& v, const Pulse& blow) {
+  Pulse* into = nullptr;
+  for (Pulse& p : v.pulses)
+    if (has_room(p.humps, -p.begin) && (!into || std::abs(p.impulse) > std::abs(into->impulse))) into = &p;
+  if (!into) return;
+  if (into->impulse == 0) {
+    *into = blow;
+    return;
+  }
+  audio::join(into->humps, -into->begin, blow.humps, blow.begin - into->begin, blow.impulse / into->impulse);
+  into->end = length_of(into->humps);
+}
+
 void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset) {
   if (side.voice < 0) return;
   Voice& v = voice_of(side.voice, side.resonators, side.place);
   v.place = side.place;
   bring_back(v);
   const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), [](const Pulse& p) { return p.on; });
-  if (free != v.pulses.end()) {
-    *free = {true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
-  } else {
-    std::max_element(v.pulses.begin(), v.pulses.end(), [](const Pulse& a, const Pulse& b) {
-      return a.begin < b.begin;
-    })->impulse += gain * side.impulse;
-  }
+  const Pulse blow{true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
+  if (free != v.pulses.end())
+    *free = blow;
+  else
+    join(v, blow);
   float response = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i) response += std::abs(side.gains[i]);
   v.expected = gain * (std::abs(side.impulse) * response + std::abs(side.click));

@@ -59,7 +59,7 @@ class Voices {
   static constexpr int kDrives = 32;
 
  private:
-  static constexpr int kPulses = 16;  // of one voice at a time; more are merged into the newest
+  static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
   // Voices that fade while others sound: so many may be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
   // Of what is cut. Shorter is heard as a click (design).
@@ -115,6 +115,7 @@ class Voices {
   void end_cut(Voice& voice) const;
   void render(Voice& voice, int frames);
   void fade(Fade& fade, float* samples, int frames) const;
+  static void join(Voice& voice, const Pulse& blow);
   static void collect(Voice& voice, int frames, Pushes& pushes, float* out);
   void resonate(Voice& voice, int from, int to, int frames, const Pushes& pushes, float* out) const;
 
