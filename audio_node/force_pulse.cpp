@@ -15,6 +15,8 @@ float raised_cosine(int i, int n) {
          static_cast<float>(n);
 }
 
+bool is_free(const Hump& h, int sample) { return h.samples <= 0 || h.begin + h.samples <= sample; }
+
 }  // namespace
 
 float weight_at(const ForcePulse& pulse, int sample) {
@@ -22,6 +24,25 @@ float weight_at(const ForcePulse& pulse, int sample) {
   for (const Hump& h : pulse)
     if (h.samples > 0) sum += h.share * raised_cosine(sample - h.begin, h.samples);
   return sum;
+}
+
+bool has_room(const ForcePulse& pulse, int sample) {
+  return std::any_of(pulse.begin(), pulse.end(), [&](const Hump& h) { return is_free(h, sample); });
+}
+
+void join(ForcePulse& pulse, int sample, const ForcePulse& other, int later, float strength) {
+  Hump* first = nullptr;
+  for (const Hump& h : other) {
+    if (h.samples <= 0) continue;
+    const auto free =
+        std::find_if(pulse.begin(), pulse.end(), [&](const Hump& of) { return is_free(of, sample); });
+    if (free != pulse.end()) {
+      *free = {h.begin + later, h.samples, strength * h.share};
+      if (!first) first = &*free;
+    } else if (first) {
+      first->share += strength * h.share;
+    }
+  }
 }
 
 int length_of(const ForcePulse& pulse) {

@@ -21,4 +21,11 @@ float weight_at(const ForcePulse& pulse, int sample);
 // Samples from the onset until it is over.
 int length_of(const ForcePulse& pulse);
 
+// Whether one more can join it: some hump is none, or over before that sample after the onset.
+bool has_room(const ForcePulse& pulse, int sample);
+// Another one, `strength` as strong, that begins `later` samples after the onset of this one and not before
+// `sample`: both are felt in full. Of the other's humps what finds no room comes with its first one. Nothing
+// happens without room for any.
+void join(ForcePulse& pulse, int sample, const ForcePulse& other, int later, float strength);
+
 }  // namespace tactus::audio

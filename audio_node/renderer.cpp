@@ -118,9 +118,11 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
   Strike strike;
   while (crossing_.strikes.pop(strike))
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
-  for (int done = 0; done < frames; done += kMaxBlock)
-    render_some(out + channels_ * done, std::min(kMaxBlock, frames - done),
-                {time.first_sample + samples(done), time.uncertainty, {}});
+  for (int done = 0; done < frames;) {
+    const int some = next_block(frames - done);
+    render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
+    done += some;
+  }
   let_go_of_scrapes();
   recorded_.let_go(scheduler_);
 }

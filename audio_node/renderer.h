@@ -85,6 +85,10 @@ struct RendererDef {
   std::int64_t (*clock_ns)() = nullptr;  // to tell costs by; null: nobody asks
 };
 
+// How many of the frames that are left are rendered next: blocks as even as can be, since what goes over within a
+// block would leap in one of a single frame.
+constexpr int next_block(int frames_left) { return frames_left / ((frames_left + kMaxBlock - 1) / kMaxBlock); }
+
 // Same strikes, same blocks, same times: the same samples to the bit.
 class Renderer {
  public:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "audio_node/bank/ring.h"
+#include "audio_node/glide.h"
 #include "audio_node/spatial/spatialiser.h"
 #include "audio_node/strike.h"
 
@@ -30,8 +31,9 @@ struct Drive {
 
 // A fixed number of voices, each one body, whose modes ring in bank/ring.h. Striking or driving a voice that
 // sounds adds a force and leaves its state alone. When all voices are in use, the weakest gives way; it fades, as
-// does all that lower limits cut. The modes of a body are summed before it is heard from its place. Realtime-safe:
-// yes, all but the constructor.
+// does all that lower limits cut. The modes of a body are summed before it is heard from its place. That is where
+// its newest contact is; what rings goes there by a turn a second (glide.h), unless the blow drowns it.
+// Realtime-safe: yes, all but the constructor.
 class Voices {
  public:
   // As many voices as no limit will exceed.
@@ -59,7 +61,7 @@ class Voices {
   static constexpr int kDrives = 32;
 
  private:
-  static constexpr int kPulses = 16;  // of one voice at a time; more are merged into the newest
+  static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
   // Voices that fade while others sound: so many may be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
   // Of what is cut. Shorter is heard as a click (design).
@@ -91,7 +93,8 @@ class Voices {
     std::array<Push, kDrives> drives;
     std::array<const float*, kDrives> directs;
     int driven = 0;
-    Place place;
+    Place place;         // of the newest contact
+    Place heard;         // on its way there
     int silent = 0;      // frames since the last of which something came
     float expected = 0;  // level that the last pulse will give
     float level = 0;  // largest sum of amplitudes of the last block; while a pulse is on, what is expected besides
@@ -115,12 +118,14 @@ class Voices {
   void end_cut(Voice& voice) const;
   void render(Voice& voice, int frames);
   void fade(Fade& fade, float* samples, int frames) const;
+  static void join(Voice& voice, const Pulse& blow);
   static void collect(Voice& voice, int frames, Pushes& pushes, float* out);
   void resonate(Voice& voice, int from, int to, int frames, const Pushes& pushes, float* out) const;
 
   VoiceLimits limits_;
   Ring ring_;
   float fade_step_;  // a sample
+  float glide_step_rad_;
   std::vector<Voice> voices_;
   Spatialiser spatialiser_;
   std::optional<Listener> listener_;

@@ -21,9 +21,15 @@ constexpr double kCalibration_s = 20e-6;
 
 double DacClock::offset_s(const CallbackTime& t) {
   const double now = sync::to_seconds(t.now - base_), offset = now - t.current_s;
-  const bool jumped = calibrated_ && std::abs(offset - std::min(minimum_s_, older_minimum_s_)) > kMostLatency_s;
-  if (!calibrated_ || jumped) {
-    minimum_s_ = older_minimum_s_ = offset;
+  const double best = std::min(minimum_s_, older_minimum_s_);
+  const bool jumped = calibrated_ && std::abs(offset - best) > kMostLatency_s;
+  // A callback may be late, but not so many in a row: PortAudio's clock has gone back, which no minimum sees.
+  late_minimum_s_ = late_ > 0 ? std::min(late_minimum_s_, offset) : offset;
+  late_ = offset - best > kOutlier_s ? late_ + 1 : 0;
+  const bool went_back = late_ >= kOutliersToReseed;
+  if (!calibrated_ || jumped || went_back) {
+    minimum_s_ = older_minimum_s_ = went_back && !jumped ? late_minimum_s_ : offset;
+    late_ = 0;
     window_end_s_ = now + kWindow_s;
     calibrated_ = true;
   }

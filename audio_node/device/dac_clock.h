@@ -14,7 +14,8 @@ struct CallbackTime {
   bool underflow = false;
 };
 
-// Offset of PortAudio's clock: running minimum of (now - current), since the callback can only be late. The times
+// Offset of PortAudio's clock: running minimum of (now - current), since the callback can only be late; begun anew
+// when that clock steps, to either side, by more than a callback is late. The times
 // of successive blocks are smoothed by a second-order delay-locked loop (Adriaensen, "Using a DLL to filter time",
 // Linux Audio Conference 2005) and begun anew after an underflow or a jump. Realtime-safe: yes.
 class DacClock {
@@ -43,6 +44,9 @@ class DacClock {
   // Two windows of minima, so that an old minimum is forgotten when the two clocks drift.
   double minimum_s_ = 0, older_minimum_s_ = 0, window_end_s_ = 0;
   bool calibrated_ = false;
+  // Calls in a row that came late by the minimum, and the least late of them.
+  int late_ = 0;
+  double late_minimum_s_ = 0;
   double next_s_ = 0;     // predicted time of the next block since base_
   double period_ = 1;     // host seconds per nominal second
   double square_s2_ = 0;  // mean square of the residual

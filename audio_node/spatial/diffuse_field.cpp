@@ -1,8 +1,10 @@
 #include "audio_node/spatial/diffuse_field.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace tactus::audio {
 namespace {
@@ -12,26 +14,38 @@ constexpr std::size_t kBins = 512;  // of the spectrum, around the circle
 // noise to lift.
 constexpr double kMost = 1.73;  // 15 dB, as a natural logarithm; design
 
+constexpr double kLeastPower = 1e-15;  // far below any response's: that of silence is no logarithm
+
+// Its spectrum is the mean of the powers, at a fraction of what a spectrum of each takes.
+std::vector<double> mean_autocorrelation(const std::vector<std::vector<float>>& responses,
+                                         const std::vector<double>& weights) {
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::vector<double> mean(responses.front().size());
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    const Eigen::Map<const Eigen::VectorXf> x(responses[i].data(), static_cast<Eigen::Index>(responses[i].size()));
+    for (Eigen::Index lag = 0; lag < x.size(); ++lag) {
+      const auto product = static_cast<double>(x.head(x.size() - lag).dot(x.tail(x.size() - lag)));
+      mean[static_cast<std::size_t>(lag)] += weights[i] / all * product;
+    }
+  }
+  return mean;
+}
+
 }  // namespace
 
-std::vector<float> diffuse_field_inverse(const std::vector<std::vector<float>>& responses, int taps) {
+std::vector<float> diffuse_field_inverse(const std::vector<std::vector<float>>& responses,
+                                         const std::vector<double>& weights, int taps) {
+  const std::vector<double> correlation = mean_autocorrelation(responses, weights);
   std::vector<double> cosine(kBins);
   for (std::size_t i = 0; i < kBins; ++i)
     cosine[i] = std::cos(2 * std::numbers::pi * static_cast<double>(i) / kBins);
-  const auto sine = [&](std::size_t i) { return cosine[(i + kBins * 3 / 4) % kBins]; };
   std::vector<double> inverse(kBins / 2 + 1);  // logarithm of its magnitude
   double middle = 0;
   for (std::size_t k = 0; k < inverse.size(); ++k) {
-    double power = 1e-12;
-    for (const auto& response : responses) {
-      double re = 0, im = 0;
-      for (std::size_t n = 0; n < response.size(); ++n) {
-        const auto x = static_cast<double>(response[n]);
-        re += x * cosine[k * n % kBins], im += x * sine(k * n % kBins);
-      }
-      power += re * re + im * im;
-    }
-    inverse[k] = -0.5 * std::log(power / static_cast<double>(responses.size()));
+    double power = 0;
+    for (std::size_t lag = 0; lag < correlation.size(); ++lag)
+      power += (lag > 0 ? 2 : 1) * correlation[lag] * cosine[k * lag % kBins];
+    inverse[k] = -0.5 * std::log(std::max(power, kLeastPower));
     middle += inverse[k] / static_cast<double>(inverse.size());
   }
   for (double& x : inverse) x = std::clamp(x, middle - kMost, middle + kMost);

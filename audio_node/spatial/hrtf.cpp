@@ -21,7 +21,6 @@ using std::numbers::pi;
 // levels in octaves stay within 1 dB of the whole response's.
 constexpr double kLength_s = 0.0023;
 constexpr double kEqualised_s = 0.001;  // as finely as bands of 1 kHz. Design.
-constexpr std::size_t kOneIn = 4;       // of the directions: enough for a mean
 constexpr int kUncut = 2;               // as many lengths are equalised, before the rest is cut off
 constexpr int kFade = 16;               // of its last samples
 
@@ -53,10 +52,15 @@ std::vector<Aligned> align_all(const MeasuredHrtf& m, double rate_Hz, int taps) 
 }
 
 // What all have in common goes: it would colour every sound, and headphones bring their own.
-void equalise(std::vector<Aligned>& all, double rate_Hz) {
-  std::vector<std::vector<float>> some;
-  for (std::size_t i = 0; i < all.size(); i += kOneIn) some.push_back(all[i].left), some.push_back(all[i].right);
-  const auto inverse = diffuse_field_inverse(some, static_cast<int>(kEqualised_s * rate_Hz));
+void equalise(std::vector<Aligned>& all, const std::vector<Vector3d>& directions, double rate_Hz) {
+  const std::vector<double> parts = solid_angles(directions);
+  std::vector<std::vector<float>> responses;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    responses.push_back(all[i].left), responses.push_back(all[i].right);
+    weights.insert(weights.end(), 2, parts[i]);
+  }
+  const auto inverse = diffuse_field_inverse(responses, weights, static_cast<int>(kEqualised_s * rate_Hz));
   for (Aligned& a : all)
     for (std::vector<float>* filter : {&a.left, &a.right}) {
       const std::vector<float> before = *filter;
@@ -121,7 +125,7 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
   if (hull.empty())
     throw std::runtime_error("the directions of the HRTF file lie in one plane; choose another hrtf_file");
   std::vector<Aligned> aligned = align_all(m, rate_Hz, kUncut * taps_);
-  equalise(aligned, rate_Hz);
+  equalise(aligned, m.directions, rate_Hz);
   cut(aligned, taps_);
   const auto n = static_cast<std::size_t>(taps_);
   filters_.resize(static_cast<std::size_t>(kAzimuths * kElevations) * 2 * n);

@@ -98,4 +98,16 @@ std::vector<Triangle> convex_hull(const std::vector<Vector3d>& points) {
   return hull.triangles();
 }
 
+std::vector<double> solid_angles(const std::vector<Vector3d>& directions) {
+  std::vector<double> all(directions.size());
+  for (const Triangle& t : convex_hull(directions)) {
+    const auto at = [&](std::size_t k) { return directions[static_cast<std::size_t>(t[k])].normalized(); };
+    const Vector3d a = at(0), b = at(1), c = at(2);
+    // Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983, eq. 8.
+    const double whole = 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+    for (const int k : t) all[static_cast<std::size_t>(k)] += whole / 3;
+  }
+  return all;
+}
+
 }  // namespace tactus::audio

@@ -14,4 +14,8 @@ using Triangle = std::array<int, 3>;
 // triangles, the same each time. Empty when all lie in one plane.
 std::vector<Triangle> convex_hull(const std::vector<Eigen::Vector3d>& points);
 
+// The part of the sphere that each direction stands for, steradian: a third of each triangle around it. A
+// direction that is told twice shares it with itself. All 0 where there is no hull.
+std::vector<double> solid_angles(const std::vector<Eigen::Vector3d>& directions);
+
 }  // namespace tactus::audio

@@ -128,3 +128,25 @@ TEST_CASE("Stalls with underflows, each begun by a callback that is late, leave 
   }
   CHECK(clock.reseeds() == 6);
 }
+
+TEST_CASE("PortAudio's clock may step, forwards or backwards, and the time of a sample stays known") {
+  const double step_s = GENERATE(-0.99, -0.5, -0.02, -0.004, 0.004, 0.5, 0.99, -3.0, 3.0);
+  CAPTURE(step_s);
+  Card card;
+  DacClock clock(48000);
+  for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
+  card.pa_offset_s += step_s;
+  double worst = 0;
+  bool covered = true;
+  for (int block = 0; block < 4000; ++block) {
+    const double truth = card.out_s();
+    const auto e = clock.block(128, card.next(128), 0.008);
+    const double error = static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth;
+    worst = std::max(worst, std::abs(error));
+    covered &= std::abs(error) <= sync::to_seconds(e.uncertainty) + kSample_s / 2;
+  }
+  // One callback calibrates a step beyond a second, the least late of eight one below: 30 us each in the mean, 0.2
+  // ms seldom, of which the loop passes on a few per cent until the minimum is found again.
+  CHECK(worst < 2 * kSample_s);
+  CHECK(covered);
+}

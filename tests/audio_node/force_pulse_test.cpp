@@ -40,3 +40,26 @@ TEST_CASE("Blows that follow the first come when they are said to, and all share
     CHECK(weight_at(both, 2) == Approx(weight_at({Hump{0, 4, 0.5f}}, 2) + weight_at({Hump{2, 4, 0.5f}}, 2)));
   }
 }
+
+TEST_CASE("A force that joins another is felt in full beside it, from its own beginning") {
+  const ForcePulse first{Hump{0, 40, 0.8f}, {60, 20, 0.2f}}, other{Hump{0, 30, 0.7f}, {35, 10, 0.3f}};
+  ForcePulse both = first;
+  REQUIRE(has_room(both, 20));
+  join(both, 20, other, 22, 0.5f);
+  CHECK(length_of(both) == 80);
+  for (int i = 20; i < 90; ++i)
+    CHECK(weight_at(both, i) == Approx(weight_at(first, i) + 0.5f * weight_at(other, i - 22)).margin(1e-7));
+  SECTION("in place of what is over, and where that is too little at once") {
+    join(both, 20, one_hump(50), 30, 1);
+    REQUIRE_FALSE(has_room(both, 20));
+    const ForcePulse full = both;
+    join(both, 20, other, 25, 1);
+    CHECK(sum(both) == sum(full));
+    // At 41 the first hump alone is over.
+    REQUIRE(has_room(both, 41));
+    join(both, 41, other, 45, 0.5f);
+    for (int i = 41; i < 100; ++i)
+      CHECK(weight_at(both, i) ==
+            Approx(weight_at(full, i) + 0.5f * weight_at(one_hump(30), i - 45)).margin(1e-7));
+  }
+}

@@ -201,3 +201,46 @@ TEST_CASE("A report that does not fit is counted") {
   bench->renderer.render(block.data(), 480, {sync::host_time(kStart_ns), {}, {}});
   CHECK(bench->crossing.reports_lost == 1);
 }
+
+TEST_CASE("A callback of more than half a block is cut into blocks of half of the most at least") {
+  for (int frames = 1; frames <= 4096; ++frames) {
+    CAPTURE(frames);
+    int left = frames, least = kMaxBlock, most = 0;
+    while (left > 0) {
+      const int block = next_block(left);
+      REQUIRE(block > 0);
+      least = std::min(least, block), most = std::max(most, block);
+      left -= block;
+    }
+    REQUIRE(left == 0);
+    REQUIRE(most <= kMaxBlock);
+    REQUIRE(least >= std::min(frames, kMaxBlock / 2));
+  }
+}
+
+TEST_CASE("A callback of any length has no block so short that a sound leaps to its new side") {
+  const int frames = GENERATE(33, 63, 65, 67, 129, 191, 193, 257, 1000, 1025, 2049, 4095);
+  CAPTURE(frames);
+  const double f = 440, w = 2 * pi * f / kRate;
+  auto bench = std::make_unique<Bench>();
+  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, 0, kStart_ns + 5'000'000)));
+  while (bench->left.size() < 2000) bench->play(frames);
+  const std::size_t from = bench->left.size();
+  const double gain = *std::max_element(bench->left.begin(), bench->left.end());
+  // Blows of nothing on the last sample of each callback, from the right and the left in turn.
+  for (std::int64_t i = 0; i < 8; ++i) {
+    const std::size_t last = bench->left.size() + static_cast<std::size_t>(frames + Limiter::kDelay) - 1;
+    Strike turned = strike_of(2 + i, 1, f, 0, bench->time_ns(last), 0);
+    if (i % 2 == 0) turned.sides[0].place.direction = -Eigen::Vector3f::UnitY();
+    REQUIRE(bench->crossing.strikes.push(turned));
+    bench->play(frames);
+  }
+  bench->play(frames);
+  double bend = 0;
+  for (std::size_t n = from; n + 1 < bench->left.size(); ++n) {
+    const auto at = [&](std::size_t k) { return static_cast<double>(bench->left[k]); };
+    bend = std::max(bend, std::abs(at(n + 1) - 2 * at(n) + at(n - 1)));
+  }
+  // At worst the side is left within 32 samples: a corner of 1/32, and twice that times the slope of the tone.
+  CHECK(bend < (w * w + 1.0 / 32 + 2 * w / 32) * gain);
+}

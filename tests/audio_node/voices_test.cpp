@@ -131,3 +131,31 @@ TEST_CASE("More contacts than a body can hear at a time leave it whole") {
   for (const float x : mix) CHECK(std::isfinite(x));
   CHECK(body.voices.active() == 1);
 }
+
+TEST_CASE("Eighty blows on one body at a time push it as they do one by one") {
+  const auto blow = [](std::int64_t voice, int i) {
+    StrikeSide side = strike_of(0, voice, 40, 5, 0, 0.01f * (1 + static_cast<float>(i % 7))).sides[0];
+    side.click = 0.3f * side.impulse;
+    return side;
+  };
+  Voices one(8, kRate, kRing), many(8, kRate, kRing);
+  std::vector<float> of_one, of_many;
+  // One begins every 11 samples and lasts for 1500: in the end all of them push. The last is one too many.
+  for (int i = 0, block = 0; block < 60; ++block) {
+    for (; i < 81 && 11 * i < (block + 1) * kMaxBlock; ++i) {
+      one.strike(blow(0, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
+      if (i < 80) many.strike(blow(i / 16, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
+    }
+    for (auto [voices, heard] : {std::pair(&one, &of_one), std::pair(&many, &of_many)}) {
+      std::vector<float> mix(2 * kMaxBlock);
+      voices->render(mix.data(), kMaxBlock);
+      for (std::size_t n = 0; n < kMaxBlock; ++n) heard->push_back(mix[2 * n]);
+    }
+  }
+  float most = 0, off = 0;
+  for (std::size_t n = 0; n < of_one.size(); ++n)
+    most = std::max(most, std::abs(of_many[n])), off = std::max(off, std::abs(of_one[n] - of_many[n]));
+  CAPTURE(most, off);
+  REQUIRE(most > 0.1f);
+  CHECK(off < 1e-5f * most);  // single precision
+}

@@ -50,3 +50,23 @@ TEST_CASE("Directions in one plane have no hull") {
   CHECK(convex_hull(ring).empty());
   CHECK(convex_hull({Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()}).empty());
 }
+
+TEST_CASE("Directions stand for the parts of the sphere around them, all of it together") {
+  const double pi = std::numbers::pi;
+  std::vector<Vector3d> axes;
+  for (int i = 0; i < 3; ++i)
+    for (const double sign : {-1.0, 1.0}) axes.push_back(sign * Vector3d::Unit(i));
+  for (const double part : solid_angles(axes)) CHECK(part == Approx(4 * pi / 6));
+  SECTION("one that is told twice shares its part with itself") {
+    axes.push_back(axes[3]);
+    const auto parts = solid_angles(axes);
+    for (const std::size_t i : {0, 1, 2, 4, 5}) CHECK(parts[i] == Approx(4 * pi / 6).epsilon(1e-5));
+    CHECK(parts[3] + parts[6] == Approx(4 * pi / 6).epsilon(1e-5));
+  }
+  SECTION("and the measured ones") {
+    const auto directions = test::kemar().directions;
+    double sum = 0;
+    for (const double part : solid_angles(directions)) sum += part;
+    CHECK(sum == Approx(4 * pi).epsilon(1e-6));
+  }
+}

@@ -239,3 +239,72 @@ TEST_CASE("A place that is no number is heard from ahead") {
   CHECK(heard.left == ahead.left);
   CHECK(heard.right == ahead.right);
 }
+
+namespace {
+
+// A body that rings at 440 Hz for ever and is struck from the left; then from elsewhere.
+struct Restruck {
+  Voices voices;
+  Heard heard;
+
+  explicit Restruck(const Space& space) : voices(4, kRate, kRing, space, available_instructions().back()) {}
+  void strike(const Eigen::Vector3f& from, float distance_m, float impulse) {
+    StrikeSide side = strike_of(1, 1, 440, 0, 0, impulse).sides[0];
+    side.place = {from, distance_m};
+    side.place.source_m = distance_m * from;
+    voices.strike(side, 1, one_hump(1), 0);
+  }
+  void play(int blocks) {
+    for (int b = 0; b < blocks; ++b) {
+      std::vector<float> out(2 * kMaxBlock);
+      voices.render(out.data(), kMaxBlock);
+      for (std::size_t n = 0; n < kMaxBlock; ++n) {
+        heard.left.push_back(static_cast<double>(out[2 * n]));
+        heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+      }
+    }
+  }
+  // Over the last 10 ms.
+  double left_over_right() const {
+    const std::size_t from = heard.left.size() - 480;
+    return largest(heard.left, from) / largest(heard.right, from);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A body that rings and is struck elsewhere goes there without a click") {
+  const Space space = GENERATE(Space{ears(), nullptr}, Space{},
+                               Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
+  const bool in_world = GENERATE(false, true);
+  const float distance_m = GENERATE(1.f, 3.f);
+  Restruck body(space);
+  if (in_world) body.voices.hear_from({});
+  body.strike(towards(80), 1, 0.1f);
+  body.play(20);
+  CHECK(body.left_over_right() > 1.5);
+  // A blow of nothing, so that there is no other sound than the one that moves.
+  body.strike(towards(-80), distance_m, 0);
+  body.play(400);  // 0.53 s: half a turn takes 0.5 s
+  const double w = 2 * std::numbers::pi * 440 / kRate;
+  const double gain = std::max(largest(body.heard.left, kSettled), largest(body.heard.right, kSettled));
+  CHECK(std::max(largest_bend(body.heard.left, kSettled), largest_bend(body.heard.right, kSettled)) <
+        (w * w + 1e-3) * gain);
+  CHECK(body.left_over_right() < 1 / 1.5);
+  Restruck there(space);
+  there.strike(towards(-80), distance_m, 0.1f);
+  there.play(400);
+  // Over the last 10 ms, 4.4 periods, in which its phase may differ.
+  CHECK(largest(body.heard.right, 20 * kMaxBlock + 25120) ==
+        Approx(largest(there.heard.right, 25120)).epsilon(0.01));
+}
+
+TEST_CASE("A blow that drowns what rings is heard from its own place at once") {
+  const Space space = GENERATE(Space{ears(), nullptr}, Space{});
+  Restruck body(space);
+  body.strike(towards(80), 1, 0.001f);
+  body.play(20);
+  body.strike(towards(-80), 1, 0.1f);
+  body.play(8);  // 480 frames, and what it takes through the filters
+  CHECK(body.left_over_right() < 1 / 1.5);
+}
