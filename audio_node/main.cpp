@@ -137,7 +137,7 @@ int main(int argc, char** argv) try {
   };
   configure({});
   const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
-  std::int64_t hits = 0;
+  std::int64_t hits = 0, dropped = 0;
   audio::DueHits due;
   const auto drop = [&](const contact_event_t& event, sync::HostTime scheduled) { output.drop(event.event_id, scheduled); };
 
@@ -185,6 +185,7 @@ int main(int argc, char** argv) try {
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
+    output.allow(sense.delay());
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
     if (scene.scene()) output.hear_from(ear.at(now + output.latency()));
     while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
@@ -244,6 +245,7 @@ int main(int argc, char** argv) try {
     while (const auto report = output.next_report()) {
       sense.report(*report);
       node.count_rendered(report->presented_ns >= 0 ? 1 : 0);
+      dropped += report->outcome == presentation_t::DROPPED_LATE || report->outcome == presentation_t::DROPPED_BY_PROFILE;
     }
     while (const auto pair = output.next_pair()) publish_pair(node.bus(), output.medium(), *pair);
     sense.publish(now);
@@ -264,8 +266,10 @@ int main(int argc, char** argv) try {
     node.set_quality(output.quality(), static_cast<int>(audio::kQualities.size()));
     node.override_ticks(output.callbacks(), output.underflows(), output.callback_rate_Hz());
   }
-  if (offline)
-    std::cerr << kAudio.node << ": " << offline->result(output.settings().sample_rate_Hz, hits, sync::host_now()) << std::endl;
+  if (offline) {
+    const std::string result = offline->result(output.settings().sample_rate_Hz, hits, dropped, sync::host_now());
+    std::cerr << kAudio.node << ": " << result << std::endl;
+  }
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("audio_node", e);

@@ -31,7 +31,7 @@ class Offline {
   std::optional<std::string> progress(sync::HostTime now, sync::HostTime clock);
   // The file gets its name; before, there is none. What came of it, in lines. Throws std::runtime_error with one
   // sentence when nothing was played or the disk does not take it.
-  std::string result(double rate_Hz, std::int64_t hits, sync::HostTime clock);
+  std::string result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock);
 
  private:
   static constexpr sync::Nanoseconds kRingOn{1'000'000'000};  // design

@@ -191,7 +191,7 @@ std::optional<presentation_t> Output::next_report() {
 }
 
 std::optional<std::string> Output::news() {
-  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ : trouble_;
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + too_slow() : trouble_;
   if (now == told_) return std::nullopt;
   return told_ = std::move(now);
 }
@@ -200,7 +200,13 @@ std::string Output::note() const {
   if (!stream_) return (trouble_.empty() ? "sound card not opened yet" : trouble_) + losses();
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + costs() + hearing() + losses();
+         " underflows" + costs() + hearing() + losses() + too_slow();
+}
+
+std::string Output::too_slow() const {
+  if (!delay_ || latency() <= *delay_ + sync::from_seconds(settings_.late_limit_s)) return "";
+  return ", too slowly for the delay of sound: most blows come too late to be heard; make period_frames or "
+         "latency_periods smaller, or the delay longer";
 }
 
 std::string Output::losses() const {

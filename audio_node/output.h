@@ -28,6 +28,9 @@ class Output {
   // dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
+  // Once a tick: how long after its event a sound is due. A card that takes so much longer that every blow would be
+  // dropped is told of in note() and news().
+  void allow(sync::Nanoseconds delay) { delay_ = delay; }
   // Once a tick: what is wrong with the output on purpose.
   void degrade(const DropoutDef& dropout);
 
@@ -75,6 +78,8 @@ class Output {
   std::string costs() const;
   // What ears have had, and by how much it is turned down for them, in words; empty while nothing has sounded.
   std::string hearing() const;
+  // Of a card that is too slow for its delay, in words; empty: it is not.
+  std::string too_slow() const;
   // What did not fit, in words; empty while nothing has been lost.
   std::string losses() const;
   // Step of the quality ladder in use.
@@ -89,6 +94,7 @@ class Output {
   int fifo_priority_;
   Settings settings_, opened_with_;
   std::string trouble_, medium_, told_;
+  std::optional<sync::Nanoseconds> delay_;
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
   // The stream's callback owns its share of both.

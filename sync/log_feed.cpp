@@ -30,8 +30,10 @@ LogFeed::LogFeed(const std::string& path, double rate_Hz)
   if (whole_.events() == 0)
     throw std::runtime_error(path + " is no LCM log, or holds not one intact event; give the run.lcmlog of a run");
   if (!told)
-    throw std::runtime_error(
-        path + " does not say which run it is (no LOG_INFO); give a run.lcmlog that scripts/run wrote");
+    throw std::runtime_error(path +
+                             " does not say which run it is (its LOG_INFO is missing or damaged); give a "
+                             "run.lcmlog that scripts/run wrote, whole "
+                             "at its beginning");
   // The first is that of the run's name.
   for (std::size_t i = 1; i < ages.size(); ++i)
     if (ages[i].events < kFewestOfARun) damaged_ages_.push_back(ages[i]);

@@ -1,6 +1,9 @@
 #include "audio_node/device/file_card.h"
 
+#include <fcntl.h>
 #include <sndfile.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
@@ -27,13 +30,21 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
       ahead_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
       block_(static_cast<std::size_t>(options.period_frames * options.channels)),
       file_(nullptr, sf_close) {
+  // Of two that render into one file the second is refused; who dies lets go.
+  lock_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ >= 0 && part_ != wav_ && flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    close(std::exchange(lock_, -1));
+    throw std::runtime_error("another program is writing " + part_ + "; choose another --wav");
+  }
   SF_INFO info{};
   info.samplerate = options.rate_Hz;
   info.channels = options.channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
   file_.reset(sf_open(part_.c_str(), SFM_WRITE, &info));
-  if (!file_)
+  if (!file_) {
+    if (lock_ >= 0) close(lock_);
     throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
+  }
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
 }
@@ -42,6 +53,7 @@ FileCard::~FileCard() {
   file_.reset();
   std::error_code ignored;
   if (!finished_ && part_ != wav_) std::filesystem::remove(part_, ignored);
+  if (lock_ >= 0) close(lock_);
 }
 
 void FileCard::finish() {
@@ -71,7 +83,7 @@ void FileCard::play_until(sync::HostTime now) {
     // How long rendering took depends on the machine: not told, so the quality is full, or what the setting says.
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
-      throw std::runtime_error("cannot write on in " + wav_ + " (" + sf_strerror(file_.get()) +
+      throw std::runtime_error("cannot go on in " + wav_ + " (" + sf_strerror(file_.get()) +
                                "); free some disk or choose another --wav");
     ++blocks_;
   }

@@ -44,6 +44,7 @@ class FileCard : public Card {
 
   std::string wav_, part_, card_ = "file";
   bool finished_ = false;
+  int lock_ = -1;
   Render render_;
   int rate_Hz_, period_frames_;
   sync::Nanoseconds ahead_;

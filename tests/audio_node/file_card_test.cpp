@@ -52,3 +52,19 @@ TEST_CASE("A rendering that does not come to its end leaves no file that looks w
     CHECK(static_cast<std::int64_t>(std::filesystem::file_size(wav)) > card.frames() * 8);
   }
 }
+
+TEST_CASE("Of two renderings into one file the second is refused, and may follow when the first has ended") {
+  const Folder folder;
+  const std::string wav = folder.path + "/out.wav";
+  {
+    FileCard first({}, wav, silence);
+    CHECK_THROWS_WITH(FileCard({}, wav, silence), Catch::Contains("another program is writing"));
+    first.play_until(sync::host_time(kStart_ns));
+    first.finish();
+  }
+  const auto size = std::filesystem::file_size(wav);
+  FileCard second({}, wav, silence);
+  second.play_until(sync::host_time(kStart_ns));
+  second.finish();
+  CHECK(std::filesystem::file_size(wav) == size);
+}

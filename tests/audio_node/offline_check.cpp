@@ -208,3 +208,27 @@ TEST_CASE("A damaged log is rendered as far as it is intact, and the damage is c
   CHECK_THAT(done.said, Catch::Contains("2 regions"));
   CHECK(mono_of(folder.file("a.wav")).size() > 14 * kRate);
 }
+
+TEST_CASE("A log is not written over by its own sound, by whatever name") {
+  const Folder folder;
+  record(folder.file("run.lcmlog"));
+  std::filesystem::create_symlink(folder.file("run.lcmlog"), folder.file("sound.wav"));
+  const std::string before = bytes_of(folder.file("run.lcmlog"));
+  for (const char* wav : {"run.lcmlog", "sound.wav"}) {
+    const Done done = render(folder, {"--log", folder.file("run.lcmlog"), "--wav", folder.file(wav)});
+    CHECK(done.status == 1);
+    CHECK_THAT(done.said, Catch::Contains("is the log itself"));
+  }
+  CHECK(bytes_of(folder.file("run.lcmlog")) == before);
+}
+
+TEST_CASE("A card that is too slow for its delay is said, with the blows that nobody hears") {
+  const Folder folder;
+  record(folder.file("run.lcmlog"));
+  const Done done = render(
+      folder, {"--log", folder.file("run.lcmlog"), "--wav", folder.file("a.wav"), "--set", "period_frames=4096"});
+  CAPTURE(done.said);
+  CHECK(done.status == 0);
+  CHECK_THAT(done.said, Catch::Contains("too slowly for the delay of sound"));
+  CHECK_THAT(done.said, Catch::Contains("40 hits (40 of them not heard"));
+}
