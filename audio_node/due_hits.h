@@ -2,6 +2,7 @@
 // (peak.h); the others keep the time that they are due at. Pure.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <tactus/contact_event_t.hpp>
 #include <utility>
@@ -13,7 +14,14 @@ namespace tactus::audio {
 
 class DueHits {
  public:
-  void push(const contact_event_t& event, sync::HostTime scheduled) { hits_.emplace(scheduled, event); }
+  static constexpr std::size_t kMost = 1024;  // design: half a second of work, and no flood makes it more
+
+  // False when there are too many already: it is not kept.
+  bool push(const contact_event_t& event, sync::HostTime scheduled) {
+    if (hits_.size() >= kMost) return false;
+    hits_.emplace(scheduled, event);
+    return true;
+  }
 
   // sound(event, scheduled) for those that are due first, the first of them in any case and then as long as
   // goes_on() says so; drop(event, scheduled) for each that has become so late that the policy drops it.

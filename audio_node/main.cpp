@@ -197,7 +197,8 @@ int main(int argc, char** argv) try {
       for (const contact_event_t& event : contacts.take_events(map->to_sim(now + kEarly))) {
         if (event.kind != contact_event_t::HIT) continue;
         ++hits;
-        due.push(event, sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns))));
+        const sync::HostTime scheduled = sense.schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
+        if (!due.push(event, scheduled)) drop(event, scheduled);
       }
     }
     if (impacts && sampler) {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -10,6 +11,8 @@
 
 namespace tactus::audio {
 namespace {
+
+constexpr std::uintmax_t kMostBytes = 65536;  // design: far more than kMostChannels rows take
 
 // In the order of channels of a WAV file; some cards want another, which a file of one's own gives.
 const std::map<std::string, std::string>& built_in() {
@@ -88,6 +91,11 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
 Layout load_layout(const std::string& name_or_path) {
   if (const auto known = built_in().find(name_or_path); known != built_in().end())
     return parse_layout(known->second, name_or_path);
+  // A scene may name it: what has no end is not read.
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(name_or_path, none) ||
+      std::filesystem::file_size(name_or_path, none) > kMostBytes)
+    refuse(name_or_path, "cannot be read");
   std::ifstream file(name_or_path);
   std::stringstream text;
   if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");

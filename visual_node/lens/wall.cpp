@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -21,6 +22,7 @@ constexpr const char* kColumns =
 constexpr double kSquare = 1e-3;
 constexpr double kLeastSide_m = 0.01;
 constexpr std::size_t kMostWalls = 16;
+constexpr std::uintmax_t kMostBytes = 65536;  // design: far more than so many walls take
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
   throw std::runtime_error("the room " + name + " " + why +
@@ -96,6 +98,11 @@ Room parse_room(const std::string& csv, const std::string& name) {
 Room load_room(const std::string& name_or_path) {
   if (const std::string_view known = room_text(name_or_path + ".csv"); !known.empty())
     return parse_room(std::string(known), name_or_path);
+  // A scene may name it: what has no end is not read.
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(name_or_path, none) ||
+      std::filesystem::file_size(name_or_path, none) > kMostBytes)
+    refuse(name_or_path, "cannot be read");
   std::ifstream file(name_or_path);
   std::stringstream text;
   if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");

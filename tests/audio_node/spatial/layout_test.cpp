@@ -28,6 +28,7 @@ TEST_CASE("The layouts that are known by name have their channels") {
 
 TEST_CASE("A layout that cannot be used is refused with a sentence that says why") {
   CHECK_THROWS_WITH(load_layout("/nowhere/room.csv"), Contains("/nowhere/room.csv cannot be read; choose stereo"));
+  CHECK_THROWS_WITH(load_layout("/dev/zero"), Contains("/dev/zero cannot be read"));  // it has no end
   CHECK_THROWS_WITH(parse_layout("", "room.csv"),
                     Contains("begin with the line channel,azimuth_deg,elevation_deg"));
   CHECK_THROWS_WITH(parse_layout(kHead, "room.csv"), Contains("has no loudspeaker"));
