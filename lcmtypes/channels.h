@@ -21,6 +21,7 @@ inline constexpr const char* kSyncReport = "SYNC_REPORT";        // sync_report_
 inline constexpr const char* kClockProbe = "CLOCK_PROBE";        // clock_probe_t
 inline constexpr const char* kClockMap = "CLOCK_MAP";            // clock_map_t
 inline constexpr const char* kMediaClock = "MEDIA_CLOCK";        // media_clock_t
+inline constexpr const char* kFrameShown = "FRAME_SHOWN";        // frame_shown_t
 inline constexpr const char* kPlayout = "PLAYOUT";               // playout_t
 inline constexpr const char* kPlayoutRequest = "PLAYOUT_REQUEST";  // playout_request_t
 inline constexpr const char* kDegradation = "DEGRADATION";       // degradation_t
@@ -36,6 +37,7 @@ inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, 
 inline constexpr const char* kSceneManifest = "SCENE_MANIFEST";  // scene_manifest_t
 inline constexpr const char* kAssetRequest = "ASSET_REQUEST";    // asset_request_t
 inline constexpr const char* kAssetChunk = "ASSET_CHUNK";        // asset_chunk_t
+inline constexpr const char* kPictureChunk = "PICTURE_CHUNK";    // picture_chunk_t
 
 // One Ethernet frame less the headers of IP, UDP and LCM: nothing is fragmented, nothing half lost.
 inline constexpr std::size_t kMaxMessageBytes = 1400;

@@ -98,8 +98,8 @@ bool sane(const tool_constraint_t& c) {
   return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
 }
 bool sane(const playout_entry_t& e) {
-  return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) && between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) &&
-         between(e.needs_ns, -1, kMaxDelay_ns);
+  return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) &&
+         between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) && between(e.needs_ns, -1, kMaxDelay_ns);
 }
 bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
@@ -124,7 +124,7 @@ bool sane(const input_health_t& i) {
 bool sane(const pair_report_t& p) {
   return p.n >= 0 && p.uncertainty_ns >= 0 && p.beyond_least >= -1 && p.beyond_all >= -1;
 }
-bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SDF); }
+bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SHADER); }
 bool sane_bump(const material_def_t& m) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (m.bump_asset == 0) return sane(m.bump_size_u_m) && sane(m.bump_size_v_m) && sane(m.bump_height_m);
@@ -135,10 +135,11 @@ bool sane_bump(const material_def_t& m) {
 bool sane_friction_map(const material_def_t& m) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (m.friction_asset == 0)
-    return sane(m.friction_size_u_m) && sane(m.friction_size_v_m) && sane(m.friction_black) && sane(m.friction_white);
+    return sane(m.friction_size_u_m) && sane(m.friction_size_v_m) && sane(m.friction_black) &&
+           sane(m.friction_white);
   return within(m.friction_size_u_m, kMinBumpSize_m, kMaxBumpSize_m) &&
-         within(m.friction_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) && within(m.friction_black, 0, kMaxFrictionFactor) &&
-         within(m.friction_white, 0, kMaxFrictionFactor);
+         within(m.friction_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) &&
+         within(m.friction_black, 0, kMaxFrictionFactor) && within(m.friction_white, 0, kMaxFrictionFactor);
 }
 bool sane(const measured_mode_t& m) {
   return m.frequency_Hz >= kMinModeFrequency_Hz && m.frequency_Hz <= kMaxModeFrequency_Hz && m.damping_1_s > 0 &&
@@ -163,6 +164,15 @@ bool sane(const visual_def_t& v) {
   return sane(v.ambient) && sane(v.diffuse) && sane(v.specular) && sane(v.emissive) &&
          sane_not_negative(v.shininess) && sane_not_negative(v.alpha);
 }
+bool identifier(const std::string& text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  return !text.empty() && text.size() <= 64 && letter(text.front()) &&
+         std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+bool sane(const uniform_t& u) {
+  return identifier(u.name) && between(u.count, 1, 4) &&
+         std::all_of(u.values, u.values + 4, [](float x) { return sane(x); });
+}
 bool sane(const light_def_t& l) {
   return between(l.kind, light_def_t::POINT, light_def_t::SPOT) && sane(l.pose) && unit(l.direction) &&
          sane(l.diffuse) && sane(l.specular) && sane_not_negative(l.range_m) && sane(l.attenuation_constant) &&
@@ -170,6 +180,15 @@ bool sane(const light_def_t& l) {
          sane_not_negative(l.inner_angle_rad) && sane_not_negative(l.outer_angle_rad) &&
          sane_not_negative(l.falloff);
 }
+bool sane_uniforms(const std::vector<uniform_t>& list) {
+  return std::all_of(list.begin(), list.end(), [](const uniform_t& u) { return sane(u); });
+}
+bool sane(const look_t& l) {
+  return name(l.name) && (l.shader.empty() || name(l.shader)) && l.reflectance >= 0 && l.reflectance <= 1 &&
+         sane_uniforms(l.uniforms);
+}
+bool sane(const pass_t& p) { return name(p.shader) && sane_uniforms(p.uniforms); }
+bool sane(const shader_t& s) { return name(s.name) && s.fragment_asset != 0; }
 bool sane(const waypoint_t& w) { return sane_not_negative(w.time_s) && sane(w.position_m); }
 
 template <class List>
@@ -263,10 +282,18 @@ bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
          between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);
 }
+bool valid(const frame_shown_t& m) {
+  return sane(m.header) && m.frame >= 0 && clock_time(m.due_ns) && m.head_ns >= -1 &&
+         between(m.stage, frame_shown_t::READY, frame_shown_t::SHOWN);
+}
+bool valid(const picture_chunk_t& m) {
+  return sane(m.header) && m.picture >= 0 && m.width > 0 && m.height > 0 && page_of(m.chunk, m.chunks) &&
+         between(m.size, 1, 1024);
+}
 bool valid(const thermal_device_t& m) {
   const auto temperature = [](double degC) { return degC >= -273.15 && degC <= 1000; };
-  return sane(m.header) && m.tool >= 0 && temperature(m.plate_degC) && temperature(m.sink_degC) && sane(m.current_A) &&
-         sane(m.voltage_V) && between(m.state, thermal_device_t::OK, thermal_device_t::FAULT);
+  return sane(m.header) && m.tool >= 0 && temperature(m.plate_degC) && temperature(m.sink_degC) &&
+         sane(m.current_A) && sane(m.voltage_V) && between(m.state, thermal_device_t::OK, thermal_device_t::FAULT);
 }
 bool valid(const thermal_state_t& m) {
   return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&
@@ -302,6 +329,14 @@ bool valid(const mesh_t& m) {
     if (!sane(x)) return false;
   for (float x : m.normals)
     if (!sane(x)) return false;
+  const std::int64_t vertices = m.vertex_floats / 3;
+  if ((m.texcoord_floats != 0 && m.texcoord_floats != 2 * vertices) ||
+      (m.tangent_floats != 0 && m.tangent_floats != 4 * vertices))
+    return false;
+  for (float x : m.texcoords)
+    if (!sane(x)) return false;
+  for (float x : m.tangents)
+    if (!sane(x)) return false;
   for (int i : m.indices)
     if (!between(i, 0, m.vertex_floats / 3 - 1)) return false;
   return true;
@@ -316,15 +351,18 @@ bool valid(const scene_t& m) {
   for (const shape_def_t& s : m.shapes)
     if (!sane(s, m.body_count, m.material_count)) return false;
   for (const visual_def_t& v : m.visuals)
-    if (!sane(v.shape, m.body_count, m.material_count) || !sane(v)) return false;
+    if (!sane(v.shape, m.body_count, m.material_count) || !sane(v) || !between(v.look, -1, m.look_count - 1))
+      return false;
   for (const tool_def_t& t : m.tools)
     if (!between(t.body, 0, m.body_count - 1) || !between(t.shape, tool_def_t::BALL, tool_def_t::MESH) ||
         !sane_not_negative(t.radius_m) || !sane_not_negative(t.size_m.x) || !sane_not_negative(t.size_m.y) ||
         !sane_not_negative(t.size_m.z) || !finite_positive(t.mass_kg) ||
         !between(t.material, -1, m.material_count - 1) || !all_sane(t.waypoints))
       return false;
-  return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) && sane(m.camera) &&
-         sane_not_negative(m.camera_fov_rad) && m.profile.size() <= kMaxProfileBytes && sane(m.ambient) && sane(m.background) && sane(m.listener);
+  return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) &&
+         all_sane(m.looks) && all_sane(m.shaders) && all_sane(m.passes) && sane(m.camera) &&
+         sane_not_negative(m.camera_fov_rad) && m.profile.size() <= kMaxProfileBytes && sane(m.ambient) &&
+         sane(m.background) && sane(m.listener);
 }
 
 }  // namespace tactus

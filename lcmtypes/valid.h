@@ -12,11 +12,13 @@
 #include <tactus/degraded_t.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
+#include <tactus/frame_shown_t.hpp>
 #include <tactus/game_state_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/mesh_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
 #include <tactus/playout_request_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
@@ -46,11 +48,13 @@ bool valid(const degradation_t&);
 bool valid(const degraded_t&);
 bool valid(const device_force_t&);
 bool valid(const device_state_t&);
+bool valid(const frame_shown_t&);
 bool valid(const game_state_t&);
 bool valid(const log_info_t&);
 bool valid(const media_clock_t&);
 bool valid(const mesh_t&);
 bool valid(const node_health_t&);
+bool valid(const picture_chunk_t&);
 bool valid(const playout_t&);
 bool valid(const playout_request_t&);
 bool valid(const presented_t&);

@@ -58,6 +58,7 @@ shape_def_t to_message(const ShapeDef& shape, const Hashes& hashes) {
 
 visual_def_t to_message(const VisualDef& visual, const Hashes& hashes) {
   visual_def_t m{};
+  m.look = -1;
   m.shape = to_message(visual.shape, hashes);
   m.ambient = to_vec3f(visual.ambient), m.diffuse = to_vec3f(visual.diffuse);
   m.specular = to_vec3f(visual.specular), m.emissive = to_vec3f(visual.emissive);

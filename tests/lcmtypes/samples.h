@@ -209,6 +209,15 @@ class Samples {
     m.medium = name(), m.index = whole(0, 99), m.host_time_ns = whole(0, 99),
     m.reason = static_cast<std::int8_t>(whole(0, 2));
   }
+  void fill(frame_shown_t& m) {
+    fill(m.header), m.frame = whole(0, 99), m.due_ns = whole(0, 99), m.head_ns = whole(-1, 99);
+    m.stage = static_cast<std::int8_t>(whole(0, 1));
+  }
+  void fill(picture_chunk_t& m) {
+    fill(m.header), m.picture = whole(0, 99), m.width = m.height = 8, m.chunks = whole(1, 9), m.chunk = whole(0, m.chunks - 1);
+    m.size = whole(1, 1024);
+    m.data.assign(static_cast<std::size_t>(m.size), 7);
+  }
   void fill(degradation_t& m) {
     fill(m.header), fill_page(m);
     m.generation = whole(0, 99), m.start_sim_ns = whole(0, 99), m.hash = whole(0, 99), m.size = whole(0, 999);
@@ -276,6 +285,8 @@ class Samples {
     m.positions_m.resize(static_cast<std::size_t>(m.vertex_floats)), m.normals.resize(m.positions_m.size());
     for (float& x : m.positions_m) fill(x);
     for (float& x : m.normals) fill(x);
+    if (whole(0, 1)) m.texcoord_floats = 2 * vertices, m.texcoords.assign(static_cast<std::size_t>(2 * vertices), single(0, 1));
+    if (whole(0, 1)) m.tangent_floats = 4 * vertices, m.tangents.assign(static_cast<std::size_t>(4 * vertices), single(0, 1));
     m.index_count = 3 * whole(0, 20);
     for (int i = 0; i < m.index_count; ++i) m.indices.push_back(whole(0, vertices - 1));
   }
@@ -298,7 +309,19 @@ class Samples {
   }
   void fill(visual_def_t& v) {
     fill(v.shape), fill(v.ambient), fill(v.diffuse), fill(v.specular), fill(v.emissive);
-    v.shininess = single(1, 90), v.alpha = single(0, 1);
+    v.shininess = single(1, 90), v.alpha = single(0, 1), v.look = -1;
+  }
+  void fill(uniform_t& u) {
+    u.name = name(), u.count = static_cast<std::int8_t>(whole(1, 4));
+    for (float& x : u.values) fill(x);
+  }
+  void fill(look_t& l) {
+    l.name = name(), l.shader = name(), l.colour_map = whole(0, 9), l.normal_map = whole(0, 9), l.reflectance = single(0, 1);
+    fill_list(l.uniform_count, l.uniforms, 0, 3);
+  }
+  void fill(pass_t& p) { p.shader = name(), fill_list(p.uniform_count, p.uniforms, 0, 3); }
+  void fill(shader_t& s) {
+    s.name = name(), s.fragment_asset = whole(1, 9), s.vertex_asset = whole(0, 9), s.fragment_file = name();
   }
   void fill(light_def_t& l) {
     l.name = name(), l.kind = static_cast<std::int8_t>(whole(0, 2)), fill(l.pose), fill_unit(l.direction);
@@ -317,6 +340,8 @@ class Samples {
     fill_list(m.body_count, m.bodies, 1, 5);
     for (int i = 0; i < m.body_count; ++i) m.bodies[static_cast<std::size_t>(i)].id = i;
     fill_list(m.shape_count, m.shapes, 0, 4), fill_list(m.visual_count, m.visuals, 0, 4);
+    fill_list(m.look_count, m.looks, 0, 3), fill_list(m.shader_count, m.shaders, 0, 2);
+    fill_list(m.pass_count, m.passes, 0, 2), m.environment_asset = whole(0, 9);
     fill_list(m.material_count, m.materials, 0, 3), fill_list(m.light_count, m.lights, 0, 3);
     fill_list(m.tool_count, m.tools, 0, 2), fill_list(m.setting_count, m.settings, 0, 3);
     fill(m.camera), m.camera_fov_rad = 1, m.profile = name(), fill(m.ambient), fill(m.background), fill(m.listener);

@@ -38,6 +38,7 @@ inline int add_body(scene_t& scene, const Eigen::Vector3d& position) {
 
 inline void add_visual(scene_t& scene, int body, int kind, const Eigen::Vector3d& size) {
   visual_def_t v{};
+  v.look = -1;
   v.shape.body = body;
   v.shape.pose = at(0, 0, 0);
   v.shape.kind = static_cast<std::int8_t>(kind);
