@@ -1,13 +1,12 @@
 #include "audio_node/spatial/layout.h"
 
-#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
+
+#include "sync/csv.h"
 
 namespace tactus::audio {
 namespace {
@@ -38,37 +37,18 @@ const std::map<std::string, std::string>& built_in() {
                            "; choose stereo, quad, 5.1, cube or another layout_file");
 }
 
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::vector<std::string> cells(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> all(1);
-  for (const char c : line)
-    if (c == ',')
-      all.emplace_back();
-    else
-      all.back() += c;
-  return all;
-}
-
 }  // namespace
 
 Layout parse_layout(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
-  if (cells(line) != std::vector<std::string>{"channel", "azimuth_deg", "elevation_deg"})
+  if (sync::csv_cells(line) != std::vector<std::string>{"channel", "azimuth_deg", "elevation_deg"})
     refuse(name, "does not begin with the line channel,azimuth_deg,elevation_deg");
   Layout layout;
   bool any = false;
   while (std::getline(lines, line)) {
-    const std::vector<std::string> row = cells(line);
+    const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(layout.size() + 1);
     if (row.size() != 3) refuse(name, "has in its " + which + " not three columns");
@@ -76,7 +56,7 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
       layout.push_back(std::nullopt);
       continue;
     }
-    const auto azimuth = number(row[1]), elevation = number(row[2]);
+    const auto azimuth = sync::csv_number(row[1]), elevation = sync::csv_number(row[2]);
     if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90)
       refuse(name, "has in its " + which + " no azimuth of -360 to 360 and elevation of -90 to 90 degrees");
     const double a = *azimuth * std::numbers::pi / 180, e = *elevation * std::numbers::pi / 180;
@@ -91,15 +71,9 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
 Layout load_layout(const std::string& name_or_path) {
   if (const auto known = built_in().find(name_or_path); known != built_in().end())
     return parse_layout(known->second, name_or_path);
-  // A scene may name it: what has no end is not read.
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(name_or_path, none) ||
-      std::filesystem::file_size(name_or_path, none) > kMostBytes)
-    refuse(name_or_path, "cannot be read");
-  std::ifstream file(name_or_path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");
-  return parse_layout(text.str(), name_or_path);
+  const auto text = sync::read_small_file(name_or_path, kMostBytes);
+  if (!text) refuse(name_or_path, "cannot be read");
+  return parse_layout(*text, name_or_path);
 }
 
 }  // namespace tactus::audio

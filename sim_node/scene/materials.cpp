@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim_node/materials_csv.gen.h"
+#include "sync/csv.h"
 #include "sync/settings.h"
 
 namespace tactus::sim {
@@ -28,21 +29,6 @@ constexpr std::array<MaterialFigure, 11> kFigures{{
     {"temperature_degC", "temperature", "degC", -50, 100, &M::temperature_degC},
 }};
 
-// Cells of a line; a cell in double quotes may hold commas.
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else if (c != '\r')
-      cells.back() += c;
-  }
-  return cells;
-}
-
 }  // namespace
 
 std::span<const MaterialFigure> material_figures() { return kFigures; }
@@ -55,7 +41,7 @@ std::vector<material_def_t> parse_materials(std::string_view csv) {
     const std::string_view line = csv.substr(0, end);
     csv.remove_prefix(end == std::string_view::npos ? csv.size() : end + 1);
     if (line.empty()) continue;
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = sync::csv_cells(line);
     if (header.empty()) {
       header = cells;
       continue;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "sync/csv.h"
 #include "visual_node/lens/room_text.h"
 
 namespace tactus::visual {
@@ -29,24 +27,13 @@ constexpr std::uintmax_t kMostBytes = 65536;  // design: far more than so many w
                            "; choose desk, cave4, cave6 or another file of walls");
 }
 
-std::vector<std::string> cells(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> all(1);
-  for (const char c : line)
-    if (c == ',')
-      all.emplace_back();
-    else
-      all.back() += c;
-  return all;
-}
-
 template <std::size_t kCount>
 std::optional<std::array<double, kCount>> numbers(const std::vector<std::string>& row) {
   std::array<double, kCount> all{};
   for (std::size_t i = 0; i < kCount; ++i) {
-    const std::string& text = row[i + 1];
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), all[i]);
-    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(all[i])) return {};
+    const auto number = sync::csv_number(row[i + 1]);
+    if (!number) return {};
+    all[i] = *number;
   }
   return all;
 }
@@ -66,11 +53,12 @@ Room parse_room(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
-  if (cells(line) != cells(kColumns)) refuse(name, std::string("does not begin with the line ") + kColumns);
+  if (sync::csv_cells(line) != sync::csv_cells(kColumns))
+    refuse(name, std::string("does not begin with the line ") + kColumns);
   Room room;
   bool has_eye = false;
   while (std::getline(lines, line)) {
-    const std::vector<std::string> row = cells(line);
+    const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(room.walls.size() + 1);
     if (row.size() != 10) refuse(name, "has in its " + which + " not ten columns");
@@ -98,15 +86,9 @@ Room parse_room(const std::string& csv, const std::string& name) {
 Room load_room(const std::string& name_or_path) {
   if (const std::string_view known = room_text(name_or_path + ".csv"); !known.empty())
     return parse_room(std::string(known), name_or_path);
-  // A scene may name it: what has no end is not read.
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(name_or_path, none) ||
-      std::filesystem::file_size(name_or_path, none) > kMostBytes)
-    refuse(name_or_path, "cannot be read");
-  std::ifstream file(name_or_path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) refuse(name_or_path, "cannot be read");
-  return parse_room(text.str(), name_or_path);
+  const auto text = sync::read_small_file(name_or_path, kMostBytes);
+  if (!text) refuse(name_or_path, "cannot be read");
+  return parse_room(*text, name_or_path);
 }
 
 }  // namespace tactus::visual
