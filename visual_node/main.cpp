@@ -86,7 +86,9 @@ int main(int argc, char** argv) try {
       std::cerr << refused << "\n";
     std::vector<std::string> trouble;
     const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
-                                                  visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), trouble));
+                                                  visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), trouble),
+                                                  visual::look_files_of(scenes, trouble));
+    trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
     if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
     for (const std::string& sentence : trouble) say(sentence);
     stage.load(view, composer.frame(now, 0).list, settings);
@@ -126,6 +128,7 @@ int main(int argc, char** argv) try {
       continue;  // that took several ticks
     }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
+    for (const std::string& sentence : stage.take_trouble()) say(sentence);
     const bool fresh = stage.due(now, sense.output());
     if (fresh) draw(now, tick);
     sense.publish(sync::host_now());

@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
                                  visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said));
     if (!view.lens().trouble().empty()) throw std::runtime_error(view.lens().trouble());
     visual::Renderer renderer(edge, edge, settings.shadow_size);
-    renderer.load(view.geometries(), view.lighting(), view.reliefs());
+    renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
     renderer.draw_scene(view.draw(poses, {}));
     renderer.draw_over({});
     renderer.wait();

@@ -40,7 +40,7 @@ class Scenery {
       : settings_(sized(width, height, shadows)),
         view_(from.scene, from.meshes, settings_, from.height_maps),
         renderer_(view_.width(), view_.height(), settings_.shadow_size) {
-    renderer_.load(view_.geometries(), view_.lighting(), view_.reliefs());
+    renderer_.load(view_.geometries(), view_.lighting(), view_.reliefs(), view_.appearance());
     for (const body_def_t& body : from.scene.bodies) poses_.push_back(to_eigen(body.pose));
     renderer_.warm_up(view_.draw(poses_, {}));
   }

@@ -62,7 +62,7 @@ int main(int argc, char** argv) try {
   const visual::SceneView view(*scenes.scene(), visual::meshes_of(scenes), settings,
                                visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said));
   visual::Renderer renderer(view.width(), view.height(), settings.shadow_size);
-  renderer.load(view.geometries(), view.lighting(), view.reliefs());
+  renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& body : scenes.scene()->bodies) poses.push_back(to_eigen(body.pose));
   visual::DrawList list = view.draw(poses, {});

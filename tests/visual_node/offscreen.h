@@ -55,7 +55,7 @@ inline Image render(const scene_t& scene, const visual::Settings& settings = {},
   display();
   const visual::SceneView view(scene, {}, settings, height_maps);
   visual::Renderer renderer(kWidth, kHeight, settings.shadow_size);
-  renderer.load(view.geometries(), view.lighting(), view.reliefs());
+  renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   visual::DrawList list = view.draw(poses, {});

@@ -99,7 +99,7 @@ TEST_CASE("Scaled up, a picture has its own light up to its last pixel, whatever
   scene.ambient = grey(1);
   const SceneView view(scene, {}, {});
   Renderer renderer(kWidth, kHeight, 64);
-  renderer.load(view.geometries(), view.lighting(), view.reliefs());
+  renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   const std::vector<Eigen::Isometry3d> poses{Eigen::Isometry3d::Identity()};
   const DrawList list = view.draw(poses, {});
   DrawList dark;
@@ -116,7 +116,7 @@ TEST_CASE("Warming up changes no picture") {
   const scene_t scene = ball_over_floor();
   const SceneView view(scene, {}, {});
   Renderer renderer(kWidth, kHeight, Settings{}.shadow_size);
-  renderer.load(view.geometries(), view.lighting(), view.reliefs());
+  renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   const DrawList list = view.draw(poses, {});

@@ -12,7 +12,7 @@
 #include "offscreen.h"
 #include "visual_node/gl/buffers.h"
 #include "visual_node/gl/program.h"
-#include "visual_node/gl/shader_text.h"
+#include "visual_node/gl/shader_library.h"
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -26,9 +26,9 @@ uniform vec3 corner, along_x, along_y, outward, turn;
 out vec3 at;
 out vec3 facing;
 out vec4 shadow_at;
-flat out vec4 base;
-flat out vec4 shine;
-flat out vec3 bounce;
+flat out vec4 paint;
+flat out vec4 polish;
+flat out vec3 returned;
 flat out vec3 glow;
 out vec3 at_body;
 out vec3 facing_body;
@@ -46,13 +46,15 @@ void main() {
   at = body_axes * at_body;
   facing = body_axes * facing_body;
   shadow_at = vec4(0.0);
-  base = vec4(1.0);
-  shine = vec4(0.0, 0.0, 0.0, 1.0);
-  bounce = glow = vec3(0.0);
+  paint = vec4(1.0);
+  polish = vec4(0.0, 0.0, 0.0, 1.0);
+  returned = glow = vec3(0.0);
   gl_Position = vec4(2.0 * c - 1.0, 0.0, 1.0);
 }
 )";
-constexpr const char* kDefines = "#define LIGHTS 1\n#define LAMPS sum = n;\n#define SHADOWS 0\n#define RELIEF 1\n";
+constexpr const char* kDefines =
+    "#define LIGHTS 1\n#define LAMPS sum = n;\n#define SHADOWS 0\n#define RELIEF 1\n#define MAPPED 0\n#define COLOUR_MAP 0\n"
+    "#define NORMAL_MAP 0\n#define MIRROR 0\n#define GOURAUD 0\n";
 
 // A picture of floats.
 class FloatTarget {
@@ -158,7 +160,11 @@ HeightMap noise() {
 
 TEST_CASE("The normal that the hand feels is the picture's, within 1 degree over the whole map") {
   test::display();
-  const Program program("quad.vert", kQuad, "surface.frag", shader_text("surface.frag"), kDefines);
+  const ShaderLibrary library;
+  const Program program({{"quad.vert", kQuad}},
+                        {library.own("surface.glsl"), library.own("lamps.glsl"), library.own("shade.glsl"),
+                         library.own("phong.frag"), library.own("surface_end.frag")},
+                        kDefines);
   struct Case {
     std::string name;
     HeightMap map;

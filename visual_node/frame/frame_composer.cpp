@@ -38,12 +38,12 @@ FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync:
     : settings_(settings), contacts_(own), bodies_(own), head_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
-                                     const HeightMaps& height_maps) {
+                                     const HeightMaps& height_maps, LookFiles look_files) {
   settings_ = settings;
   scene_ = scene;
   head_tool_ = head_of(scene);
   head_.forget();
-  view_.emplace(scene, meshes, settings, height_maps);
+  view_.emplace(scene, meshes, settings, height_maps, std::move(look_files));
   flashes_ = Flashes(settings);
   ledger_.set(settings);
   return *view_;

@@ -47,7 +47,7 @@ class FrameComposer {
   }
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
   const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
-                        const HeightMaps& height_maps = {});
+                        const HeightMaps& height_maps = {}, LookFiles look_files = {});
 
   // The frame that begins now, number `number` of all. delay: what it shows happened so long before it is seen;
   // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.

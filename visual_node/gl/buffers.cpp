@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 
@@ -9,6 +10,9 @@ namespace tactus::visual {
 namespace {
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+// Behind those of struct Instance, as shaders/surface.vert has it.
+constexpr unsigned kPlaceAttribute = 2 + sizeof(Instance) / 16;
 
 void check_complete(const char* what) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -45,6 +49,24 @@ GeometryBuffer::GeometryBuffer(const Triangles& t)
     glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 2 * sizeof(Eigen::Vector3f),
                           offset(i * sizeof(Eigen::Vector3f)));
   }
+  if (!t.texcoords.empty()) {
+    std::vector<float> places;
+    places.reserve(6 * t.texcoords.size());
+    for (std::size_t i = 0; i < t.texcoords.size(); ++i) {
+      const Eigen::Vector4f tangent = t.tangents.empty() ? Eigen::Vector4f::Zero() : t.tangents[i];
+      places.insert(places.end(),
+                    {t.texcoords[i].x(), t.texcoords[i].y(), tangent.x(), tangent.y(), tangent.z(), tangent.w()});
+    }
+    glGenBuffers(1, &places_);
+    glBindBuffer(GL_ARRAY_BUFFER, places_);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)), places.data(),
+                 GL_STATIC_DRAW);
+    for (const unsigned i : {0u, 1u}) {
+      glEnableVertexAttribArray(kPlaceAttribute + i);
+      glVertexAttribPointer(kPlaceAttribute + i, i == 0 ? 2 : 4, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
+                            offset(2 * i * sizeof(float)));
+    }
+  }
   for (unsigned i = 2; i < 2 + sizeof(Instance) / 16; ++i) {
     glEnableVertexAttribArray(i);
     glVertexAttribDivisor(i, 1);
@@ -57,6 +79,7 @@ GeometryBuffer::GeometryBuffer(const Triangles& t)
 GeometryBuffer::~GeometryBuffer() {
   glDeleteVertexArrays(1, &array_);
   glDeleteBuffers(1, &vertices_);
+  glDeleteBuffers(1, &places_);
   glDeleteBuffers(1, &indices_);
 }
 
@@ -138,6 +161,42 @@ void PictureTarget::read(std::span<std::uint8_t> rgba) const {
   if (rgba.size() < static_cast<std::size_t>(width_ * height_ * 4)) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+
+MultisampleTarget::MultisampleTarget(int width, int height, int samples) {
+  int most = 1;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  samples_ = std::min(samples, most);
+  glGenFramebuffers(1, &framebuffer_);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  const auto attach = [&](unsigned& buffer, unsigned format, unsigned where) {
+    glGenRenderbuffers(1, &buffer);
+    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, format, width, height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
+  };
+  attach(colour_, GL_SRGB8_ALPHA8, GL_COLOR_ATTACHMENT0);
+  attach(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+  check_complete("picture of several samples a pixel");
+}
+
+MultisampleTarget::~MultisampleTarget() {
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteRenderbuffers(1, &colour_);
+  glDeleteRenderbuffers(1, &depth_);
+}
+
+void MultisampleTarget::bind(int width, int height) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, width, height);
+}
+
+void MultisampleTarget::resolve(const PictureTarget& picture, int width, int height) const {
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture.framebuffer());
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  picture.bind(width, height);
 }
 
 ShadowTarget::ShadowTarget(int size) : size_(size) {

@@ -35,7 +35,7 @@ class GeometryBuffer {
   bool two_sided() const { return two_sided_; }
 
  private:
-  unsigned array_ = 0, vertices_ = 0, indices_ = 0;
+  unsigned array_ = 0, vertices_ = 0, places_ = 0, indices_ = 0;
   int index_count_ = 0;
   bool two_sided_ = false;
 };
@@ -89,6 +89,24 @@ class PictureTarget {
 
  private:
   int width_, height_;
+  unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
+};
+
+// A picture with several samples a pixel, so that edges are smooth.
+class MultisampleTarget {
+ public:
+  // With so many samples, or the most that the device has.
+  MultisampleTarget(int width, int height, int samples);
+  ~MultisampleTarget();
+  MultisampleTarget(const MultisampleTarget&) = delete;
+  MultisampleTarget& operator=(const MultisampleTarget&) = delete;
+  int samples() const { return samples_; }
+  void bind(int width, int height) const;
+  // Each pixel of the picture becomes the mean of its samples, in linear light.
+  void resolve(const PictureTarget& picture, int width, int height) const;
+
+ private:
+  int samples_;
   unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
 };
 

@@ -12,13 +12,38 @@
 namespace tactus::visual {
 namespace {
 
-// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": string number and
-// line.
-std::string with_file(const std::string& log, const std::string& name) {
-  static const std::regex position(R"((^|\n)(ERROR: )?0[:(](\d+)\)?(\(\d+\))?\s*:)");
-  std::string text = std::regex_replace(log, position, "$1" + name + ":$3:");
+// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": number of the piece
+// and line.
+std::string with_files(const std::string& log, const std::vector<std::string>& names) {
+  static const std::regex position(R"((^|\n)(?:ERROR: )?(\d+)[:(](\d+)\)?(?:\(\d+\))?\s*:)");
+  std::string text;
+  auto rest = log.cbegin();
+  for (std::sregex_iterator it(log.begin(), log.end(), position), end; it != end; ++it) {
+    const auto piece = static_cast<std::size_t>(std::stoul((*it)[2].str().substr(0, 6)));
+    text.append(rest, (*it)[0].first);
+    text += (*it)[1].str() + (piece < names.size() ? names[piece] : "?") + ":" + (*it)[3].str() + ":";
+    rest = (*it)[0].second;
+  }
+  text.append(rest, log.cend());
   while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
   return text;
+}
+
+// #line keeps the numbers those of the file.
+std::string put_together(const std::vector<ShaderPiece>& pieces, const std::string& defines) {
+  std::string text = "#version 330 core\n" + defines;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::string piece = pieces[i].text;
+    if (const auto version = piece.find("#version"); version != std::string::npos) piece.replace(version, 2, "//");
+    text += "\n#line 1 " + std::to_string(i) + "\n" + piece + "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> names_of(const std::vector<ShaderPiece>& pieces) {
+  std::vector<std::string> names;
+  for (const ShaderPiece& p : pieces) names.push_back(p.name);
+  return names;
 }
 
 // The defines go after the version line; #line keeps the numbers those of the file.
@@ -30,9 +55,10 @@ std::string with_defines(std::string_view source, const std::string& defines) {
 class Shader {
  public:
   Shader(unsigned kind, const std::string& name, std::string_view source, const std::string& defines)
-      : id_(glCreateShader(kind)) {
-    if (source.empty()) throw std::runtime_error("there is no shader " + name);
-    const std::string text = with_defines(source, defines);
+      : Shader(kind, source.empty() ? std::string() : with_defines(source, defines), {name}) {}
+  Shader(unsigned kind, const std::string& text, const std::vector<std::string>& names) {
+    if (text.empty()) throw std::runtime_error("there is no shader " + names.front());
+    id_ = glCreateShader(kind);
     const char* pointer = text.c_str();
     glShaderSource(id_, 1, &pointer, nullptr);
     glCompileShader(id_);
@@ -43,7 +69,7 @@ class Shader {
     std::string log(static_cast<std::size_t>(length), '\0');
     glGetShaderInfoLog(id_, length, nullptr, log.data());
     glDeleteShader(id_);
-    throw std::runtime_error("a shader does not compile: " + with_file(log, name));
+    throw std::runtime_error("a shader does not compile: " + with_files(log, names));
   }
   ~Shader() { glDeleteShader(id_); }
   Shader(const Shader&) = delete;
@@ -51,7 +77,7 @@ class Shader {
   unsigned id() const { return id_; }
 
  private:
-  unsigned id_;
+  unsigned id_ = 0;
 };
 
 }  // namespace
@@ -63,9 +89,20 @@ Program::Program(const std::string& vertex_name, std::string_view vertex, const 
                  std::string_view fragment, const std::string& defines) {
   const Shader v(GL_VERTEX_SHADER, vertex_name, vertex, defines),
       f(GL_FRAGMENT_SHADER, fragment_name, fragment, defines);
+  link(v.id(), f.id(), vertex_name + " and " + fragment_name);
+}
+
+Program::Program(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment,
+                 const std::string& defines) {
+  const Shader v(GL_VERTEX_SHADER, put_together(vertex, defines), names_of(vertex)),
+      f(GL_FRAGMENT_SHADER, put_together(fragment, defines), names_of(fragment));
+  link(v.id(), f.id(), names_of(vertex).back() + " and " + names_of(fragment).back());
+}
+
+void Program::link(unsigned vertex, unsigned fragment, const std::string& names) {
   id_ = glCreateProgram();
-  glAttachShader(id_, v.id());
-  glAttachShader(id_, f.id());
+  glAttachShader(id_, vertex);
+  glAttachShader(id_, fragment);
   glLinkProgram(id_);
   int good = 0;
   glGetProgramiv(id_, GL_LINK_STATUS, &good);
@@ -73,7 +110,7 @@ Program::Program(const std::string& vertex_name, std::string_view vertex, const 
   std::array<char, 2048> log{};
   glGetProgramInfoLog(id_, static_cast<int>(log.size()), nullptr, log.data());
   glDeleteProgram(id_);
-  throw std::runtime_error(vertex_name + " and " + fragment_name + " do not fit together: " + log.data());
+  throw std::runtime_error(names + " do not fit together: " + log.data());
 }
 
 Program::~Program() { glDeleteProgram(id_); }
@@ -86,6 +123,13 @@ void Program::set(const char* name, const Eigen::Vector2f& value) const {
 }
 void Program::set(const char* name, const Eigen::Vector3f& value) const {
   glUniform3fv(glGetUniformLocation(id_, name), 1, value.data());
+}
+void Program::set(const uniform_t& u) const {
+  const int at = glGetUniformLocation(id_, u.name.c_str());
+  if (u.count == 1) glUniform1fv(at, 1, u.values);
+  if (u.count == 2) glUniform2fv(at, 1, u.values);
+  if (u.count == 3) glUniform3fv(at, 1, u.values);
+  if (u.count == 4) glUniform4fv(at, 1, u.values);
 }
 void Program::set(const char* name, const Eigen::Matrix4f& value) const {
   glUniformMatrix4fv(glGetUniformLocation(id_, name), 1, GL_FALSE, value.data());

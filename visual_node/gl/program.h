@@ -4,11 +4,23 @@
 #include <Eigen/Core>
 #include <string>
 #include <string_view>
+#include <tactus/uniform_t.hpp>
+#include <vector>
 
 namespace tactus::visual {
 
+// A piece of a shader's text; errors name it and count its lines from 1.
+struct ShaderPiece {
+  std::string name;
+  std::string text;
+};
+
 class Program {
  public:
+  // Of pieces that follow one another, after "#version 330 core" and the defines. A piece's own version line
+  // counts for nothing.
+  Program(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment,
+          const std::string& defines);
   // Of shaders/NAME.vert and shaders/NAME.frag, with `defines` ("#define A 1\n...") after the version line of
   // both. Throws std::runtime_error that names file and line of every error.
   explicit Program(const std::string& name, const std::string& defines = "");
@@ -27,8 +39,10 @@ class Program {
   void set(const char* name, const Eigen::Vector2f& value) const;
   void set(const char* name, const Eigen::Vector3f& value) const;
   void set(const char* name, const Eigen::Matrix4f& value) const;
+  void set(const uniform_t& uniform) const;
 
  private:
+  void link(unsigned vertex, unsigned fragment, const std::string& names);
   unsigned id_ = 0;
 };
 

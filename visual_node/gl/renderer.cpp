@@ -16,32 +16,6 @@ Eigen::Matrix4f texture_from_clip() {
   return m;
 }
 
-// The kinds of the lamps are known to the shader's compiler: a software renderer pays for every branch of every
-// pixel.
-std::string surface_defines(const Lighting& lighting, bool relief) {
-  std::string lamps;
-  for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
-    const Light& l = lighting.lights[i];
-    const std::string index = std::to_string(i);
-    const bool shiny = l.specular.head<3>().maxCoeff() > 0;
-    const auto flag = [](bool on) { return on ? ", true" : ", false"; };
-    if (l.position.w() == 0)
-      lamps += "directional(" + index + flag(shiny) + ");";
-    else
-      lamps += "lamp(" + index + flag(shiny) + flag(l.cone.x() != 0) + flag(l.cone.z() != 1) +
-               flag(static_cast<int>(i) == lighting.shadow_light) + ");";
-  }
-  return "#define LIGHTS " + std::to_string(std::max<std::size_t>(1, lighting.lights.size())) +
-         "\n#define LAMPS " + lamps + "\n#define SHADOWS " + (lighting.shadow_light >= 0 ? "1" : "0") +
-         "\n#define RELIEF " + (relief ? "1" : "0") + "\n";
-}
-
-std::unique_ptr<Program> surface_program(const Lighting& lighting, bool relief) {
-  auto program = std::make_unique<Program>("surface", surface_defines(lighting, relief));
-  glUniformBlockBinding(program->id(), glGetUniformBlockIndex(program->id(), "Lights"), 0);
-  return program;
-}
-
 void enable(unsigned what, bool on) { on ? glEnable(what) : glDisable(what); }
 
 std::vector<View> views_in(const DrawList& list) {
@@ -73,28 +47,50 @@ bool reads_encoded() {
 
 }  // namespace
 
-Renderer::Renderer(int width, int height, int shadow_size)
+Renderer::Renderer(int width, int height, int shadow_size, int samples)
     : picture_(width, height), small_(width, height), shadow_size_(shadow_size) {
+  if (samples > 1) {
+    samples_ = std::make_unique<MultisampleTarget>(width, height, samples);
+    if (samples_->samples() != samples)
+      trouble_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device takes " +
+                         std::to_string(samples_->samples()) + " samples a pixel");
+  }
   load({}, {});
 }
 
-Renderer::Surfaces Renderer::surfaces(const Lighting& lighting, bool reliefs) {
-  return {surface_program(lighting, false), reliefs ? surface_program(lighting, true) : nullptr};
-}
-
 void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& lighting,
-                    const std::vector<Relief>& reliefs) {
+                    const std::vector<Relief>& reliefs, const Appearance& appearance) {
   const bool shadows = lighting.shadow_light >= 0;
   shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_) : nullptr;
   coarse_shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_ / 2) : nullptr;
-  Lighting unshadowed = lighting;
-  unshadowed.shadow_light = -1;
-  plain_ = surfaces(unshadowed, !reliefs.empty());
-  shadowed_ = shadows ? surfaces(lighting, !reliefs.empty()) : Surfaces{};
+  library_ = ShaderLibrary(appearance.shaders);
+  library_.set(folder_);
+  surfaces_ = SurfacePrograms(library_, appearance.looks, lighting, !reliefs.empty(), trouble_);
+  passes_ = ScreenPasses(library_, appearance.passes, picture_.width(), picture_.height(), trouble_);
+  colours_.clear(), normals_.clear();
+  colours_.resize(appearance.pictures.size()), normals_.resize(appearance.pictures.size());
+  const auto make = [&](auto& textures, int index, bool encoded) {
+    if (index < 0 || textures[static_cast<std::size_t>(index)]) return;
+    textures[static_cast<std::size_t>(index)] =
+        std::make_unique<SurfaceTexture>(appearance.pictures[static_cast<std::size_t>(index)], encoded);
+  };
+  for (const Look& look : appearance.looks)
+    make(colours_, look.colour_map, true), make(normals_, look.normal_map, false);
+  sky_ = appearance.environment >= 0;
+  environment_ = sky_ ? std::make_unique<EnvironmentTexture>(
+                            appearance.pictures[static_cast<std::size_t>(appearance.environment)])
+                      : std::make_unique<EnvironmentTexture>(lighting.background);
   reliefs_.clear();
   for (const Relief& r : reliefs) reliefs_.push_back(std::make_unique<ReliefTexture>(r));
   geometries_.clear();
   for (const Triangles& t : geometries) geometries_.push_back(std::make_unique<GeometryBuffer>(t));
+}
+
+void Renderer::set_shader_folder(ShaderFolder folder) {
+  folder_ = std::move(folder);
+  library_.set(folder_);
+  surfaces_.reload(library_, trouble_);
+  passes_.reload(library_, trouble_);
 }
 
 // Drivers compile a program when it first draws, and again for what they first meet in a picture or in the one
@@ -104,7 +100,9 @@ void Renderer::warm_up(DrawList list) {
   list.instances.emplace_back();
   for (auto* batches : {&list.opaque, &list.translucent})
     for (const int relief : {-1, 0})
-      batches->push_back({.geometry = 0, .first = first, .count = 1, .casts_shadow = true, .relief = relief});
+      for (int look = 0; look < surfaces_.looks(); ++look)
+        batches->push_back(
+            {.geometry = 0, .first = first, .count = 1, .casts_shadow = true, .relief = relief, .look = look});
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
@@ -128,20 +126,24 @@ const ShadowTarget* Renderer::shadow() const {
 
 void Renderer::draw_scene(const DrawList& list) {
   instances_.write(list.instances.data(), list.instances.size() * sizeof(Instance));
-  surfaces_ = shadow() ? &shadowed_ : &plain_;
   if (shadow()) draw_shadow(list, *shadow());
   draw_surfaces(list);
   if (quality_.scale < 1 && !quality_.coarse) scale_up();
+  if (!quality_.coarse) passes_.draw(picture_);
 }
 
 void Renderer::draw_over(const DrawList& list) {
   std::pair size{picture_.width(), picture_.height()};
   if (quality_.coarse)
-    size = bind_scene();
+    size = bind_small();
   else
     picture_.bind();
   draw_glows(list, size);
-  if (quality_.coarse) scale_up();
+  if (quality_.coarse) {
+    scale_up();
+    passes_.draw(picture_);  // blocks and flashes too
+    picture_.bind();
+  }
   glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -168,7 +170,7 @@ void Renderer::draw_glows(const DrawList& list, std::pair<int, int> size) {
 }
 
 // The size of what is drawn into.
-std::pair<int, int> Renderer::bind_scene() const {
+std::pair<int, int> Renderer::bind_small() const {
   if (quality_.scale == 1) {
     picture_.bind();
     return {picture_.width(), picture_.height()};
@@ -217,7 +219,9 @@ void Renderer::draw_shadow(const DrawList& list, const ShadowTarget& shadow) {
 }
 
 void Renderer::draw_surfaces(const DrawList& list) {
-  const std::pair size = bind_scene();
+  const std::pair size = bind_small();
+  const bool resolves = samples_ != nullptr;
+  if (resolves) samples_->bind(size.first, size.second);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_DEPTH_TEST);
   const Eigen::Vector3f background = list.lighting.background * list.lighting.exposure;
@@ -231,52 +235,83 @@ void Renderer::draw_surfaces(const DrawList& list) {
                GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, lights_.id());
   if (shadow()) {
-    glActiveTexture(GL_TEXTURE0);
+    glActiveTexture(GL_TEXTURE0 + kShadowUnit);
     glBindTexture(GL_TEXTURE_2D, shadow()->texture());
   }
+  glActiveTexture(GL_TEXTURE0 + kEnvironmentUnit);
+  glBindTexture(GL_TEXTURE_CUBE_MAP, environment_->id());
   for (const View& view : views_in(list)) {
     set(view, size);
     draw_surfaces(list, view.camera);
   }
   unset(size);
   glDisable(GL_CULL_FACE);
+  if (resolves) samples_->resolve(quality_.scale == 1 ? picture_ : small_, size.first, size.second);
 }
 
 // One view of them, where the viewport is.
 void Renderer::draw_surfaces(const DrawList& list, const Camera& camera) {
-  describe(*surfaces_->smooth, list, camera);
-  if (surfaces_->rough) describe(*surfaces_->rough, list, camera);
+  surfaces_.for_each(shadow() != nullptr,
+                     [&](const Program& p, const Look& look) { describe(p, look, list, camera); });
   glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT);
   glDisable(GL_BLEND);
   for (const Batch& b : list.opaque) draw_surface(b);
+  if (sky_) draw_sky(list, camera);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
   for (const Batch& b : list.translucent) draw_surface(b);
 }
 
-void Renderer::describe(const Program& surface, const DrawList& list, const Camera& camera) const {
+void Renderer::describe(const Program& surface, const Look& look, const DrawList& list,
+                        const Camera& camera) const {
   surface.use();
   surface.set("clip_from_world", camera.clip_from_world());
   surface.set("shadow_from_world", Eigen::Matrix4f(texture_from_clip() * list.lighting.shadow_clip));
   surface.set("eye", camera.eye);
   surface.set("ambient_light", list.lighting.ambient);
   surface.set("exposure", list.lighting.exposure);
-  surface.set("shadow_map", 0);
-  surface.set("slope_map", 1);
+  surface.set("shadow_map", kShadowUnit);
+  surface.set("slope_map", kReliefUnit);
+  if (look.colour_map >= 0) surface.set("colour_map", kColourUnit);
+  if (look.normal_map >= 0) surface.set("normal_map", kNormalUnit);
+  if (look.reflectance > 0) {
+    surface.set("environment", kEnvironmentUnit);
+    surface.set("reflectance", look.reflectance);
+  }
+  for (const uniform_t& u : look.uniforms) surface.set(u);
+}
+
+// Behind everything that is opaque.
+void Renderer::draw_sky(const DrawList& list, const Camera& camera) {
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  sky_program_.use();
+  sky_program_.set("environment", kEnvironmentUnit);
+  sky_program_.set("exposure", list.lighting.exposure);
+  sky_program_.set("world_from_clip", Eigen::Matrix4f(camera.clip_from_world().inverse()));
+  const std::array<float, 4> none{};
+  sky_quad_.draw(none.data(), 1);
+  glDepthFunc(GL_LESS);
 }
 
 void Renderer::draw_surface(const Batch& batch) {
-  if (batch.relief >= 0 && batch.relief < static_cast<int>(reliefs_.size())) {
+  const bool rough = batch.relief >= 0 && batch.relief < static_cast<int>(reliefs_.size());
+  const Program& program = surfaces_.program(batch.look, rough, shadow() != nullptr);
+  const Look& look = surfaces_.look(batch.look);
+  program.use();
+  const auto bind = [](int unit, unsigned texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture);
+  };
+  if (rough) {
     const ReliefTexture& relief = *reliefs_[static_cast<std::size_t>(batch.relief)];
-    surfaces_->rough->use();
-    surfaces_->rough->set("relief_size", relief.size_m());
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, relief.id());
-  } else {
-    surfaces_->smooth->use();
+    program.set("relief_size", relief.size_m());
+    bind(kReliefUnit, relief.id());
   }
+  if (look.colour_map >= 0) bind(kColourUnit, colours_[static_cast<std::size_t>(look.colour_map)]->id());
+  if (look.normal_map >= 0) bind(kNormalUnit, normals_[static_cast<std::size_t>(look.normal_map)]->id());
   draw_batch(batch);
 }
 

@@ -8,6 +8,9 @@
 
 #include "visual_node/gl/buffers.h"
 #include "visual_node/gl/program.h"
+#include "visual_node/gl/screen_passes.h"
+#include "visual_node/gl/surface_programs.h"
+#include "visual_node/gl/textures.h"
 #include "visual_node/scene_view/draw_list.h"
 #include "visual_node/scene_view/quality.h"
 
@@ -15,12 +18,17 @@ namespace tactus::visual {
 
 class Renderer {
  public:
-  // Throws std::runtime_error when a shader does not compile.
-  Renderer(int width, int height, int shadow_size);
+  // samples: that a pixel's edges are made of. Throws std::runtime_error when a shader does not compile.
+  Renderer(int width, int height, int shadow_size, int samples = 1);
 
-  // Geometries and reliefs that the batches of later draw lists refer to, and how many lamps there are.
+  // Geometries, reliefs and looks that the batches of later draw lists refer to, and how many lamps there are.
   void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
-            const std::vector<Relief>& reliefs = {});
+            const std::vector<Relief>& reliefs = {}, const Appearance& appearance = {});
+  // What is in the folder of shaders that somebody works in. Whatever uses them is made anew; what does not
+  // compile stays as it was.
+  void set_shader_folder(ShaderFolder folder);
+  // One sentence for each thing of the last load or change of shaders that could not be done; asking takes them.
+  std::vector<std::string> take_trouble() { return std::exchange(trouble_, {}); }
   // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than
   // others, whatever the quality. Takes half a second on a software renderer.
   void warm_up(DrawList list);
@@ -35,18 +43,15 @@ class Renderer {
   const PictureTarget& picture() const { return picture_; }
 
  private:
-  struct Surfaces {                          // programs
-    std::unique_ptr<Program> smooth, rough;  // rough is null when no material has a relief
-  };
-  static Surfaces surfaces(const Lighting& lighting, bool reliefs);
   const ShadowTarget* shadow() const;
-  std::pair<int, int> bind_scene() const;
+  std::pair<int, int> bind_small() const;
   void draw_shadow(const DrawList& list, const ShadowTarget& shadow);
   void draw_surfaces(const DrawList& list);
   void draw_surfaces(const DrawList& list, const Camera& camera);
   void draw_glows(const DrawList& list, std::pair<int, int> size);
   void scale_up();
-  void describe(const Program& surface, const DrawList& list, const Camera& camera) const;
+  void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
+  void draw_sky(const DrawList& list, const Camera& camera);
   void draw_surface(const Batch& batch);
   void draw_batch(const Batch& batch);
 
@@ -54,13 +59,21 @@ class Renderer {
   int shadow_size_;
   Quality quality_;
   std::unique_ptr<ShadowTarget> shadow_, coarse_shadow_;  // null: no lamp casts one
-  Surfaces shadowed_, plain_;
-  const Surfaces* surfaces_ = nullptr;  // of the picture being drawn
-  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"};
+  std::unique_ptr<MultisampleTarget> samples_;            // null: one sample a pixel
+  ShaderLibrary library_;
+  ShaderFolder folder_;
+  SurfacePrograms surfaces_;
+  ScreenPasses passes_;
+  std::vector<std::unique_ptr<SurfaceTexture>> colours_, normals_;  // by index of the picture; null: not used so
+  std::unique_ptr<EnvironmentTexture> environment_;
+  bool sky_ = false;  // it is a picture, and seen
+  std::vector<std::string> trouble_;
+  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
-  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2};
+  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2},
+      sky_quad_{1};
 };
 
 }  // namespace tactus::visual

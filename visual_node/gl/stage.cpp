@@ -9,8 +9,9 @@ Stage::Stage(const Settings& s, bool window) : quality_(s), loop_rate_Hz_(s.rate
 }
 
 void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s) {
-  renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size);
-  renderer_->load(view.geometries(), view.lighting(), view.reliefs());
+  shaders_ = std::make_unique<ShaderWatch>(s.shader_folder);
+  renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size, s.anti_aliasing);
+  renderer_->load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   renderer_->warm_up(sample);
   quality_ = QualityControl(s);
   rate_.restart();
@@ -18,6 +19,8 @@ void Stage::load(const SceneView& view, const DrawList& sample, const Settings& 
 }
 
 void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
+  if (shaders_)
+    if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
   renderer_->set_quality(degraded(quality_.quality(), output.resolution));
   renderer_->draw_scene(list);
   renderer_->wait();

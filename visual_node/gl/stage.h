@@ -9,6 +9,7 @@
 #include "visual_node/frame/picture_rate.h"
 #include "visual_node/frame/quality_control.h"
 #include "visual_node/gl/renderer.h"
+#include "visual_node/gl/shader_watch.h"
 #include "visual_node/scene_view/scene_view.h"
 
 namespace tactus::visual {
@@ -29,6 +30,9 @@ class Stage {
   bool due(sync::HostTime now, const sync::OutputDef& output) {
     return rate_.due(now, output.frame_rate_Hz, loop_rate_Hz_);
   }
+  // One sentence for each thing that could not be drawn as the scene says; asking takes them.
+  std::vector<std::string> take_trouble() { return renderer_->take_trouble(); }
+
   // For how long each picture is held on purpose; 0: for the tick.
   sync::Nanoseconds held() const { return rate_.held(); }
 
@@ -42,6 +46,7 @@ class Stage {
   QualityControl quality_;
   PictureRate rate_;
   double loop_rate_Hz_;
+  std::unique_ptr<ShaderWatch> shaders_;
 };
 
 }  // namespace tactus::visual

@@ -33,6 +33,7 @@ struct Batch {
   int count = 0;
   bool casts_shadow = true;
   int relief = -1;  // -1: smooth
+  int look = 0;     // index in Appearance::looks
 };
 
 // The layout is that of one element of the light block in shaders/surface.frag (std140).

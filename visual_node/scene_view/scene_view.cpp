@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
@@ -22,6 +25,20 @@ constexpr double kSmallestTool_m = 0.004;
 // Colours of a tool without visuals: a blue that no material of ours has.
 const Eigen::Vector3f kToolColour{0.10f, 0.42f, 0.95f};
 
+// What stands for a mesh that is not there: as large as what a hand holds, in a colour that nothing has (design).
+constexpr float kMissing_m = 0.06f;
+const Eigen::Vector3f kMissingColour{1.0f, 0.0f, 1.0f};
+
+// One that neighbours in the list of bodies do not share: hues a golden angle apart.
+Eigen::Vector3f body_colour(int body) {
+  constexpr double kGoldenAngle_rad = 2.399963;  // 2 pi (1 - 1 / golden ratio)
+  const double hue = kGoldenAngle_rad * body;
+  const auto channel = [&](int k) {
+    return static_cast<float>(0.45 + 0.3 * std::cos(hue + 2 * std::numbers::pi * k / 3));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
 Eigen::Vector4f with(const vec3f_t& v, float w) { return {v.x, v.y, v.z, w}; }
 
 int multiple_of_4(int pixels) { return pixels / 4 * 4; }
@@ -29,17 +46,21 @@ int multiple_of_4(int pixels) { return pixels / 4 * 4; }
 }  // namespace
 
 SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
-                     const HeightMaps& height_maps)
+                     const HeightMaps& height_maps, LookFiles look_files)
     : width_(multiple_of_4(settings.width)),
       height_(multiple_of_4(settings.height)),
       lens_(scene, settings, width_, height_),
       settings_(settings) {
   lighting_ = make_lighting(scene, settings);
+  appearance_ = make_appearance(scene, std::move(look_files));
   geometries_ = {unit_plane(), unit_box()};
   for (const int n : kSegments) geometries_.push_back(unit_sphere(n));
   for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
   add_reliefs(scene, height_maps);
-  for (const visual_def_t& v : scene.visuals) add(v, meshes);
+  if (settings.geometry == "physics")
+    for (const shape_def_t& s : scene.shapes) add_colliding(s, meshes);
+  else
+    for (const visual_def_t& v : scene.visuals) add(v, meshes);
   for (const tool_def_t& t : scene.tools) add_tool(scene, t, meshes);
   // A lamp modelled around its light would swallow all of it.
   for (Part& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
@@ -62,7 +83,8 @@ void SceneView::add_reliefs(const scene_t& scene, const HeightMaps& height_maps)
 
 void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   Part part;
-  if (v.alpha <= 0 || !shape(v.shape, meshes, part)) return;
+  if (v.alpha <= 0) return;
+  const bool known = shape(v.shape, meshes, part);
   part.body = v.shape.body;
   part.in_body = to_eigen(v.shape.pose);
   if (v.shape.material >= 0 && v.shape.material < static_cast<int>(relief_of_material_.size()))
@@ -72,7 +94,46 @@ void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   part.look.specular = with(v.specular, 0);
   part.look.ambient = with(v.ambient, 0);
   part.look.emissive = with(v.emissive, 0);
+  if (v.look >= 0 && v.look + 1 < static_cast<int>(appearance_.looks.size())) part.style = v.look + 1;
+  known ? check_look(v, part) : mark_missing(v.shape, part);
   parts_.push_back(part);
+}
+
+// What touches, in the colour of its body.
+void SceneView::add_colliding(const shape_def_t& s, const Meshes& meshes) {
+  Part part;
+  const bool known = shape(s, meshes, part);
+  part.body = s.body;
+  part.in_body = to_eigen(s.pose);
+  part.look.scale.w() = 16;
+  part.look.diffuse << body_colour(s.body), 1;
+  part.look.ambient << body_colour(s.body), 0;
+  if (!known) mark_missing(s, part);
+  parts_.push_back(part);
+}
+
+void SceneView::mark_missing(const shape_def_t& s, Part& part) {
+  part.geometry = kBox;
+  part.radius_m = kMissing_m;
+  part.casts_shadow = false;
+  part.relief = -1, part.style = 0;
+  part.look = {};
+  part.look.scale = {kMissing_m, kMissing_m, kMissing_m, 16};
+  part.look.diffuse << kMissingColour, 1;
+  part.look.emissive << kMissingColour, 0;
+  trouble_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
+                     std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
+}
+
+void SceneView::check_look(const visual_def_t& v, const Part& part) {
+  const Look& look = appearance_.looks[static_cast<std::size_t>(part.style)];
+  const Triangles& t = geometries_[static_cast<std::size_t>(part.geometry)];
+  if (look.mapped() && t.texcoords.empty())
+    trouble_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
+                       ", whose mesh has no texture coordinates: all of it shows one point of the picture");
+  else if (look.normal_map >= 0 && t.tangents.empty())
+    trouble_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
+                       " no tangents: it is drawn smooth");
 }
 
 void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes) {
@@ -170,7 +231,7 @@ bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
 SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const {
   const Eigen::Isometry3d pose = body * part.in_body;
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
-  Placed p{part.geometry, 0, part.casts_shadow, part.relief, part.look};
+  Placed p{part.geometry, 0, part.casts_shadow, part.relief, part.style, part.look};
   p.instance.orientation = q.coeffs();
   p.instance.position.head<3>() = pose.translation().cast<float>();
   p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
@@ -191,7 +252,9 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
   list.lighting = lighting_;
   std::vector<Placed> opaque, translucent;
   const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {
-    (part.look.diffuse.w() < 1 ? translucent : opaque).push_back(place(part, pose, list.camera));
+    const bool seen_through =
+        part.look.diffuse.w() < 1 || appearance_.looks[static_cast<std::size_t>(part.style)].translucent;
+    (seen_through ? translucent : opaque).push_back(place(part, pose, list.camera));
   };
   const auto tool_of = [&](int body) {
     for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
@@ -213,8 +276,8 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
 
   // Planes and boxes have the lowest numbers and are mostly floors and walls: last, so that little is drawn twice.
   std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {
-    return std::tuple(-a.geometry, a.casts_shadow, a.relief, a.distance_m) <
-           std::tuple(-b.geometry, b.casts_shadow, b.relief, b.distance_m);
+    return std::tuple(-a.geometry, a.casts_shadow, a.relief, a.look, a.distance_m) <
+           std::tuple(-b.geometry, b.casts_shadow, b.relief, b.look, b.distance_m);
   });
   std::sort(translucent.begin(), translucent.end(),
             [](const Placed& a, const Placed& b) { return a.distance_m > b.distance_m; });
@@ -222,8 +285,8 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
     for (const Placed& p : from) {
       const auto first = static_cast<int>(list.instances.size());
       if (to.empty() || to.back().geometry != p.geometry || to.back().casts_shadow != p.casts_shadow ||
-          to.back().relief != p.relief)
-        to.push_back({p.geometry, first, 0, p.casts_shadow, p.relief});
+          to.back().relief != p.relief || to.back().look != p.look)
+        to.push_back({p.geometry, first, 0, p.casts_shadow, p.relief, p.look});
       ++to.back().count;
       list.instances.push_back(p.instance);
     }

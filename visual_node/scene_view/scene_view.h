@@ -11,6 +11,7 @@
 
 #include "visual_node/lens/lens.h"
 #include "visual_node/scene_view/draw_list.h"
+#include "visual_node/scene_view/look.h"
 #include "visual_node/scene_view/relief.h"
 #include "visual_node/scene_view/triangles.h"
 #include "visual_node/settings.gen.h"
@@ -28,18 +29,22 @@ struct ToolPose {
 
 class SceneView {
  public:
-  // Shapes whose mesh is not among `meshes` are left out and counted; those whose height map is not there are
-  // smooth.
+  // Shapes whose mesh is not among `meshes` are drawn as a box that nobody takes for anything else, and counted;
+  // those whose height map is not there are smooth.
   SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
-            const HeightMaps& height_maps = {});
+            const HeightMaps& height_maps = {}, LookFiles look_files = {});
 
   // The triangles that batches refer to, by index.
   const std::vector<Triangles>& geometries() const { return geometries_; }
   // The reliefs that batches refer to, by index.
   const std::vector<Relief>& reliefs() const { return reliefs_; }
+  // The looks that batches refer to, by index, and what lies around.
+  const Appearance& appearance() const { return appearance_; }
   const Lighting& lighting() const { return lighting_; }
   const Lens& lens() const { return lens_; }
   int missing_meshes() const { return missing_meshes_; }
+  // One sentence for each thing that is drawn otherwise than the scene says.
+  const std::vector<std::string>& trouble() const { return trouble_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -60,6 +65,7 @@ class SceneView {
     float radius_m = 0;  // of a sphere about the origin of the shape that holds it
     bool casts_shadow = true;
     int relief = -1;
+    int style = 0;  // index in Appearance::looks
     Instance look;  // all but its pose
   };
   struct Placed {
@@ -67,11 +73,15 @@ class SceneView {
     float distance_m;
     bool casts_shadow;
     int relief;
+    int look;
     Instance instance;
   };
 
   void add_reliefs(const scene_t& scene, const HeightMaps& height_maps);
   void add(const visual_def_t& visual, const Meshes& meshes);
+  void add_colliding(const shape_def_t& shape, const Meshes& meshes);
+  void mark_missing(const shape_def_t& shape, Part& part);
+  void check_look(const visual_def_t& visual, const Part& part);
   void add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes);
   bool shape(const shape_def_t& shape, const Meshes& meshes, Part& part);
   bool lamp_inside(const scene_t& scene, const Part& part) const;
@@ -81,6 +91,7 @@ class SceneView {
   Lens lens_;
   Settings settings_;
   Lighting lighting_;
+  Appearance appearance_;
   std::vector<Triangles> geometries_;
   std::map<std::int64_t, int> mesh_geometry_;
   std::vector<Relief> reliefs_;
@@ -95,6 +106,7 @@ class SceneView {
   };
   std::vector<Tool> tools_;
   int missing_meshes_ = 0;
+  std::vector<std::string> trouble_;
 };
 
 }  // namespace tactus::visual

@@ -14,6 +14,9 @@ void add_quad(Triangles& t, const Vector3f& centre, const Vector3f& u, const Vec
   for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
     t.positions.push_back(centre + static_cast<float>(a) * u + static_cast<float>(b) * v);
     t.normals.push_back(normal);
+    t.texcoords.emplace_back((static_cast<float>(a) + 1) / 2, (static_cast<float>(b) + 1) / 2);
+    const Vector3f along = u.normalized();
+    t.tangents.emplace_back(along.x(), along.y(), along.z(), 1);
   }
   for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) t.indices.push_back(base + i);
 }
@@ -22,6 +25,7 @@ void add_quad(Triangles& t, const Vector3f& centre, const Vector3f& u, const Vec
 struct Ring {
   float z, radius;
   float normal_z, normal_radial;
+  float v = 0;  // where it lies in the height of a picture
 };
 
 void add_revolution(Triangles& t, const std::vector<Ring>& rings, int segments) {
@@ -33,6 +37,8 @@ void add_revolution(Triangles& t, const std::vector<Ring>& rings, int segments) 
       const auto c = static_cast<float>(std::cos(angle)), d = static_cast<float>(std::sin(angle));
       t.positions.emplace_back(r.radius * c, r.radius * d, r.z);
       t.normals.emplace_back(r.normal_radial * c, r.normal_radial * d, r.normal_z);
+      t.texcoords.emplace_back(static_cast<float>(s) / static_cast<float>(segments), r.v);
+      t.tangents.emplace_back(-d, c, 0, 1);
     }
   for (std::uint32_t r = 0; r + 1 < rings.size(); ++r)
     for (std::uint32_t s = 0; s + 1 < columns; ++s) {
@@ -75,6 +81,11 @@ Triangles capsule(double radius_m, double length_m, int segments) {
   add_cap(rings, radius, half, segments, true);
   if (length_m == 0) rings.pop_back();  // a sphere has one equator
   add_cap(rings, radius, -half, segments, false);
+  // The picture's height is laid along the outline from pole to pole.
+  for (std::size_t i = 1; i < rings.size(); ++i)
+    rings[i].v = rings[i - 1].v + std::hypot(rings[i].z - rings[i - 1].z, rings[i].radius - rings[i - 1].radius);
+  const float outline = rings.back().v;
+  for (Ring& r : rings) r.v = 1 - r.v / outline;
   Triangles t;
   add_revolution(t, rings, segments);
   return t;
@@ -84,9 +95,9 @@ Triangles unit_sphere(int segments) { return capsule(1, 0, segments); }
 
 Triangles unit_cylinder(int segments) {
   Triangles t;
-  add_revolution(t, {{0.5f, 0, 1, 0}, {0.5f, 1, 1, 0}}, segments);
-  add_revolution(t, {{0.5f, 1, 0, 1}, {-0.5f, 1, 0, 1}}, segments);
-  add_revolution(t, {{-0.5f, 1, -1, 0}, {-0.5f, 0, -1, 0}}, segments);
+  add_revolution(t, {{0.5f, 0, 1, 0, 0}, {0.5f, 1, 1, 0, 1}}, segments);
+  add_revolution(t, {{0.5f, 1, 0, 1, 1}, {-0.5f, 1, 0, 1, 0}}, segments);
+  add_revolution(t, {{-0.5f, 1, -1, 0, 1}, {-0.5f, 0, -1, 0, 0}}, segments);
   return t;
 }
 
@@ -105,6 +116,10 @@ Triangles from_mesh(const mesh_t& mesh) {
     t.positions.push_back(at(mesh.positions_m, i));
     t.normals.push_back(at(mesh.normals, i));
   }
+  for (std::size_t i = 0; i + 1 < mesh.texcoords.size(); i += 2)
+    t.texcoords.emplace_back(mesh.texcoords[i], mesh.texcoords[i + 1]);
+  for (std::size_t i = 0; i + 3 < mesh.tangents.size(); i += 4)
+    t.tangents.emplace_back(mesh.tangents[i], mesh.tangents[i + 1], mesh.tangents[i + 2], mesh.tangents[i + 3]);
   for (const std::int32_t i : mesh.indices) t.indices.push_back(static_cast<std::uint32_t>(i));
   return t;
 }

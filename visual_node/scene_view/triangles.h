@@ -12,10 +12,16 @@ namespace tactus::visual {
 struct Triangles {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
+  // Where each lies in a picture, u to the right and v up, and the unit tangent along growing u with the sign of
+  // the binormal (mesh_t.lcm); none: it cannot be laid on.
+  std::vector<Eigen::Vector2f> texcoords;
+  std::vector<Eigen::Vector4f> tangents;
   std::vector<std::uint32_t> indices;
   bool two_sided = false;  // seen from the back too
 };
 
+// A picture lies on each side of a box, once around a ball and a cylinder, and once over a plane.
+//
 // Unit shapes, to be scaled along their axes: edges of 1, radius 1, length 1, about the origin. Scaling them so
 // keeps their normals right without an inverse transpose: flat faces stay across an axis and x, y of round ones
 // scale alike.

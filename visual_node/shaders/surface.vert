@@ -1,4 +1,3 @@
-#version 330 core
 // Places one shape of a batch. The instance attributes are struct Instance in scene_view/draw_list.h.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -13,38 +12,34 @@ layout(location = 8) in vec4 emissive;
 layout(location = 9) in vec4 body_orientation;  // T_world_body, x, y, z, w
 layout(location = 10) in vec4 body_place;
 #endif
+#if MAPPED
+layout(location = 11) in vec2 texcoord;
+layout(location = 12) in vec4 tangent_in;  // w: sign of the binormal
+#endif
 
 uniform mat4 clip_from_world;
 uniform mat4 shadow_from_world;  // to texture coordinates of the shadow map, before the division
+uniform vec3 eye;
 
 out vec3 at;  // m, world
 out vec3 facing;
 out vec4 shadow_at;
-flat out vec4 base;   // diffuse colour and opacity
-flat out vec4 shine;  // specular colour and Phong exponent
-flat out vec3 bounce;
+flat out vec4 paint;    // diffuse colour and opacity
+flat out vec4 polish;   // specular colour and Phong exponent
+flat out vec3 returned; // share of ambient light
 flat out vec3 glow;
 #if RELIEF
 out vec3 at_body;  // m, body frame
 out vec3 facing_body;
 flat out mat3 body_axes;  // in the world
 #endif
+#if MAPPED
+out vec2 uv;
+out vec4 tangent;
+#endif
+#if GOURAUD
+out vec3 lit_here;
+out vec3 lit_by_caster;
+#endif
 
 vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
-
-void main() {
-  at = place.xyz + rotate(orientation, position * scale.xyz);
-  facing = rotate(orientation, normal);
-  base = diffuse;
-  shine = vec4(specular.rgb, scale.w);
-  bounce = ambient.rgb;
-  glow = emissive.rgb;
-#if RELIEF
-  for (int i = 0; i < 3; ++i) body_axes[i] = rotate(body_orientation, mat3(1.0)[i]);
-  at_body = (at - body_place.xyz) * body_axes;  // transposed: back into the body frame
-  facing_body = facing * body_axes;
-#endif
-  // A little along the normal, so that a surface does not shadow itself.
-  shadow_at = shadow_from_world * vec4(at + 0.008 * facing, 1.0);
-  gl_Position = clip_from_world * vec4(at, 1.0);
-}

@@ -1,0 +1,66 @@
+#include "visual_node/gl/screen_passes.h"
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+namespace tactus::visual {
+
+ScreenPasses::ScreenPasses(const ShaderLibrary& library, const std::vector<pass_t>& passes, int width, int height,
+                           std::vector<std::string>& trouble)
+    : passes_(passes), programs_(passes.size()) {
+  if (passes.empty()) return;
+  other_ = std::make_unique<PictureTarget>(width, height);
+  quad_ = std::make_unique<QuadArray>(1);
+  make(library, trouble);
+}
+
+void ScreenPasses::reload(const ShaderLibrary& library, std::vector<std::string>& trouble) {
+  make(library, trouble);
+}
+
+void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& trouble) {
+  for (std::size_t i = 0; i < passes_.size(); ++i) try {
+      const auto shade = library.fragment(passes_[i].shader);
+      if (!shade)
+        throw std::runtime_error("there is no shader " + passes_[i].shader + "; there are " + library.names());
+      programs_[i] = std::make_unique<Program>(
+          std::vector{library.own("pass.vert")},
+          std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
+    } catch (const std::exception& e) {
+      trouble.push_back("pass " + passes_[i].shader + ": " + e.what() +
+                        (programs_[i] ? "; the one before stays" : "; it is left out"));
+    }
+}
+
+void ScreenPasses::draw(const PictureTarget& picture) {
+  const PictureTarget *from = &picture, *to = other_.get();
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glActiveTexture(GL_TEXTURE0);
+  const std::array<float, 4> none{};
+  for (std::size_t i = 0; i < programs_.size(); ++i) {
+    if (!programs_[i]) continue;
+    to->bind();
+    glBindTexture(GL_TEXTURE_2D, from->texture());
+    programs_[i]->use();
+    programs_[i]->set("picture", 0);
+    programs_[i]->set("texel", Eigen::Vector2f(1 / static_cast<float>(picture.width()),
+                                               1 / static_cast<float>(picture.height())));
+    for (const uniform_t& u : passes_[i].uniforms) programs_[i]->set(u);
+    quad_->draw(none.data(), 1);
+    std::swap(from, to);
+  }
+  if (from == &picture) return;
+  glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from->framebuffer());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture.framebuffer());
+  glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, picture.width(), picture.height(),
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,61 @@
+#include "visual_node/gl/shader_watch.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+
+#include "sync/csv.h"
+
+namespace tactus::visual {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 65536;      // design: ten times the longest of ours
+constexpr std::size_t kMostFiles = 64;            // design
+constexpr std::chrono::milliseconds kEvery{400};  // design: as soon as one has looked up from the editor
+
+}  // namespace
+
+struct ShaderWatch::Shared {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::optional<ShaderFolder> news;
+};
+
+ShaderFolder read_shader_folder(const std::string& folder) {
+  ShaderFolder files;
+  std::error_code none;
+  for (std::filesystem::directory_iterator it(folder, none), end; !none && it != end && files.size() < kMostFiles;
+       it.increment(none)) {
+    const std::string kind = it->path().extension().string();
+    if (kind != ".frag" && kind != ".vert" && kind != ".glsl") continue;
+    if (auto text = sync::read_small_file(it->path(), kMostBytes))
+      files.emplace(it->path().filename().string(), std::move(*text));
+  }
+  return files;
+}
+
+ShaderWatch::ShaderWatch(const std::string& folder) {
+  if (folder.empty()) return;
+  shared_ = std::make_shared<Shared>();
+  thread_ = std::jthread([shared = shared_, folder](const std::stop_token& stop) {
+    ShaderFolder known;
+    while (!stop.stop_requested()) {
+      ShaderFolder now = read_shader_folder(folder);
+      std::unique_lock lock(shared->mutex);
+      if (now != known) shared->news = known = std::move(now);
+      shared->ended.wait_for(lock, stop, kEvery, [] { return false; });
+    }
+  });
+}
+
+ShaderWatch::~ShaderWatch() = default;
+
+std::optional<ShaderFolder> ShaderWatch::take() {
+  if (!shared_) return {};
+  const std::unique_lock lock(shared_->mutex, std::try_to_lock);
+  if (!lock.owns_lock() || !shared_->news) return {};
+  return std::exchange(shared_->news, std::nullopt);
+}
+
+}  // namespace tactus::visual

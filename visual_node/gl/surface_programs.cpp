@@ -1,0 +1,44 @@
+#include "visual_node/gl/surface_programs.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace tactus::visual {
+
+SurfacePrograms::SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks,
+                                 const Lighting& lighting, bool reliefs, std::vector<std::string>& trouble)
+    : looks_(looks), lighting_(lighting), reliefs_(reliefs), made_(4 * looks.size()) {
+  make(library, trouble);
+  if (!made_.front()) throw std::runtime_error(trouble.empty() ? "no surface can be drawn" : trouble.back());
+}
+
+void SurfacePrograms::reload(const ShaderLibrary& library, std::vector<std::string>& trouble) {
+  make(library, trouble);
+}
+
+void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string>& trouble) {
+  Lighting plain = lighting_;
+  plain.shadow_light = -1;
+  for (std::size_t i = 0; i < looks_.size(); ++i) try {
+      // All of a look or none: its pictures do not change with their shadows.
+      std::array<std::unique_ptr<Program>, 4> fresh;
+      for (const bool relief : {false, true})
+        for (const bool shadows : {false, true})
+          if ((!relief || reliefs_) && (!shadows || lighting_.shadow_light >= 0))
+            fresh[index(0, relief, shadows)] =
+                surface_program(library, looks_[i], relief, shadows ? lighting_ : plain);
+      for (std::size_t k = 0; k < fresh.size(); ++k) made_[4 * i + k] = std::move(fresh[k]);
+    } catch (const std::exception& e) {
+      const bool before = made_[index(i, false, false)] != nullptr;
+      trouble.push_back((looks_[i].name.empty() ? "" : "look " + looks_[i].name + ": ") + std::string(e.what()) +
+                        (before ? "; the one before stays" : "; phong is drawn instead"));
+    }
+}
+
+const Program& SurfacePrograms::program(int look, bool relief, bool shadows) const {
+  relief = relief && reliefs_, shadows = shadows && lighting_.shadow_light >= 0;
+  if (const auto& p = made_[index(within(look), relief, shadows)]) return *p;
+  return *made_[index(0, relief, shadows)];
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,48 @@
+// The programs of all kinds of surfaces of a scene. One that cannot be made anew stays as it was; one that could
+// never be made is drawn as the first look is.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "visual_node/gl/surface_program.h"
+
+namespace tactus::visual {
+
+class SurfacePrograms {
+ public:
+  SurfacePrograms() = default;
+  // One sentence in `trouble` for each look whose shader cannot be used. Throws std::runtime_error when that is
+  // the first.
+  SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks, const Lighting& lighting,
+                  bool reliefs, std::vector<std::string>& trouble);
+
+  // Shaders have changed: makes all anew.
+  void reload(const ShaderLibrary& library, std::vector<std::string>& trouble);
+
+  int looks() const { return static_cast<int>(looks_.size()); }
+  const Look& look(int index) const { return looks_[within(index)]; }
+  const Program& program(int look, bool relief, bool shadows) const;
+  // Calls each(program, look) once for each program with or without shadows.
+  template <class Each>
+  void for_each(bool shadows, Each each) const {
+    for (std::size_t i = 0; i < looks_.size(); ++i)
+      for (const bool relief : {false, true})
+        if (const auto& p = made_[index(i, relief, shadows)]) each(*p, looks_[i]);
+  }
+
+ private:
+  static std::size_t index(std::size_t look, bool relief, bool shadows) { return 4 * look + 2 * relief + shadows; }
+  std::size_t within(int look) const {
+    return look >= 0 && look < static_cast<int>(looks_.size()) ? static_cast<std::size_t>(look) : 0;
+  }
+  void make(const ShaderLibrary& library, std::vector<std::string>& trouble);
+
+  std::vector<Look> looks_;
+  Lighting lighting_;
+  bool reliefs_ = false;
+  std::vector<std::unique_ptr<Program>> made_;
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,53 @@
+// How surfaces are drawn, as the scene says: shaders, maps and numbers, with the files that they name.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tactus/look_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "sync/scene_exchange.h"
+#include "visual_node/scene_view/raster.h"
+
+namespace tactus::visual {
+
+// What looks, passes and the surroundings name, by content hash.
+struct LookFiles {
+  std::map<std::int64_t, Raster> pictures;
+  std::map<std::int64_t, std::string> texts;
+};
+
+// Decodes them. One sentence in `trouble` for each that is not there or damaged.
+LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble);
+
+// The texts of a shader; empty: that of the stage as it comes.
+struct ShaderText {
+  std::string name, fragment, vertex;
+  std::string fragment_file, vertex_file;  // for messages, and for whoever edits them
+};
+
+struct Look {
+  std::string name;
+  std::string shader = "phong";
+  int colour_map = -1, normal_map = -1;  // index in Appearance::pictures
+  float reflectance = 0;                 // at normal incidence; 0: no mirror
+  bool translucent = false;
+  std::vector<uniform_t> uniforms;
+  bool mapped() const { return colour_map >= 0 || normal_map >= 0; }
+};
+
+// Everything that a renderer needs to know of it. The first look is the one of surfaces that name none.
+struct Appearance {
+  std::vector<Look> looks{Look{}};
+  std::vector<Raster> pictures;
+  std::vector<ShaderText> shaders;  // of the scene's own
+  std::vector<pass_t> passes;
+  int environment = -1;  // index in pictures; -1: the background colour
+};
+
+// Of a scene: look i of it is looks[i + 1]. A picture that is not among the files is left out.
+Appearance make_appearance(const scene_t& scene, LookFiles files);
+
+}  // namespace tactus::visual

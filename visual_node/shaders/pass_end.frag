@@ -1,0 +1,1 @@
+void main() { colour = vec4(shade().rgb, 1.0); }
