@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "sim_node/scene/mesh_reader.h"
@@ -32,6 +34,27 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
   }
 };
 
+void refuse_above_limit(std::size_t triangles) {
+  if (triangles > kMaxTriangles)
+    throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
+}
+
+// Assimp makes room for as many vertices as the head of a PLY file promises, which may be thousands of millions.
+void check_counts(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line(256, 0);
+  if (!in.read(line.data(), 3) || (line.substr(0, 3) != "ply" && line.substr(0, 3) != "PLY")) return;
+  for (int n = 0; n < 1000 && in.getline(line.data(), static_cast<std::streamsize>(line.size())); ++n) {
+    std::istringstream words(line.c_str());
+    std::string word, name;
+    double count = 0;
+    words >> word;
+    if (word == "end_header") return;
+    if (word == "element" && words >> name >> count && !(count <= static_cast<double>(3 * kMaxTriangles)))
+      throw std::runtime_error("its head promises more than " + std::to_string(3 * kMaxTriangles) + " of " + name);
+  }
+}
+
 void add(const aiMesh& from, const aiNode& node, const aiMatrix4x4& pose, MeshParts& mesh) {
   MeshPart part;
   part.mesh = from.mName.C_Str(), part.node = node.mName.C_Str();
@@ -40,7 +63,8 @@ void add(const aiMesh& from, const aiNode& node, const aiMatrix4x4& pose, MeshPa
   const bool mirrored = turn.Determinant() < 0;
   turn.Inverse().Transpose();
   const aiMatrix3x3 along(pose);
-  const bool textured = from.HasTextureCoords(0), tangents = textured && from.HasTangentsAndBitangents() && from.HasNormals();
+  const bool textured = from.HasTextureCoords(0),
+             tangents = textured && from.HasTangentsAndBitangents() && from.HasNormals();
   for (unsigned v = 0; v < from.mNumVertices; ++v) {
     const aiVector3D p = pose * from.mVertices[v];
     const aiVector3D n = from.HasNormals() ? turn * from.mNormals[v] : aiVector3D(0, 0, 0);
@@ -55,17 +79,18 @@ void add(const aiMesh& from, const aiNode& node, const aiMatrix4x4& pose, MeshPa
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
     const aiFace& face = from.mFaces[f];
     if (face.mNumIndices != 3) continue;
-    for (const int k : {0, mirrored ? 2 : 1, mirrored ? 1 : 2}) part.indices.push_back(static_cast<int>(face.mIndices[k]));
+    for (const int k : {0, mirrored ? 2 : 1, mirrored ? 1 : 2})
+      part.indices.push_back(static_cast<int>(face.mIndices[k]));
   }
   mesh.parts.push_back(std::move(part));
 }
 
-void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, MeshParts& mesh, std::size_t& triangles) {
+void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, MeshParts& mesh,
+         std::size_t& triangles) {
   const aiMatrix4x4 pose = parent * node.mTransformation;
   for (unsigned m = 0; m < node.mNumMeshes; ++m) {
     const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    if ((triangles += part.mNumFaces) > kMaxTriangles)
-      throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
+    refuse_above_limit(triangles += part.mNumFaces);
     add(part, node, pose, mesh);
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], pose, mesh, triangles);
@@ -100,7 +125,8 @@ MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
   };
   const auto number = [&](const char* key, unsigned type, unsigned index, float low, float high, float& to) {
     float value = 0;
-    if (from.Get(key, type, index, value) == aiReturn_SUCCESS && std::isfinite(value)) to = std::clamp(value, low, high);
+    if (from.Get(key, type, index, value) == aiReturn_SUCCESS && std::isfinite(value))
+      to = std::clamp(value, low, high);
   };
   colour(AI_MATKEY_COLOR_DIFFUSE, m.diffuse);
   colour(AI_MATKEY_COLOR_SPECULAR, m.specular);
@@ -115,7 +141,9 @@ MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
 }
 
 // What assimp makes up for a file without materials is none.
-bool made_up(const MeshMaterial& m) { return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none(); }
+bool made_up(const MeshMaterial& m) {
+  return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
+}
 
 }  // namespace
 
@@ -123,10 +151,17 @@ MeshParts read_with_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
   importer.SetIOHandler(new BoundedFiles);  // the importer deletes it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // z is up in SDF, as the numbers stand
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION,
+                           true);  // z is up in SDF, as the numbers stand
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCrease_deg);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType |
-                                                              aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
+  check_counts(file);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  std::size_t faces = 0;  // before anything is done with them: normals of millions of triangles take minutes
+  for (unsigned m = 0; scene && m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
+  refuse_above_limit(faces);
+  if (scene)
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                         aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
   if (!scene || !scene->mRootNode) throw std::runtime_error(importer.GetErrorString());
   MeshParts mesh;
   std::size_t triangles = 0;
@@ -138,7 +173,9 @@ MeshParts read_with_assimp(const std::filesystem::path& file) {
     if (renamed.back() >= 0) mesh.materials.push_back(std::move(material));
   }
   for (MeshPart& part : mesh.parts)
-    part.material = static_cast<std::size_t>(part.material) < renamed.size() ? renamed[static_cast<std::size_t>(part.material)] : -1;
+    part.material = static_cast<std::size_t>(part.material) < renamed.size()
+                        ? renamed[static_cast<std::size_t>(part.material)]
+                        : -1;
   return mesh;
 }
 

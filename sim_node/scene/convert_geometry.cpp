@@ -36,8 +36,9 @@ bool same_floats(const List& a, const List& b) {
 }
 
 bool same(const MeshPart& a, const MeshPart& b) {
-  return a.material == b.material && same_floats(a.positions_m, b.positions_m) && same_floats(a.normals, b.normals) &&
-         same_floats(a.texcoords, b.texcoords) && same_floats(a.tangents, b.tangents) && a.indices == b.indices;
+  return a.material == b.material && same_floats(a.positions_m, b.positions_m) &&
+         same_floats(a.normals, b.normals) && same_floats(a.texcoords, b.texcoords) &&
+         same_floats(a.tangents, b.tangents) && a.indices == b.indices;
 }
 
 }  // namespace
@@ -57,11 +58,13 @@ MeshParts for_place(MeshParts mesh, const fs::path& in, const fs::path& out) {
 
 bool same_to_the_bit(const MeshParts& a, const MeshParts& b) {
   const auto same_material = [](const MeshMaterial& x, const MeshMaterial& y) {
-    return x.diffuse == y.diffuse && x.specular == y.specular && x.emissive == y.emissive && x.shininess == y.shininess &&
-           x.alpha == y.alpha && x.colour_map == y.colour_map && x.normal_map == y.normal_map;
+    return x.diffuse == y.diffuse && x.specular == y.specular && x.emissive == y.emissive &&
+           x.shininess == y.shininess && x.alpha == y.alpha && x.colour_map == y.colour_map &&
+           x.normal_map == y.normal_map;
   };
   return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same) &&
-         std::equal(a.materials.begin(), a.materials.end(), b.materials.begin(), b.materials.end(), same_material) &&
+         std::equal(a.materials.begin(), a.materials.end(), b.materials.begin(), b.materials.end(),
+                    same_material) &&
          a.material == b.material && a.look == b.look;
 }
 
@@ -75,9 +78,11 @@ void check_properties(const MeshParts& mesh, const fs::path& out) {
       throw std::runtime_error(std::string(key) + " \"" + at->second + "\" cannot be read: " + e.what());
     }
   };
-  for (const char* key : {"bump", "friction_map"}) check(mesh.material, key, [](const sync::Bytes& b) { read_height_map(b); });
-  check(mesh.material, "modes",
-        [](const sync::Bytes& b) { parse_measured_modes({reinterpret_cast<const char*>(b.data()), b.size()}); });
+  for (const char* key : {"bump", "friction_map"})
+    check(mesh.material, key, [](const sync::Bytes& b) { read_height_map(b); });
+  check(mesh.material, "modes", [](const sync::Bytes& b) {
+    parse_measured_modes({reinterpret_cast<const char*>(b.data()), b.size()});
+  });
   check(mesh.look, "colour_map", [](const sync::Bytes& b) { check_picture(b, PictureUse::kColour); });
   check(mesh.look, "normal_map", [](const sync::Bytes& b) { check_picture(b, PictureUse::kDirections); });
 }
@@ -93,7 +98,8 @@ void write_and_verify(const MeshParts& mesh, const fs::path& out) {
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (!file) throw std::runtime_error("it cannot be written");
-    if (!same_to_the_bit(read_mesh_parts(fresh), mesh)) throw std::runtime_error("it reads back differently: it is not written");
+    if (!same_to_the_bit(read_mesh_parts(fresh), mesh))
+      throw std::runtime_error("it reads back differently: it is not written");
     fs::rename(fresh, out, error);
     if (error) throw std::runtime_error("it cannot be written: " + error.message());
   } catch (...) {

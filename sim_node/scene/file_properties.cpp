@@ -2,7 +2,8 @@
 
 namespace tactus::sim {
 
-sdf::ElementPtr element_of(const std::string& name, const Properties& properties, const std::filesystem::path& file) {
+sdf::ElementPtr element_of(const std::string& name, const Properties& properties,
+                           const std::filesystem::path& file) {
   auto element = std::make_shared<sdf::Element>();
   element->SetName(name);
   element->SetFilePath(file.string());

@@ -8,8 +8,9 @@
 
 namespace tactus::sim {
 
-// An element of that name with these attributes; files that they name are looked for beside `file`, and what is wrong with
-// them is said with its name.
-sdf::ElementPtr element_of(const std::string& name, const Properties& properties, const std::filesystem::path& file);
+// An element of that name with these attributes; files that they name are looked for beside `file`, and what is
+// wrong with them is said with its name.
+sdf::ElementPtr element_of(const std::string& name, const Properties& properties,
+                           const std::filesystem::path& file);
 
 }  // namespace tactus::sim

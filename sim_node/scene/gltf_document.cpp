@@ -25,12 +25,22 @@ constexpr int kMaxDepth = 64;
 constexpr std::size_t kMaxValues = 4'000'000;
 
 // The component types of glTF 2.0, 3.6.2.2, and how many bytes each has.
-enum : int { kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+enum : int {
+  kByte = 5120,
+  kUnsignedByte = 5121,
+  kShort = 5122,
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126
+};
 std::size_t bytes_of(int type) {
   switch (type) {
-    case kByte: case kUnsignedByte: return 1;
-    case kShort: case kUnsignedShort: return 2;
-    case kUnsignedInt: case kFloat: return 4;
+    case kByte:
+    case kUnsignedByte: return 1;
+    case kShort:
+    case kUnsignedShort: return 2;
+    case kUnsignedInt:
+    case kFloat: return 4;
     default: throw std::runtime_error("an accessor has a component type that glTF does not have");
   }
 }
@@ -70,7 +80,8 @@ std::size_t size_of(const json& object, const char* member) {
 // Of a .glb (glTF 2.0, 4.4): the text of its first chunk, and its second as `binary`.
 std::string unpack(const sync::Bytes& bytes, sync::Bytes& binary) {
   constexpr std::uint32_t kJson = 0x4e4f534a, kBin = 0x004e4942;
-  if (bytes.size() < 20 || load<std::uint32_t>(bytes.data() + 4) != 2) throw std::runtime_error("it is no glTF of version 2.0");
+  if (bytes.size() < 20 || load<std::uint32_t>(bytes.data() + 4) != 2)
+    throw std::runtime_error("it is no glTF of version 2.0");
   const std::size_t length = load<std::uint32_t>(bytes.data() + 8);
   if (length > bytes.size()) throw std::runtime_error("it ends in the middle");
   std::string text;
@@ -80,8 +91,10 @@ std::string unpack(const sync::Bytes& bytes, sync::Bytes& binary) {
     if (size > length - at - 8) throw std::runtime_error("it ends in the middle of a chunk");
     const auto* begin = bytes.data() + at + 8;
     if (at == 12 && kind != kJson) throw std::runtime_error("its first chunk is no JSON");
-    if (at == 12) text.assign(begin, begin + size);
-    else if (kind == kBin && binary.empty()) binary.assign(begin, begin + size);
+    if (at == 12)
+      text.assign(begin, begin + size);
+    else if (kind == kBin && binary.empty())
+      binary.assign(begin, begin + size);
     at += 8 + size;
   }
   return text;
@@ -126,14 +139,17 @@ GltfDocument::GltfDocument(const std::filesystem::path& file) {
   const std::string text = packed ? unpack(bytes, binary_) : std::string(bytes.begin(), bytes.end());
   std::size_t values = 0;
   const auto bounded = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth || ++values > kMaxValues) throw std::runtime_error("its JSON is too deep or has too many values");
+    if (depth > kMaxDepth || ++values > kMaxValues)
+      throw std::runtime_error("its JSON is too deep or has too many values");
     return true;
   };
   json_ = json::parse(text, bounded, false);
   if (!json_.is_object()) throw std::runtime_error("it is no well-formed JSON");
-  if (!text_of(member_of(json_, "asset"), "version").starts_with("2.")) throw std::runtime_error("it is no glTF of version 2.0");
+  if (!text_of(member_of(json_, "asset"), "version").starts_with("2."))
+    throw std::runtime_error("it is no glTF of version 2.0");
   for (const json& needed : member_of(json_, "extensionsRequired"))
-    throw std::runtime_error("it requires the extension " + (needed.is_string() ? needed.get<std::string>().substr(0, 64) : "?") +
+    throw std::runtime_error("it requires the extension " +
+                             (needed.is_string() ? needed.get<std::string>().substr(0, 64) : "?") +
                              ", which is not supported: export it without");
   load_buffers(file.parent_path());
 }
@@ -184,23 +200,28 @@ GltfDocument::Elements GltfDocument::elements(int accessor, int components) cons
   Elements e;
   e.type = index_of(a, "componentType");
   const std::size_t size = bytes_of(e.type) * static_cast<std::size_t>(components);
-  if (components_of(text_of(a, "type")) != components) throw std::runtime_error("an accessor is not of the type that its use needs");
+  if (components_of(text_of(a, "type")) != components)
+    throw std::runtime_error("an accessor is not of the type that its use needs");
   e.count = size_of(a, "count");
-  if (e.count > kMaxElements) throw std::runtime_error("it has more than " + std::to_string(kMaxElements) + " vertices or corners");
+  if (e.count > kMaxElements)
+    throw std::runtime_error("it has more than " + std::to_string(kMaxElements) + " vertices or corners");
   const json& normalised = member_of(a, "normalized");
   e.normalised = normalised.is_boolean() && normalised.get<bool>();
-  if (member_of(a, "sparse").is_object()) throw std::runtime_error("it has sparse accessors, which are not supported: export it without");
+  if (member_of(a, "sparse").is_object())
+    throw std::runtime_error("it has sparse accessors, which are not supported: export it without");
   const int view = index_of(a, "bufferView");
   if (view < 0 || e.count == 0) return e;
   const json& v = entry("bufferViews", view);
   e.stride = size_of(v, "byteStride");
   if (e.stride == 0) e.stride = size;
   const int buffer = index_of(v, "buffer");
-  const std::size_t from = size_of(a, "byteOffset"), offset = size_of(v, "byteOffset"), length = size_of(v, "byteLength");
+  const std::size_t from = size_of(a, "byteOffset"), offset = size_of(v, "byteOffset"),
+                    length = size_of(v, "byteLength");
   if (buffer < 0 || static_cast<std::size_t>(buffer) >= buffers_.size() ||
       offset + length > buffers_[static_cast<std::size_t>(buffer)].size())
     throw std::runtime_error("a view reaches beyond its buffer");
-  if (e.stride < size || from + (e.count - 1) * e.stride + size > length) throw std::runtime_error("an accessor reaches beyond its view");
+  if (e.stride < size || from + (e.count - 1) * e.stride + size > length)
+    throw std::runtime_error("an accessor reaches beyond its view");
   e.data = buffers_[static_cast<std::size_t>(buffer)].data() + offset + from;
   return e;
 }
@@ -224,7 +245,8 @@ std::vector<int> GltfDocument::indices(int accessor) const {
   if (!e.data) return values;
   for (std::size_t i = 0; i < e.count; ++i) {
     const double index = component(e.data + i * e.stride, e.type, false);
-    if (index > static_cast<double>(kMaxElements)) throw std::runtime_error("an index names a vertex that is not there");
+    if (index > static_cast<double>(kMaxElements))
+      throw std::runtime_error("an index names a vertex that is not there");
     values[i] = static_cast<int>(index);
   }
   return values;

@@ -1,4 +1,5 @@
-// A glTF 2.0 document (Khronos 2021): its JSON, its buffers, and what its accessors say. Nothing in it is believed unchecked.
+// A glTF 2.0 document (Khronos 2021): its JSON, its buffers, and what its accessors say. Nothing in it is believed
+// unchecked.
 #pragma once
 
 #include <filesystem>
@@ -37,7 +38,7 @@ class GltfDocument {
 
 // The number of a member, or what is said for one that is not there or no number.
 double number_of(const nlohmann::json& object, const char* member, double missing);
-int as_index(const nlohmann::json& value);  // -1: it is none
+int as_index(const nlohmann::json& value);                       // -1: it is none
 int index_of(const nlohmann::json& object, const char* member);  // -1: none
 std::string text_of(const nlohmann::json& object, const char* member);
 const nlohmann::json& member_of(const nlohmann::json& object, const char* member);  // null: none

@@ -46,10 +46,12 @@ MeshMaterial read_material(const GltfDocument& document, const json& from) {
   m.emissive = colour(from, "emissiveFactor", m.emissive);
   if (text_of(from, "alphaMode") == "BLEND") {
     const json& factor = member_of(pbr, "baseColorFactor");
-    if (factor.is_array() && factor.size() == 4 && factor[3].is_number()) m.alpha = std::clamp(factor[3].get<float>(), 0.0f, 1.0f);
+    if (factor.is_array() && factor.size() == 4 && factor[3].is_number())
+      m.alpha = std::clamp(factor[3].get<float>(), 0.0f, 1.0f);
   }
-  // Phong has an exponent where glTF has a roughness r: of a distribution as wide, 2 / r^4 - 2 (Walter et al. 2007, eq. 30, with
-  // glTF's alpha = r^2). What mirrors at normal incidence: 0.04 of a dielectric (glTF 2.0, B.2.1).
+  // Phong has an exponent where glTF has a roughness r: of a distribution as wide, 2 / r^4 - 2 (Walter et al.
+  // 2007, eq. 30, with glTF's alpha = r^2). What mirrors at normal incidence: 0.04 of a dielectric (glTF 2.0,
+  // B.2.1).
   const double roughness = std::clamp(number_of(pbr, "roughnessFactor", 1), 0.1, 1.0);
   m.shininess = static_cast<float>(std::clamp(2 / std::pow(roughness, 4) - 2, 1.0, 1e4));
   m.specular.setConstant(0.04f);
@@ -66,8 +68,8 @@ Properties read_properties(const json& ours, const char* member) {
   const json& from = member_of(ours, member);
   if (!from.is_object()) return properties;
   for (const auto& [name, value] : from.items())
-    if (value.is_string() && value.get_ref<const std::string&>().size() <= kMaxPropertyBytes && name.size() <= 64 &&
-        properties.size() < kMaxProperties)
+    if (value.is_string() && value.get_ref<const std::string&>().size() <= kMaxPropertyBytes &&
+        name.size() <= 64 && properties.size() < kMaxProperties)
       properties[name] = value.get<std::string>();
   return properties;
 }
@@ -77,19 +79,23 @@ std::vector<int> triangles_of(int mode, const std::vector<int>& corners) {
   if (mode == 4) return {corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(corners.size() / 3 * 3)};
   std::vector<int> triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-    if (mode == 6) triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
-    else triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+    if (mode == 6)
+      triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
+    else
+      triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
   }
   return triangles;
 }
 
 template <int N>
-std::vector<Eigen::Matrix<float, N, 1>> vectors(const GltfDocument& document, const json& attributes, const std::string& name) {
+std::vector<Eigen::Matrix<float, N, 1>> vectors(const GltfDocument& document, const json& attributes,
+                                                const std::string& name) {
   std::vector<Eigen::Matrix<float, N, 1>> list;
   const int accessor = index_of(attributes, name.c_str());
   if (accessor < 0) return list;
   const std::vector<float> values = document.floats(accessor, N);
-  for (std::size_t i = 0; i + N <= values.size(); i += N) list.emplace_back(Eigen::Matrix<float, N, 1>(values.data() + i));
+  for (std::size_t i = 0; i + N <= values.size(); i += N)
+    list.emplace_back(Eigen::Matrix<float, N, 1>(values.data() + i));
   return list;
 }
 
@@ -135,7 +141,8 @@ struct Reader {
       for (std::size_t i = 0; i < count; ++i) part.indices.push_back(static_cast<int>(i));
     }
     for (const int i : part.indices)
-      if (static_cast<std::size_t>(i) >= count) throw std::runtime_error("an index names a vertex that is not there");
+      if (static_cast<std::size_t>(i) >= count)
+        throw std::runtime_error("an index names a vertex that is not there");
     part.indices = triangles_of(static_cast<int>(number_of(primitive, "mode", 4)), part.indices);
     corners += part.indices.size();
     if (corners / 3 > kMaxTriangles)
@@ -158,7 +165,8 @@ struct Reader {
   }
 
   void add(int index, const Eigen::Affine3d& parent, int depth) {
-    if (depth > 256 || !met.insert(index).second) throw std::runtime_error("its nodes are no tree, or a very deep one");
+    if (depth > 256 || !met.insert(index).second)
+      throw std::runtime_error("its nodes are no tree, or a very deep one");
     const json& node = document.entry("nodes", index);
     const Eigen::Affine3d pose = parent * pose_of(node);
     read_ours(node);
@@ -174,8 +182,7 @@ struct Reader {
         mesh.parts.push_back(std::move(part));
       }
     }
-    for (const json& child : member_of(node, "children"))
-      add(as_index(child), pose, depth + 1);
+    for (const json& child : member_of(node, "children")) add(as_index(child), pose, depth + 1);
   }
 
   // Of a file with several, the first holds for all: it is one object.
@@ -208,7 +215,8 @@ struct Reader {
 MeshParts read_gltf(const std::filesystem::path& file) {
   const GltfDocument document(file);
   Reader reader{document, {}, {}};
-  for (const json& material : member_of(document.root(), "materials")) reader.mesh.materials.push_back(read_material(document, material));
+  for (const json& material : member_of(document.root(), "materials"))
+    reader.mesh.materials.push_back(read_material(document, material));
   const int scene = std::max(0, index_of(document.root(), "scene"));
   if (member_of(document.root(), "scenes").empty()) throw std::runtime_error("it has no scene");
   const json& top = document.entry("scenes", scene);

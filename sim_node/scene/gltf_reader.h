@@ -7,9 +7,9 @@
 
 namespace tactus::sim {
 
-// As read_mesh_parts (mesh_reader.h): every triangle of the file's scene where its node stands at rest; skins, shapes that
-// change, cameras and lights are ignored. A part without normals gets them with an edge above kCrease_deg. A file that
-// write_gltf wrote is read to the bit.
+// As read_mesh_parts (mesh_reader.h): every triangle of the file's scene where its node stands at rest; skins,
+// shapes that change, cameras and lights are ignored. A part without normals gets them with an edge above
+// kCrease_deg. A file that write_gltf wrote is read to the bit.
 MeshParts read_gltf(const std::filesystem::path& file);
 
 // The vertical texture coordinate, upwards: glTF's own is 1 - v, which rounds. A reader who does not know it takes

@@ -8,12 +8,14 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // RFC 4648, table 1
+constexpr std::string_view kBase64 =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // RFC 4648, table 1
 
 constexpr std::array<int, 256> make_digits() {
   std::array<int, 256> digits{};
   for (int& d : digits) d = -1;
-  for (std::size_t i = 0; i < kBase64.size(); ++i) digits[static_cast<unsigned char>(kBase64[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < kBase64.size(); ++i)
+    digits[static_cast<unsigned char>(kBase64[i])] = static_cast<int>(i);
   return digits;
 }
 constexpr std::array<int, 256> kDigits = make_digits();
@@ -22,7 +24,8 @@ constexpr std::array<int, 256> kDigits = make_digits();
 
 bool decode_data_uri(const std::string& uri, sync::Bytes& bytes) {
   const auto comma = uri.find(',');
-  if (!uri.starts_with("data:") || comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64")) return false;
+  if (!uri.starts_with("data:") || comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64"))
+    return false;
   unsigned bits = 0;
   int count = 0;
   bytes.clear();
@@ -50,7 +53,9 @@ std::string encode_base64(const sync::Bytes& bytes) {
 std::string decode_path(const std::string& uri) {
   std::string path;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    const auto hex = [&](std::size_t at) { return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])); };
+    const auto hex = [&](std::size_t at) {
+      return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at]));
+    };
     if (uri[i] == '%' && hex(i + 1) && hex(i + 2)) {
       path += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
       i += 2;
@@ -66,8 +71,10 @@ std::string encode_path(const std::string& path) {
   std::string uri;
   for (const char c : path) {
     const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) || std::string_view("-._~/").find(c) != std::string_view::npos) uri += c;
-    else uri += {'%', kHex[u >> 4], kHex[u & 15]};
+    if (std::isalnum(u) || std::string_view("-._~/").find(c) != std::string_view::npos)
+      uri += c;
+    else
+      uri += {'%', kHex[u >> 4], kHex[u & 15]};
   }
   return uri;
 }

@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kUnsignedInt = 5125, kFloat = 5126, kArrayBuffer = 34962, kElementArrayBuffer = 34963;  // glTF 2.0, 3.6 and 5.11
+constexpr int kUnsignedInt = 5125, kFloat = 5126, kArrayBuffer = 34962,
+              kElementArrayBuffer = 34963;  // glTF 2.0, 3.6 and 5.11
 
 json colour(const Eigen::Vector3f& c) { return json::array({c.x(), c.y(), c.z()}); }
 
@@ -32,9 +33,11 @@ struct Writer {
     return static_cast<int>(document["bufferViews"].size()) - 1;
   }
 
-  int add_accessor(const void* data, std::size_t count, int component, const char* type, std::size_t element_bytes) {
+  int add_accessor(const void* data, std::size_t count, int component, const char* type,
+                   std::size_t element_bytes) {
     json accessor = {{"componentType", component}, {"count", count}, {"type", type}};
-    accessor["bufferView"] = add_view(data, count * element_bytes, component == kFloat ? kArrayBuffer : kElementArrayBuffer);
+    accessor["bufferView"] =
+        add_view(data, count * element_bytes, component == kFloat ? kArrayBuffer : kElementArrayBuffer);
     document["accessors"].push_back(accessor);
     return static_cast<int>(document["accessors"].size()) - 1;
   }
@@ -94,11 +97,13 @@ struct Writer {
     pbr["baseColorFactor"].push_back(m.alpha);
     // As wide a highlight in another reader's terms; ours takes the exponent itself from the extras.
     pbr["roughnessFactor"] = std::pow(2.0 / (static_cast<double>(m.shininess) + 2), 0.25);
-    if (const int texture = add_picture(m.colour_map); texture >= 0) pbr["baseColorTexture"] = {{"index", texture}};
+    if (const int texture = add_picture(m.colour_map); texture >= 0)
+      pbr["baseColorTexture"] = {{"index", texture}};
     json material = {{"pbrMetallicRoughness", pbr}, {"emissiveFactor", colour(m.emissive)}};
     if (!m.name.empty()) material["name"] = m.name;
     if (m.alpha < 1) material["alphaMode"] = "BLEND";
-    if (const int texture = add_picture(m.normal_map); texture >= 0) material["normalTexture"] = {{"index", texture}};
+    if (const int texture = add_picture(m.normal_map); texture >= 0)
+      material["normalTexture"] = {{"index", texture}};
     material["extras"]["tactus"] = {{"specular", colour(m.specular)}, {"shininess", m.shininess}};
     document["materials"].push_back(material);
   }
@@ -107,7 +112,8 @@ struct Writer {
     const std::vector<std::uint32_t> corners(part.indices.begin(), part.indices.end());
     json primitive;
     primitive["attributes"] = add_attributes(part);
-    primitive["indices"] = add_accessor(corners.data(), corners.size(), kUnsignedInt, "SCALAR", sizeof(std::uint32_t));
+    primitive["indices"] =
+        add_accessor(corners.data(), corners.size(), kUnsignedInt, "SCALAR", sizeof(std::uint32_t));
     if (part.material >= 0) primitive["material"] = part.material;
     json mesh = {{"primitives", json::array({primitive})}}, node;
     if (!part.mesh.empty()) mesh["name"] = part.mesh;
@@ -124,7 +130,8 @@ void append(sync::Bytes& out, std::uint32_t value) {
   for (int k = 0; k < 4; ++k) out.push_back(static_cast<std::uint8_t>(value >> 8 * k));
 }
 
-void append_chunk(sync::Bytes& out, std::uint32_t kind, const std::uint8_t* data, std::size_t size, std::uint8_t filler) {
+void append_chunk(sync::Bytes& out, std::uint32_t kind, const std::uint8_t* data, std::size_t size,
+                  std::uint8_t filler) {
   append(out, static_cast<std::uint32_t>((size + 3) / 4 * 4));
   append(out, kind);
   out.insert(out.end(), data, data + size);

@@ -1,4 +1,5 @@
-// What a geometry file holds, as it stands there: parts of one material each, and the pictures that their materials name.
+// What a geometry file holds, as it stands there: parts of one material each, and the pictures that their
+// materials name.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +28,8 @@ struct MeshMaterial {
   bool operator==(const MeshMaterial&) const = default;
 };
 
-// Per vertex as in mesh_t.lcm, in the frame of the file, single precision as files have it. Texture coordinates and tangents
-// are as many as positions, or none; a normal that the file lacks is 0.
+// Per vertex as in mesh_t.lcm, in the frame of the file, single precision as files have it. Texture coordinates
+// and tangents are as many as positions, or none; a normal that the file lacks is 0.
 struct MeshPart {
   std::string mesh, node;
   int material = -1;  // index in MeshParts::materials; -1: none

@@ -61,7 +61,11 @@ TriangleMesh as_seen(const NamedMesh& named, const std::set<int>& materials, int
 }  // namespace
 
 NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
-  NamedMesh named{mesh.Uri(), context.asset_file(mesh.Uri(), element), {mesh.Submesh(), mesh.CenterSubmesh(), to_eigen(mesh.Scale())}, nullptr, ""};
+  NamedMesh named{mesh.Uri(),
+                  context.asset_file(mesh.Uri(), element),
+                  {mesh.Submesh(), mesh.CenterSubmesh(), to_eigen(mesh.Scale())},
+                  nullptr,
+                  ""};
   const Eigen::Vector3d& scale = named.choice.scale;
   if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
     context.refuse(element, "has a <scale> that is zero or not finite");

@@ -24,7 +24,8 @@ NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Ele
 // All of it as one mesh, for whoever collides with it; index in WorldDef::meshes, as below.
 int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
 
-// As it is seen: the parts with these materials, with tangents where a picture lies on them, `subdivide` times finer.
+// As it is seen: the parts with these materials, with tangents where a picture lies on them, `subdivide` times
+// finer.
 int seen_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
               const sdf::Element& element);
 

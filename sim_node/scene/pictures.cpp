@@ -21,7 +21,9 @@ std::size_t big_endian(Bytes bytes, std::size_t at, std::size_t count) {
 }
 
 void check_sides(std::size_t columns, std::size_t rows) {
-  const auto fits = [](std::size_t side) { return side >= 1 && side <= static_cast<std::size_t>(kMaxPictureSide); };
+  const auto fits = [](std::size_t side) {
+    return side >= 1 && side <= static_cast<std::size_t>(kMaxPictureSide);
+  };
   if (!fits(columns) || !fits(rows))
     throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels a side");
 }
@@ -74,8 +76,8 @@ std::int64_t add_image(WorldDef& world, sync::Asset image) {
   return hash;
 }
 
-std::int64_t picture_of(LoadContext& context, const sdf::Element& element, const std::string& what, const std::string& uri,
-                        PictureUse use) {
+std::int64_t picture_of(LoadContext& context, const sdf::Element& element, const std::string& what,
+                        const std::string& uri, PictureUse use) {
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
     sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};

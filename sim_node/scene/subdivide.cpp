@@ -26,7 +26,7 @@ struct Sides {
 // Triangles of welded points, with what belongs to corners beside them.
 struct Surface {
   std::vector<Eigen::Vector3d> points;
-  std::vector<int> corners;  // a point each, three per triangle
+  std::vector<int> corners;                // a point each, three per triangle
   std::vector<Eigen::Vector2f> texcoords;  // of each corner, or none
   std::map<Edge, Sides> edges;
 
@@ -35,7 +35,8 @@ struct Surface {
 
   void find_edges() {
     edges.clear();
-    for (Index c = 0; c < corners.size(); ++c) edges[edge(point(next(c)), point(next(next(c))))].corners.push_back(c);
+    for (Index c = 0; c < corners.size(); ++c)
+      edges[edge(point(next(c)), point(next(next(c))))].corners.push_back(c);
     for (auto& [e, sides] : edges) sides.sharp = sides.corners.size() != 2;
   }
 };
@@ -72,7 +73,8 @@ Surface weld(const TriangleMesh& mesh) {
   for (auto& [e, sides] : s.edges)
     for (const int p : {e.first, e.second})
       if (sides.corners.size() == 2)
-        sides.sharp = sides.sharp || (normal[{p, sides.corners[0] / 3}] - normal[{p, sides.corners[1] / 3}]).norm() > kSame;
+        sides.sharp =
+            sides.sharp || (normal[{p, sides.corners[0] / 3}] - normal[{p, sides.corners[1] / 3}]).norm() > kSame;
   return s;
 }
 
@@ -98,8 +100,10 @@ std::vector<Eigen::Vector3d> moved_points(const Surface& s) {
   std::vector<Eigen::Vector3d> moved = s.points;
   for (Index i = 0; i < moved.size(); ++i) {
     const Around& a = around[i];
-    if (a.sharp == 2) moved[i] = 0.75 * moved[i] + a.sharp_sum / 8;
-    else if (a.sharp < 2 && a.neighbours > 0) moved[i] += beta(a.neighbours) * (a.sum - a.neighbours * moved[i]);
+    if (a.sharp == 2)
+      moved[i] = 0.75 * moved[i] + a.sharp_sum / 8;
+    else if (a.sharp < 2 && a.neighbours > 0)
+      moved[i] += beta(a.neighbours) * (a.sum - a.neighbours * moved[i]);
   }
   return moved;
 }
@@ -111,13 +115,19 @@ Surface refined(Surface s) {
   for (auto& [e, sides] : s.edges) {
     const Eigen::Vector3d ends = at(e.first) + at(e.second);
     sides.middle = static_cast<int>(out.points.size());
-    out.points.push_back(sides.sharp ? Eigen::Vector3d(ends / 2)
-                                     : Eigen::Vector3d(3 * ends / 8 + (at(s.point(sides.corners[0])) + at(s.point(sides.corners[1]))) / 8));
+    out.points.push_back(
+        sides.sharp
+            ? Eigen::Vector3d(ends / 2)
+            : Eigen::Vector3d(3 * ends / 8 + (at(s.point(sides.corners[0])) + at(s.point(sides.corners[1]))) / 8));
   }
-  const auto middle = [&](Index c) { return s.edges.at(edge(s.point(c), s.point(s.next(c)))).middle; };  // from c to the next
+  const auto middle = [&](Index c) {
+    return s.edges.at(edge(s.point(c), s.point(s.next(c)))).middle;
+  };  // from c to the next
   for (Index t = 0; t < s.corners.size(); t += 3) {
-    const int p[3] = {s.point(t), s.point(t + 1), s.point(t + 2)}, m[3] = {middle(t), middle(t + 1), middle(t + 2)};
-    out.corners.insert(out.corners.end(), {p[0], m[0], m[2], p[1], m[1], m[0], p[2], m[2], m[1], m[0], m[1], m[2]});
+    const int p[3] = {s.point(t), s.point(t + 1), s.point(t + 2)},
+              m[3] = {middle(t), middle(t + 1), middle(t + 2)};
+    out.corners.insert(out.corners.end(),
+                       {p[0], m[0], m[2], p[1], m[1], m[0], p[2], m[2], m[1], m[0], m[1], m[2]});
     if (s.texcoords.empty()) continue;
     const Eigen::Vector2f u[3] = {s.texcoords[t], s.texcoords[t + 1], s.texcoords[t + 2]};
     const Eigen::Vector2f n[3] = {(u[0] + u[1]) / 2, (u[1] + u[2]) / 2, (u[2] + u[0]) / 2};
@@ -153,7 +163,8 @@ TriangleMesh finished(const Surface& s) {
   std::map<std::pair<Index, std::array<float, 2>>, int> known;
   for (Index c = 0; c < s.corners.size(); ++c) {
     const Eigen::Vector2f u = s.texcoords.empty() ? Eigen::Vector2f(0, 0) : s.texcoords[c];
-    const auto [vertex, is_new] = known.try_emplace({find(c), {u.x(), u.y()}}, static_cast<int>(mesh.vertices.size()));
+    const auto [vertex, is_new] =
+        known.try_emplace({find(c), {u.x(), u.y()}}, static_cast<int>(mesh.vertices.size()));
     if (is_new) {
       mesh.vertices.push_back(at(c));
       mesh.normals.push_back(sums[find(c)].stableNormalized());
@@ -168,7 +179,8 @@ TriangleMesh finished(const Surface& s) {
 
 TriangleMesh subdivide(const TriangleMesh& mesh, int times) {
   if (static_cast<double>(mesh.indices.size()) / 3 * std::pow(4, times) > static_cast<double>(kMaxTriangles))
-    throw std::runtime_error("it would have more than " + std::to_string(kMaxTriangles) + " triangles: subdivide it less often");
+    throw std::runtime_error("it would have more than " + std::to_string(kMaxTriangles) +
+                             " triangles: subdivide it less often");
   Surface surface = weld(mesh);
   for (int i = 0; i < times; ++i) surface = refined(std::move(surface));
   return finished(surface);

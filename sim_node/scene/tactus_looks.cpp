@@ -19,10 +19,12 @@ namespace {
 const std::vector<std::string> kSurfaceShaders{"gouraud", "phong", "normal_mapped", "reflecting", "textured"};
 const std::vector<std::string> kPassShaders{"greyscale", "blur", "edges"};
 
-// Design: a thousand lines; more uniforms than shaders that people write have; as many passes as 60 Hz can hope for.
+// Design: a thousand lines; more uniforms than shaders that people write have; as many passes as 60 Hz can hope
+// for.
 constexpr std::uintmax_t kMaxShaderBytes = 64 << 10;
 constexpr std::size_t kMaxUniforms = 32, kMaxShaders = 64, kMaxPasses = 16;
 constexpr std::size_t kMaxName = 64;  // as in uniform_t.lcm
+constexpr float kLargestUniform = 1e6f;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -30,23 +32,31 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_identifier(const std::string& name) {
   const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '_'; };
-  return !name.empty() && name.size() <= kMaxName && letter(static_cast<unsigned char>(name[0])) && !name.starts_with("gl_") &&
+  return !name.empty() && name.size() <= kMaxName && letter(static_cast<unsigned char>(name[0])) &&
+         !name.starts_with("gl_") &&
          std::all_of(name.begin(), name.end(), [&](unsigned char c) { return letter(c) || std::isdigit(c); });
 }
 
 void check_shader(const LoadContext& context, const sdf::Element& element, const std::string& name,
                   const std::vector<std::string>& ours) {
   const auto& own = context.world.shaders;
-  if (contains(ours, name) || std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; })) return;
+  if (!is_identifier(name))
+    context.refuse(element,
+                   "names shader \"" + name + "\": it must be letters, digits and _, 64 at most, no digit first");
+  if (contains(ours, name) ||
+      std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; }))
+    return;
   std::string names;
   for (const std::string& each : ours) names += (names.empty() ? "" : ", ") + each;
   for (const shader_t& each : own) names += ", " + each.name;
-  context.warn(element, "names shader \"" + name + "\", which is neither the scene's nor visual_node's: there are " + names +
+  context.warn(element, "names shader \"" + name +
+                            "\", which is neither the scene's nor visual_node's: there are " + names +
                             "; a renderer of one's own may have it");
 }
 
 // "scale 2; tint 1 0.5 0"
-std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Element& element, const std::string& text) {
+std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Element& element,
+                                     const std::string& text) {
   std::vector<uniform_t> uniforms;
   std::istringstream all(text);
   for (std::string part; std::getline(all, part, ';');) {
@@ -54,7 +64,8 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
     uniform_t uniform{};
     if (!(words >> uniform.name)) continue;
     const auto refuse = [&](const std::string& what) {
-      context.refuse(element, "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
+      context.refuse(element,
+                     "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
     };
     if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is no name of a uniform");
     for (std::string word; words >> word; ++uniform.count) {
@@ -64,7 +75,7 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       } catch (const std::invalid_argument& e) {
         refuse(uniform.name + ": " + e.what());
       }
-      if (!std::isfinite(uniform.values[uniform.count])) refuse(uniform.name + " is not finite");
+      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " is beyond 1e6");
     }
     if (uniform.count == 0) refuse(uniform.name + " has no number");
     for (const uniform_t& other : uniforms)
@@ -88,7 +99,8 @@ LookWords read_words(LoadContext& context, const sdf::Element& element, Attribut
   words.colour_map = picture("colour_map", PictureUse::kColour);
   words.normal_map = picture("normal_map", PictureUse::kDirections);
   words.reflectance = attributes.quantity("reflectance", "1", 0, 1);
-  if (const auto uniforms = attributes.text("uniforms")) words.uniforms = read_uniforms(context, element, *uniforms);
+  if (const auto uniforms = attributes.text("uniforms"))
+    words.uniforms = read_uniforms(context, element, *uniforms);
   return words;
 }
 
@@ -97,21 +109,27 @@ const LookWords& known_look(const LoadContext& context, const sdf::Element& elem
   if (known != context.look_of.end()) return *known->second;
   std::string names;
   for (const auto& [each, words] : context.look_of) names += (names.empty() ? "" : ", ") + each;
-  context.refuse(element, "names look \"" + name + "\": there " + (names.empty() ? "is none in this scene" : "are " + names));
+  context.refuse(
+      element, "names look \"" + name + "\": there " + (names.empty() ? "is none in this scene" : "are " + names));
 }
 
 void read_look(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const std::string name = attributes.required_text("name");
+  const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+  if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
+    context.refuse(element, "has a name that is longer than 64 letters, or no printable ASCII");
   const auto base = attributes.text("base");
   auto words = std::make_shared<LookWords>(read_words(context, element, attributes));
   attributes.done();
   if (base) words->add(known_look(context, element, *base));
   words->name = name;
-  if (!context.look_of.emplace(name, words).second) context.refuse(element, "has a name that another look has: choose another");
+  if (!context.look_of.emplace(name, words).second)
+    context.refuse(element, "has a name that another look has: choose another");
 }
 
-std::int64_t read_text(LoadContext& context, const sdf::Element& element, const std::string& what, const std::string& uri) {
+std::int64_t read_text(LoadContext& context, const sdf::Element& element, const std::string& what,
+                       const std::string& uri) {
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
     sync::Asset text{asset_ref_t::SHADER, file.filename().string(), read_regular_file(file, kMaxShaderBytes)};
@@ -125,7 +143,8 @@ std::int64_t read_text(LoadContext& context, const sdf::Element& element, const 
     }
     const std::int64_t hash = sync::fnv1a_64(text.bytes.data(), text.bytes.size());
     auto& texts = context.world.shader_texts;
-    if (std::none_of(texts.begin(), texts.end(), [&](const sync::Asset& other) { return other.bytes == text.bytes; }))
+    if (std::none_of(texts.begin(), texts.end(),
+                     [&](const sync::Asset& other) { return other.bytes == text.bytes; }))
       texts.push_back(std::move(text));
     return hash;
   } catch (const std::exception& e) {
@@ -141,7 +160,8 @@ void read_shader(LoadContext& context, const sdf::Element& element) {
   shader.vertex_file = attributes.text("vertex").value_or("");
   attributes.done();
   if (!is_identifier(shader.name))
-    context.refuse(element, "has name=\"" + shader.name + "\": it must be letters, digits and _, 64 at most, no digit first");
+    context.refuse(
+        element, "has name=\"" + shader.name + "\": it must be letters, digits and _, 64 at most, no digit first");
   if (contains(kSurfaceShaders, shader.name) || contains(kPassShaders, shader.name))
     context.refuse(element, "has a name that a shader of visual_node has: choose another");
   for (const shader_t& other : context.world.shaders)
@@ -170,7 +190,8 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const std::string uri = attributes.required_text("picture");
   attributes.done();
-  if (context.world.environment_asset != 0) context.refuse(element, "stands there twice: one picture lies around a scene");
+  if (context.world.environment_asset != 0)
+    context.refuse(element, "stands there twice: one picture lies around a scene");
   context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
 }
 
@@ -217,14 +238,16 @@ int look_index(WorldDef& world, const LookWords& words) {
                                       : look.normal_map    ? "normal_mapped"
                                       : look.colour_map    ? "textured"
                                                            : "");
-  if (look.shader.empty() && !look.colour_map && !look.normal_map && look.reflectance == 0 && look.uniforms.empty()) return -1;
+  if (look.shader.empty() && !look.colour_map && !look.normal_map && look.reflectance == 0 &&
+      look.uniforms.empty())
+    return -1;
   const auto bytes = sync::encode(look);
-  look.name = words.name;
   for (std::size_t i = 0; i < world.looks.size(); ++i) {
     look_t other = world.looks[i];
     other.name.clear();
     if (sync::encode(other) == bytes) return static_cast<int>(i);
   }
+  look.name = words.name.empty() ? "look " + std::to_string(world.looks.size()) : words.name;
   world.looks.push_back(look);
   return static_cast<int>(world.looks.size()) - 1;
 }

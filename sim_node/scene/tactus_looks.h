@@ -7,7 +7,8 @@
 
 namespace tactus::sim {
 
-// What <tactus:look>, SDF's <pbr> or a mesh file says of a look; what is not said comes from whoever is asked next.
+// What <tactus:look>, SDF's <pbr> or a mesh file says of a look; what is not said comes from whoever is asked
+// next.
 struct LookWords {
   std::string name;
   std::optional<std::string> shader;
@@ -20,8 +21,8 @@ struct LookWords {
   void add(const LookWords& others);
 };
 
-// Shaders, looks and passes that stand in <world>, and its environment. Refuses what is wrong, warns of a shader that is
-// neither the scene's nor one of visual_node's.
+// Shaders, looks and passes that stand in <world>, and its environment. Refuses what is wrong, warns of a shader
+// that is neither the scene's nor one of visual_node's.
 void read_looks(LoadContext& context, const sdf::ElementPtr& world);
 
 // Of one <tactus:look> that a visual wears: its own attributes, and those of the look of the world that it names.

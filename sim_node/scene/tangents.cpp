@@ -14,7 +14,9 @@ Eigen::Vector3d beside(const Eigen::Vector3d& n) {
   return (axis - n * n.dot(axis)).stableNormalized();
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 }  // namespace
 
@@ -28,7 +30,8 @@ void make_tangents(MeshPart& part) {
   for (Index t = 0; t + 2 < part.indices.size(); t += 3) {
     Eigen::Vector3d p[3];
     Eigen::Vector2d uv[3];
-    for (Index k = 0; k < 3; ++k) p[k] = part.positions_m[at(t + k)].cast<double>(), uv[k] = part.texcoords[at(t + k)].cast<double>();
+    for (Index k = 0; k < 3; ++k)
+      p[k] = part.positions_m[at(t + k)].cast<double>(), uv[k] = part.texcoords[at(t + k)].cast<double>();
     const Eigen::Vector3d e1 = p[1] - p[0], e2 = p[2] - p[0];
     const Eigen::Vector2d d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
     const double area = d1.x() * d2.y() - d2.x() * d1.y();

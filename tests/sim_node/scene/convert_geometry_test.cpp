@@ -48,7 +48,9 @@ MeshParts read_back(const SceneFile& file, const MeshParts& mesh, bool packed) {
 }
 
 MeshParts random_mesh(std::mt19937& random) {
-  const auto number = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
+  const auto number = [&](float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(random);
+  };
   const auto count = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
   const auto unit = [&] {
     Eigen::Vector3f n(number(-1, 1), number(-1, 1), number(-1, 1));
@@ -58,7 +60,8 @@ MeshParts random_mesh(std::mt19937& random) {
   for (int m = count(0, 3); m > 0; --m) {
     MeshMaterial material;
     material.name = "m" + std::to_string(m);
-    for (Eigen::Vector3f* c : {&material.diffuse, &material.specular, &material.emissive}) *c = {number(0, 1), number(0, 1), number(0, 1)};
+    for (Eigen::Vector3f* c : {&material.diffuse, &material.specular, &material.emissive})
+      *c = {number(0, 1), number(0, 1), number(0, 1)};
     material.shininess = number(1, 1000);
     material.alpha = count(0, 1) ? 1 : number(0, 1);
     if (count(0, 1)) material.colour_map.file = "maps/a picture %41 \xc3\xa4 " + std::to_string(m) + ".png";
@@ -76,7 +79,8 @@ MeshParts random_mesh(std::mt19937& random) {
       const float size = std::ldexp(1.0f, count(-40, 15));
       part.positions_m.emplace_back(number(-size, size), count(0, 3) ? number(-size, size) : -0.0f, number(-1, 1));
       part.normals.push_back(unit());
-      if (textured) part.texcoords.emplace_back(number(-3, 3), count(0, 1) ? number(-3, 3) : std::ldexp(1.0f, -count(0, 60)));
+      if (textured)
+        part.texcoords.emplace_back(number(-3, 3), count(0, 1) ? number(-3, 3) : std::ldexp(1.0f, -count(0, 60)));
       if (tangents) {
         const Eigen::Vector3f t = unit();
         part.tangents.emplace_back(t.x(), t.y(), t.z(), count(0, 1) ? 1.0f : -1.0f);
@@ -131,7 +135,8 @@ TEST_CASE("Pictures and properties are named from where the new file lies") {
   mesh.materials[0].normal_map.file = "/somewhere/n.png";
   mesh.material = {{"base", "oak"}, {"bump", "planks.png"}};
   mesh.look = {{"colour_map", "d.png"}};
-  const MeshParts moved = for_place(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
+  const MeshParts moved =
+      for_place(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
   CHECK(moved.materials[0].colour_map.file == "../../from/maps/c.png");
   CHECK(moved.materials[0].normal_map.file == "/somewhere/n.png");
   CHECK(moved.material.at("bump") == "../../from/planks.png");
@@ -145,7 +150,11 @@ TEST_CASE("A scene takes material, relief, modes and look from the mesh file whe
   file.write("box.modes.csv", "frequency_Hz,damping_1_s,amplitude\n440,3,1\n");
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   MeshParts mesh = read_mesh_parts(file.folder() / "t.obj");
-  mesh.material = {{"base", "oak"}, {"bump", "planks.png"}, {"bump_size", "0.5m 20cm"}, {"bump_height", "1mm"}, {"modes", "box.modes.csv"}};
+  mesh.material = {{"base", "oak"},
+                   {"bump", "planks.png"},
+                   {"bump_size", "0.5m 20cm"},
+                   {"bump_height", "1mm"},
+                   {"modes", "box.modes.csv"}};
   mesh.look = {{"shader", "reflecting"}, {"reflectance", "0.25"}};
   const auto write = [&] {
     const sync::Bytes bytes = write_gltf(mesh, true);
@@ -154,7 +163,8 @@ TEST_CASE("A scene takes material, relief, modes and look from the mesh file whe
   write();
   const std::string geometry = "<geometry><mesh><uri>t.glb</uri></mesh></geometry>";
   const auto scene = [&](const std::string& surface, const std::string& look) {
-    return link(surface + "<collision name='c'>" + geometry + "</collision><visual name='v'>" + geometry + look + "</visual>");
+    return link(surface + "<collision name='c'>" + geometry + "</collision><visual name='v'>" + geometry + look +
+                "</visual>");
   };
   file.write("scene.sdf", scene("", ""));
   const WorldDef w = file.load();
@@ -194,7 +204,8 @@ TEST_CASE("A scene takes material, relief, modes and look from the mesh file whe
     CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("gone.png"));
     mesh.material = {{"base", "unobtainium"}};
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("there are ") && Catch::Contains("steel"));
+    CHECK_THAT(file.refusal(),
+               Catch::Contains("t.glb") && Catch::Contains("there are ") && Catch::Contains("steel"));
     mesh.material.clear(), mesh.look["reflectance"] = "2";
     write();
     CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("between 0 and 1"));

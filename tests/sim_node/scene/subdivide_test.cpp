@@ -15,11 +15,21 @@ namespace {
 TriangleMesh icosahedron() {
   const double g = std::numbers::phi;
   TriangleMesh m;
-  for (const Vector3d& v : {Vector3d(-1, g, 0), {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                            {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}})
+  for (const Vector3d& v : {Vector3d(-1, g, 0),
+                            {1, g, 0},
+                            {-1, -g, 0},
+                            {1, -g, 0},
+                            {0, -1, g},
+                            {0, 1, g},
+                            {0, -1, -g},
+                            {0, 1, -g},
+                            {g, 0, -1},
+                            {g, 0, 1},
+                            {-g, 0, -1},
+                            {-g, 0, 1}})
     m.vertices.push_back(v.normalized());
-  m.indices = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8,
-               3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1};
+  m.indices = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4,  11, 10, 2,  10, 7, 6, 7, 1, 8,
+               3, 9,  4, 3, 4, 2, 3, 2, 6, 3, 6, 8,  3, 8,  9,  4, 9, 5, 2, 4,  11, 6,  2,  10, 8,  6, 7, 9, 8, 1};
   complete_normals(m);
   return m;
 }
@@ -33,7 +43,8 @@ TriangleMesh cube() {
       Vector3d n = Vector3d::Zero(), u = Vector3d::Zero();
       n[axis] = side, u[(axis + 1) % 3] = 1;
       const Vector3d v = n.cross(u);
-      for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) m.vertices.push_back(n + a * u + b * v);
+      for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+        m.vertices.push_back(n + a * u + b * v);
       m.normals.insert(m.normals.end(), 4, n);
       for (const int k : {0, 1, 2, 0, 2, 3}) m.indices.push_back(first + k);
     }
@@ -50,8 +61,8 @@ TEST_CASE("Once divided, an icosahedron has the points of Loop's masks") {
   REQUIRE(m.indices.size() == 3 * 80);
   // The five neighbours of a vertex v of radius 1 sum to sqrt(5) v.
   const double old_radius = 1 - 5 * loop_beta(5) + std::sqrt(5.0) * loop_beta(5);
-  // Of an edge between a and b, with c and d opposite: |3 (a + b) + c + d| / 8; a.b = c.d' = 1/sqrt(5) where joined, and c and d
-  // are joined by no edge: c.d = -1/sqrt(5); each of a, b with each of c, d: 1/sqrt(5).
+  // Of an edge between a and b, with c and d opposite: |3 (a + b) + c + d| / 8; a.b = c.d' = 1/sqrt(5) where
+  // joined, and c and d are joined by no edge: c.d = -1/sqrt(5); each of a, b with each of c, d: 1/sqrt(5).
   const double s = 1 / std::sqrt(5.0);
   const double edge_radius = std::sqrt(9 * (2 + 2 * s) + (2 - 2 * s) + 2 * 3 * 4 * s) / 8;
   int old_ones = 0, new_ones = 0;
@@ -64,7 +75,8 @@ TEST_CASE("Once divided, an icosahedron has the points of Loop's masks") {
 }
 
 TEST_CASE("Divided on and on, the vertices of an icosahedron go to Loop's limit, and its surface to a round one") {
-  // Limit of a vertex of valence n: 1 - n c of itself and c of each neighbour, c = 1 / (3 / (8 beta) + n) (Loop 1987, p. 41).
+  // Limit of a vertex of valence n: 1 - n c of itself and c of each neighbour, c = 1 / (3 / (8 beta) + n) (Loop
+  // 1987, p. 41).
   const double c = 1 / (3 / (8 * loop_beta(5)) + 5), limit = 1 - 5 * c + std::sqrt(5.0) * c;
   double last = 1;
   const TriangleMesh plain = icosahedron();
@@ -76,7 +88,8 @@ TEST_CASE("Divided on and on, the vertices of an icosahedron go to Loop's limit,
     CHECK(error < 0.5 * last);  // by the second eigenvalue of its matrix, below 3/8 + 2/8 cos(72 deg) = 0.453
     last = error;
     if (times < 3) continue;
-    // Loop's surface of an icosahedron is no sphere, but near one: radii within 2 %, normals within 3 degrees of it.
+    // Loop's surface of an icosahedron is no sphere, but near one: radii within 2 %, normals within 3 degrees of
+    // it.
     double low = 9, high = 0, off = 0;
     for (std::size_t i = 0; i < m.vertices.size(); ++i) {
       low = std::min(low, m.vertices[i].norm()), high = std::max(high, m.vertices[i].norm());
