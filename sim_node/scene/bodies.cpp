@@ -9,6 +9,7 @@
 #include "sim_node/scene/inertial.h"
 #include "sim_node/scene/joints.h"
 #include "sim_node/scene/lights.h"
+#include "sim_node/scene/meshes.h"
 #include "sim_node/scene/sdf_eigen.h"
 #include "sim_node/scene/shapes.h"
 #include "sim_node/scene/tactus_materials.h"
@@ -42,6 +43,12 @@ void read_surface(const LoadContext& context, const sdf::ElementPtr& collision, 
     shape.restitution = value_of(context, bounce, 0, 1);
 }
 
+// What the file of a mesh says that it is made of; -1: nothing.
+int file_material(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner) {
+  if (geometry.Type() != sdf::GeometryType::MESH || written(owner, "tactus:surface")) return -1;
+  return material_of_file(context, named_mesh(context, *geometry.MeshShape(), *owner), -1);
+}
+
 void add_collisions(LoadContext& context, const sdf::Link& link, int body, int material) {
   for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
     const sdf::Collision& collision = *link.CollisionByIndex(i);
@@ -50,24 +57,8 @@ void add_collisions(LoadContext& context, const sdf::Link& link, int body, int m
     if (!shape) continue;
     shape->name = collision.Name();
     shape->body = body;
-    read_surface(context, element, material, *shape);
+    read_surface(context, element, material < 0 ? file_material(context, *collision.Geom(), element) : material, *shape);
     context.world.shapes.push_back(*shape);
-  }
-}
-
-void add_visuals(LoadContext& context, const sdf::Link& link, int body, int material) {
-  for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
-    const sdf::Visual& visual = *link.VisualByIndex(i);
-    const sdf::ElementPtr element = visual.Element();
-    const auto shape = read_shape(context, *visual.Geom(), element, context.resolve(visual.SemanticPose(), *element));
-    if (!shape) continue;
-    VisualDef def;
-    def.shape = *shape;
-    def.shape.name = visual.Name();
-    def.shape.body = body;
-    def.shape.material = material;
-    read_look(context, visual, def);
-    context.world.visuals.push_back(def);
   }
 }
 
@@ -76,9 +67,10 @@ void add_bounding_box(LoadContext& context, std::size_t first_visual, int body, 
   ShapeDef box;
   Eigen::AlignedBox3d around;
   for (std::size_t i = first_visual; i < context.world.visuals.size(); ++i) {
-    ShapeDef shape = context.world.visuals[i].shape;
+    const ShapeDef& shape = context.world.visuals[i].shape;
     around.extend(bounds(context.world, shape));
     if (shape.kind == ShapeKind::kPlane) box = shape;
+    if (material < 0) material = shape.material;
   }
   box.name = "bounding_box", box.body = body;
   if (!around.isEmpty()) {

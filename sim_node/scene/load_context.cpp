@@ -16,8 +16,9 @@ void LoadContext::warn(const sdf::Element& element, const std::string& sentence)
 
 std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf::Element& element) const {
   const std::filesystem::path file = files.find(uri, element.FilePath());
-  if (file.empty() || !std::filesystem::is_regular_file(file))
-    refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
+  if (file.empty()) refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
+  if (!std::filesystem::is_regular_file(file))
+    refuse(element, "names \"" + uri + "\", which is no regular file: give it one");
   return file;
 }
 

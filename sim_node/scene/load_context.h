@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@
 
 namespace tactus::sim {
 
+struct MeshParts;
+struct LookWords;
+
 struct LoadContext {
   const SdfFiles& files;
   std::vector<std::string>& warnings;
@@ -22,6 +26,9 @@ struct LoadContext {
   std::map<std::string, int> material_of;  // name -> index
   sdf::ElementPtr camera_sensor;           // the first one met: the camera when the scene names none
   Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
+  std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
+  std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
+  std::map<std::string, std::shared_ptr<const LookWords>> look_of = {};     // name -> what <world> says of it
 
   // "FILE:LINE: sentence"
   [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;

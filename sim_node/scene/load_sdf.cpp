@@ -9,6 +9,7 @@
 #include "sim_node/scene/sdf_eigen.h"
 #include "sim_node/scene/sdf_read.h"
 #include "sim_node/scene/tactus_holes.h"
+#include "sim_node/scene/tactus_looks.h"
 #include "sim_node/scene/tactus_materials.h"
 #include "sim_node/scene/tactus_profile.h"
 #include "sim_node/scene/tactus_settings.h"
@@ -57,6 +58,7 @@ void sort_no_collision(WorldDef& world) {
 
 void read_world(LoadContext& context, const sdf::World* world, const sdf::Model* model, const sdf::ElementPtr& element) {
   read_materials(context, element);
+  read_looks(context, element);
   if (world) {
     read_gravity(context, *world);
     for (std::uint64_t i = 0; i < world->LightCount(); ++i)

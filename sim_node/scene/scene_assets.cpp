@@ -21,6 +21,10 @@ mesh_t to_message(const TriangleMesh& mesh) {
   append(mesh.vertices, m.positions_m);
   append(mesh.normals, m.normals);
   m.vertex_floats = static_cast<std::int32_t>(m.positions_m.size());
+  for (const Eigen::Vector2f& t : mesh.texcoords) m.texcoords.insert(m.texcoords.end(), t.data(), t.data() + 2);
+  for (const Eigen::Vector4f& t : mesh.tangents) m.tangents.insert(m.tangents.end(), t.data(), t.data() + 4);
+  m.texcoord_floats = static_cast<std::int32_t>(m.texcoords.size());
+  m.tangent_floats = static_cast<std::int32_t>(m.tangents.size());
   m.indices.assign(mesh.indices.begin(), mesh.indices.end());
   m.index_count = static_cast<std::int32_t>(m.indices.size());
   return m;
@@ -58,7 +62,7 @@ shape_def_t to_message(const ShapeDef& shape, const Hashes& hashes) {
 
 visual_def_t to_message(const VisualDef& visual, const Hashes& hashes) {
   visual_def_t m{};
-  m.look = -1;
+  m.look = visual.look;
   m.shape = to_message(visual.shape, hashes);
   m.ambient = to_vec3f(visual.ambient), m.diffuse = to_vec3f(visual.diffuse);
   m.specular = to_vec3f(visual.specular), m.emissive = to_vec3f(visual.emissive);
@@ -86,6 +90,8 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
   for (std::size_t i = 0; i < world.bodies.size(); ++i) scene.bodies.push_back(to_message(world.bodies[i], i));
   for (const ShapeDef& shape : world.shapes) scene.shapes.push_back(to_message(shape, hashes));
   for (const VisualDef& visual : world.visuals) scene.visuals.push_back(to_message(visual, hashes));
+  scene.looks = world.looks, scene.shaders = world.shaders, scene.passes = world.passes;
+  scene.environment_asset = world.environment_asset;
   scene.materials = world.materials, scene.lights = world.lights, scene.tools = world.tools;
   for (tool_def_t& tool : scene.tools)
     if (tool.shape == tool_def_t::MESH)
@@ -100,6 +106,7 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
   scene.body_count = count(scene.bodies), scene.shape_count = count(scene.shapes);
   scene.visual_count = count(scene.visuals), scene.material_count = count(scene.materials);
   scene.light_count = count(scene.lights), scene.tool_count = count(scene.tools);
+  scene.look_count = count(scene.looks), scene.shader_count = count(scene.shaders), scene.pass_count = count(scene.passes);
   scene.setting_count = count(scene.settings);
   return scene;
 }
@@ -121,6 +128,7 @@ std::vector<sync::Asset> make_assets(const WorldDef& world, std::int64_t step_ns
     hashes.heightfields.push_back(
         add_mesh(triangulate(field, kMaxSamples), "heightfield " + std::to_string(hashes.heightfields.size())));
   assets.insert(assets.end(), world.images.begin(), world.images.end());
+  assets.insert(assets.end(), world.shader_texts.begin(), world.shader_texts.end());
   assets.front() = {asset_ref_t::SCENE, world.name, sync::encode(to_message(world, step_ns, hashes))};
   if (!world.source_text.empty())
     assets.push_back({asset_ref_t::SDF, world.source_file, {world.source_text.begin(), world.source_text.end()}});

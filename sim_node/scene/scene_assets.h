@@ -8,7 +8,7 @@
 
 namespace tactus::sim {
 
-// One SCENE, one MESH per mesh and heightfield, one IMAGE per height map, one SDF. step_ns as in scene_t.
+// One SCENE, one MESH per mesh and heightfield, one IMAGE per picture, one SHADER per text, one SDF. step_ns as in scene_t.
 std::vector<sync::Asset> make_assets(const WorldDef& world, std::int64_t step_ns = 1'000'000);
 
 }  // namespace tactus::sim

@@ -11,36 +11,18 @@
 #include <stdexcept>
 
 #include "sim_node/scene/height_image.h"
-#include "sim_node/scene/mesh_file.h"
+#include "sim_node/scene/meshes.h"
 #include "sim_node/scene/sdf_eigen.h"
 #include "sim_node/scene/triangles.h"
 
 namespace tactus::sim {
 namespace {
 
-namespace fs = std::filesystem;
-
-int mesh_index(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
-  const Eigen::Vector3d scale = to_eigen(mesh.Scale());
-  if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
-    context.refuse(element, "has a <scale> that is zero or not finite");
-  const fs::path file = context.asset_file(mesh.Uri(), element);
-  std::ostringstream key;
-  key << file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
-  const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.meshes.size()));
-  if (is_new) try {
-      context.world.meshes.push_back(read_mesh(file, mesh.Submesh(), mesh.CenterSubmesh(), scale));
-    } catch (const std::exception& e) {
-      context.refuse(element, "names mesh \"" + mesh.Uri() + "\", which cannot be read: " + e.what());
-    }
-  return at->second;
-}
-
 int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
   const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
   if (!size.allFinite() || (size.array() <= 0).any() || !centre.allFinite())
     context.refuse(element, "has a <size> that is not positive or a <pos> that is not finite");
-  const fs::path file = context.asset_file(map.Uri(), element);
+  const std::filesystem::path file = context.asset_file(map.Uri(), element);
   std::ostringstream key;
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));
@@ -93,7 +75,7 @@ std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& ge
     }
     case sdf::GeometryType::MESH:
       shape.kind = ShapeKind::kMesh;
-      shape.mesh = mesh_index(context, *geometry.MeshShape(), element);
+      shape.mesh = whole_mesh(context, named_mesh(context, *geometry.MeshShape(), element), element);
       break;
     case sdf::GeometryType::HEIGHTMAP:
       shape.kind = ShapeKind::kHeightfield;

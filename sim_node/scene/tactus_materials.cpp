@@ -5,10 +5,11 @@
 #include "lcmtypes/bump.h"
 #include "lcmtypes/height_map.h"
 #include "sim_node/scene/attributes.h"
+#include "sim_node/scene/file_properties.h"
 #include "sim_node/scene/height_image.h"
 #include "sim_node/scene/materials.h"
 #include "sim_node/scene/measured_modes.h"
-#include "sync/identity.h"
+#include "sim_node/scene/pictures.h"
 
 namespace tactus::sim {
 namespace {
@@ -19,11 +20,7 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
   try {
     sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
     read_height_map(image.bytes);
-    const std::int64_t hash = sync::fnv1a_64(image.bytes.data(), image.bytes.size());
-    const auto same = [&](const sync::Asset& other) { return other.bytes == image.bytes; };
-    auto& images = context.world.images;
-    if (std::none_of(images.begin(), images.end(), same)) images.push_back(std::move(image));
-    return hash;
+    return add_image(context.world, std::move(image));
   } catch (const std::exception& e) {
     context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }
@@ -100,7 +97,26 @@ void read_material(LoadContext& context, const sdf::Element& element) {
     context.world.materials[static_cast<std::size_t>(at->second)] = material;
 }
 
+int known_material(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+  const auto known = context.material_of.find(name);
+  if (known != context.material_of.end()) return known->second;
+  std::string names;
+  for (const auto& [each, index] : context.material_of) names += (names.empty() ? "" : ", ") + each;
+  context.refuse(element, "names material \"" + name + "\": there are " + names);
+}
+
 }  // namespace
+
+int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file) {
+  const auto base = properties.find("base");
+  if (base != properties.end() && properties.size() == 1)
+    return known_material(context, *element_of("tactus:material", properties, file), base->second);
+  Properties named = properties;
+  named["name"] = file.filename().string();
+  if (context.material_of.contains(named["name"])) named["name"] = file.string();
+  read_material(context, *element_of("tactus:material", named, file));
+  return context.material_of.at(named["name"]);
+}
 
 void read_materials(LoadContext& context, const sdf::ElementPtr& world) {
   context.world.materials = builtin_materials();
@@ -116,13 +132,7 @@ int surface_material(const LoadContext& context, const sdf::ElementPtr& element,
   Attributes attributes(context, *surface);
   const std::string name = attributes.required_text("material");
   attributes.done();
-  const auto known = context.material_of.find(name);
-  if (known == context.material_of.end()) {
-    std::string names;
-    for (const auto& [each, index] : context.material_of) names += (names.empty() ? "" : ", ") + each;
-    context.refuse(*surface, "names material \"" + name + "\": there are " + names);
-  }
-  return known->second;
+  return known_material(context, *surface, name);
 }
 
 }  // namespace tactus::sim

@@ -22,13 +22,17 @@ void remove_degenerate(TriangleMesh& mesh) {
     if (twice_area(mesh, i).norm() > 1e-18) kept.insert(kept.end(), {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
   std::vector<int> renamed(mesh.vertices.size(), -1);
   TriangleMesh out;
-  const bool normals = mesh.normals.size() == mesh.vertices.size();
+  const auto keep = [&](const auto& from, Index old, auto& to) {
+    if (from.size() == mesh.vertices.size()) to.push_back(from[old]);
+  };
   for (int& index : kept) {
     const Index old = static_cast<Index>(index);
     if (renamed[old] < 0) {
       renamed[old] = static_cast<int>(out.vertices.size());
       out.vertices.push_back(mesh.vertices[old]);
-      if (normals) out.normals.push_back(mesh.normals[old]);
+      keep(mesh.normals, old, out.normals);
+      keep(mesh.texcoords, old, out.texcoords);
+      keep(mesh.tangents, old, out.tangents);
     }
     index = renamed[old];
   }

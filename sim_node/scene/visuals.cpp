@@ -2,8 +2,19 @@
 
 #include <algorithm>
 #include <sdf/Material.hh>
+#include <sdf/Visual.hh>
+#include <stdexcept>
 
+#include "lcmtypes/vectors.h"
+#include "sim_node/scene/attributes.h"
+#include "sim_node/scene/file_properties.h"
+#include "sim_node/scene/height_image.h"
+#include "sim_node/scene/meshes.h"
+#include "sim_node/scene/pictures.h"
 #include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/shapes.h"
+#include "sim_node/scene/tactus_looks.h"
+#include "sync/settings.h"
 
 namespace tactus::sim {
 namespace {
@@ -22,28 +33,190 @@ Eigen::Vector3d colour(const LoadContext& context, const sdf::Element& element, 
   return rgb.cwiseMax(0).cwiseMin(1);
 }
 
-}  // namespace
+// How SDF says that a visual is drawn.
+struct Appearance {
+  VisualDef def;
+  bool coloured = false;  // SDF gives its colours: the file's do not count
+  LookWords look;
+};
 
-void read_look(const LoadContext& context, const sdf::Visual& from, VisualDef& visual) {
-  const sdf::ElementPtr element = from.Element();
-  visual.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  const sdf::ElementPtr material = written(element, "material");
+
+// The pictures of <pbr>, by either of its workflows.
+LookWords read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
+  LookWords words;
+  const sdf::ElementPtr pbr = written(material, "pbr");
+  sdf::ElementPtr workflow = written(pbr, "metal");
+  if (!workflow) workflow = written(pbr, "specular");
+  const auto picture = [&](const char* name, PictureUse use) -> std::optional<std::int64_t> {
+    const sdf::ElementPtr element = written(workflow, name);
+    if (!element) return std::nullopt;
+    const std::string uri = element->Get<std::string>();
+    // Worlds of others name pictures that are on somebody's server.
+    if (context.files.find(uri, element->FilePath()).empty()) {
+      context.warn(*element, "names \"" + uri + "\", which is not found: drawn without it");
+      return std::nullopt;
+    }
+    return picture_of(context, *element, "picture", uri, use);
+  };
+  words.colour_map = picture("albedo_map", PictureUse::kColour);
+  words.normal_map = picture("normal_map", PictureUse::kDirections);
+  return words;
+}
+
+void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a) {
+  const sdf::ElementPtr material = written(from.Element(), "material");
   if (!material || !from.Material()) return;
   const sdf::Material& m = *from.Material();
   const auto given = [&](const char* name) { return written(material, name) != nullptr; };
 
   if (const sdf::ElementPtr script = written(material, "script")) {
     const auto known = kScripts.find(m.ScriptName());
+    a.coloured = true;
     if (known != kScripts.end())
-      visual.ambient = visual.diffuse = known->second;
+      a.def.ambient = a.def.diffuse = known->second;
     else if (!given("diffuse"))
       context.warn(*script, "names \"" + m.ScriptName() + "\", whose colour is not known: shown grey");
   }
-  if (given("diffuse")) visual.diffuse = visual.ambient = colour(context, *material, m.Diffuse());
-  if (given("ambient")) visual.ambient = colour(context, *material, m.Ambient());
-  if (given("specular")) visual.specular = colour(context, *material, m.Specular());
-  if (given("emissive")) visual.emissive = colour(context, *material, m.Emissive());
-  if (given("diffuse") && m.Diffuse().A() < 1) visual.alpha *= std::clamp(static_cast<double>(m.Diffuse().A()), 0.0, 1.0);
+  a.coloured = a.coloured || given("diffuse") || given("ambient");
+  if (given("diffuse")) a.def.diffuse = a.def.ambient = colour(context, *material, m.Diffuse());
+  if (given("ambient")) a.def.ambient = colour(context, *material, m.Ambient());
+  if (given("specular")) a.def.specular = colour(context, *material, m.Specular());
+  if (given("emissive")) a.def.emissive = colour(context, *material, m.Emissive());
+  if (given("diffuse") && m.Diffuse().A() < 1) a.def.alpha *= std::clamp(static_cast<double>(m.Diffuse().A()), 0.0, 1.0);
+  if (const sdf::ElementPtr shininess = written(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
+    try {
+      a.def.shininess = std::clamp(sync::parse_quantity(shininess->GetValue()->GetAsString(), ""), 1.0, 1e4);
+    } catch (const std::invalid_argument& e) {
+      context.refuse(*shininess, std::string("is no number: ") + e.what());
+    }
+  }
+  a.look.add(read_pbr(context, material));
+}
+
+Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int body, int material) {
+  Appearance a;
+  a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
+  a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
+  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look_words(context, *look);
+  read_material(context, from, a);
+  return a;
+}
+
+// A map without a colour to multiply shows its own.
+void finish(LoadContext& context, Appearance& a) {
+  if (!a.coloured && a.look.colour_map.value_or(0) != 0) a.def.diffuse = a.def.ambient = Eigen::Vector3d::Ones();
+  a.def.look = look_index(context.world, a.look);
+}
+
+// A picture that a mesh file names or holds; nothing, and a warning, where it is not to be had: files come without theirs.
+std::optional<std::int64_t> picture_of_file(LoadContext& context, const sdf::Element& element, const NamedMesh& named,
+                                            const MeshPicture& picture, PictureUse use) {
+  if (picture.none()) return std::nullopt;
+  const std::string name = picture.file.empty() ? "a picture inside it" : "picture \"" + picture.file.substr(0, 200) + "\"";
+  try {
+    sync::Asset image{asset_ref_t::IMAGE, named.file.filename().string(), picture.bytes};
+    if (!picture.file.empty()) {
+      const std::filesystem::path file = named.file.parent_path() / picture.file;
+      image.name = file.filename().string();
+      image.bytes = read_image_file(file);
+    }
+    check_picture(image.bytes, use);
+    return add_image(context.world, std::move(image));
+  } catch (const std::exception& e) {
+    context.warn(element, "names mesh \"" + named.uri + "\", whose material names " + name + ": " + e.what() +
+                              "; drawn without it");
+    return std::nullopt;
+  }
+}
+
+// What the file says where SDF is silent.
+Appearance with_file(LoadContext& context, const sdf::Element& element, const NamedMesh& named, const LookWords& file_look,
+                     int material, Appearance a) {
+  a.look.add(file_look);
+  if (material >= 0 && static_cast<std::size_t>(material) < named.parts->materials.size()) {
+    const MeshMaterial& m = named.parts->materials[static_cast<std::size_t>(material)];
+    if (!a.coloured) {
+      a.def.diffuse = a.def.ambient = m.diffuse.cast<double>();
+      a.def.specular = m.specular.cast<double>(), a.def.emissive = m.emissive.cast<double>();
+      a.def.shininess = static_cast<double>(m.shininess);
+      a.def.alpha *= static_cast<double>(m.alpha);
+      a.coloured = true;
+    }
+    if (!a.look.colour_map) a.look.colour_map = picture_of_file(context, element, named, m.colour_map, PictureUse::kColour);
+    if (!a.look.normal_map) a.look.normal_map = picture_of_file(context, element, named, m.normal_map, PictureUse::kDirections);
+  }
+  finish(context, a);
+  return a;
+}
+
+bool same(const VisualDef& a, const VisualDef& b) {
+  return a.ambient == b.ambient && a.diffuse == b.diffuse && a.specular == b.specular && a.emissive == b.emissive &&
+         a.shininess == b.shininess && a.alpha == b.alpha && a.look == b.look;
+}
+
+// How often the visual asks for its mesh to be made finer.
+int read_display(const LoadContext& context, const sdf::ElementPtr& visual) {
+  const sdf::ElementPtr display = written(visual, "tactus:display");
+  if (!display) return 0;
+  Attributes attributes(context, *display);
+  const double times = attributes.required_quantity("subdivide", "1", 0, 6);
+  attributes.done();
+  if (times != std::floor(times)) context.refuse(*display, "has a subdivide that is no whole number");
+  return static_cast<int>(times);
+}
+
+void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance appearance, int subdivide) {
+  const sdf::ElementPtr inside = visual.Geom()->Element()->GetFirstElement();
+  const sdf::Element& element = inside ? *inside : *visual.Element();
+  const NamedMesh named = named_mesh(context, *visual.Geom()->MeshShape(), element);
+  ShapeDef& shape = appearance.def.shape;
+  shape.kind = ShapeKind::kMesh;
+  if (shape.material < 0) shape.material = material_of_file(context, named, -1);
+  LookWords file_look;
+  if (!named.parts->look.empty()) file_look = read_look_words(context, *element_of("tactus:look", named.parts->look, named.file));
+
+  // Materials that look alike are one.
+  std::set<int> met;
+  std::vector<std::pair<VisualDef, std::set<int>>> kinds;
+  for (const MeshPart& part : named.parts->parts) {
+    if (!is_chosen(part, named.choice) || part.indices.empty() || !met.insert(part.material).second) continue;
+    const VisualDef def = with_file(context, element, named, file_look, part.material, appearance).def;
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind.first, def); });
+    if (known != kinds.end()) known->second.insert(part.material);
+    else kinds.emplace_back(def, std::set<int>{part.material});
+  }
+  if (kinds.empty()) whole_mesh(context, named, element);  // refuses it with its reason
+  for (auto& [def, materials] : kinds) {
+    // Without a look nobody asks where it lies in a picture: the mesh that collides is shared.
+    const bool shared = kinds.size() == 1 && def.look < 0 && subdivide == 0;
+    def.shape.mesh = shared ? whole_mesh(context, named, element) : seen_mesh(context, named, materials, subdivide, element);
+    context.world.visuals.push_back(def);
+  }
+}
+
+}  // namespace
+
+void add_visuals(LoadContext& context, const sdf::Link& link, int body, int material) {
+  for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
+    const sdf::Visual& visual = *link.VisualByIndex(i);
+    const sdf::ElementPtr element = visual.Element();
+    const Eigen::Isometry3d pose = context.resolve(visual.SemanticPose(), *element);
+    const int subdivide = read_display(context, element);
+    Appearance appearance = read_appearance(context, visual, body, material);
+    if (visual.Geom()->Type() == sdf::GeometryType::MESH) {
+      appearance.def.shape.pose = pose;
+      add_mesh_visual(context, visual, std::move(appearance), subdivide);
+      continue;
+    }
+    if (subdivide > 0) context.refuse(*element, "asks for a finer mesh of a shape that is none: only a <mesh> has triangles to divide");
+    const auto shape = read_shape(context, *visual.Geom(), element, pose);
+    if (!shape) continue;
+    const ShapeDef named = appearance.def.shape;
+    appearance.def.shape = *shape;
+    appearance.def.shape.name = named.name, appearance.def.shape.body = named.body, appearance.def.shape.material = named.material;
+    finish(context, appearance);
+    context.world.visuals.push_back(appearance.def);
+  }
 }
 
 }  // namespace tactus::sim

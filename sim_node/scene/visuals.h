@@ -1,13 +1,15 @@
-// How visuals look: colours of <material>, by value or by the name of a Gazebo script.
+// What is seen of a link: the shapes of its visuals and how each is drawn.
 #pragma once
 
-#include <sdf/Visual.hh>
+#include <sdf/Link.hh>
 
 #include "sim_node/scene/load_context.h"
 
 namespace tactus::sim {
 
-// Sets the colours and the opacity of `visual`. Warns of a script whose colour is not known.
-void read_look(const LoadContext& context, const sdf::Visual& from, VisualDef& visual);
+// Appends the link's visuals: one for each, and of a mesh whose file has several materials one for each of those. Colours and
+// pictures are those that SDF says, then those of the mesh file. Warns of a script whose colour is not known and of a picture
+// that a mesh file names and that is not to be had.
+void add_visuals(LoadContext& context, const sdf::Link& link, int body, int material);
 
 }  // namespace tactus::sim

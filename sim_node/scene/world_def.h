@@ -18,6 +18,9 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;  // m, shape frame, scale applied
   std::vector<Eigen::Vector3d> normals;   // unit, per vertex
   std::vector<int> indices;               // three per triangle, counter-clockwise from outside
+  // Per vertex or none, for the eye alone; as in mesh_t.lcm.
+  std::vector<Eigen::Vector2f> texcoords = {};
+  std::vector<Eigen::Vector4f> tangents = {};
 };
 
 struct Heightfield {
@@ -82,6 +85,7 @@ struct VisualDef {
   Eigen::Vector3d ambient{0.4, 0.4, 0.4}, diffuse{0.7, 0.7, 0.7}, specular{0.2, 0.2, 0.2}, emissive{0, 0, 0};
   double shininess = 32;
   double alpha = 1;
+  int look = -1;  // index in WorldDef::looks; -1: Phong's reflection, no pictures
 };
 
 // A hole of a game: a cylinder that opens upwards, and the body that belongs into it.
@@ -103,7 +107,12 @@ struct WorldDef {
   std::vector<TriangleMesh> meshes;
   std::vector<Heightfield> heightfields;
   std::vector<material_def_t> materials;
-  std::vector<sync::Asset> images;  // the height maps that materials name by their hash, each once
+  std::vector<sync::Asset> images;  // the pictures that materials and looks name by their hash, each once
+  std::vector<look_t> looks;
+  std::vector<shader_t> shaders;
+  std::vector<pass_t> passes;
+  std::vector<sync::Asset> shader_texts;  // that shaders name by their hash, each once
+  std::int64_t environment_asset = 0;     // of the picture of what lies around; 0: none
   std::vector<light_def_t> lights;
   std::vector<tool_def_t> tools;
   std::vector<HoleDef> holes;

@@ -81,6 +81,8 @@ def scene_arguments(root, program):
         return ["pause"]
     if name_of(program) == "set":
         return ["haptic_node", "force_limit=5"]
+    if name_of(program) == "convert_geometry":
+        return [os.path.join(root, "sim_node", "scenes", "peg.obj"), os.path.join(tempfile.gettempdir(), "never_written.glb")]
     if name_of(program) == "sim_node":
         return [os.path.join(root, "sim_node", "scenes", "dark_room.sdf")]
     return []

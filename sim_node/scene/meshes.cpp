@@ -1,0 +1,103 @@
+#include "sim_node/scene/meshes.h"
+
+#include <functional>
+#include <sstream>
+
+#include "sim_node/scene/file_properties.h"
+#include "sim_node/scene/mesh_reader.h"
+#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/subdivide.h"
+#include "sim_node/scene/tactus_materials.h"
+#include "sim_node/scene/tangents.h"
+
+namespace tactus::sim {
+namespace {
+
+int add(LoadContext& context, const std::string& key, const NamedMesh& named, const sdf::Element& element,
+        const std::function<TriangleMesh()>& make) {
+  const auto [at, is_new] = context.mesh_of.try_emplace(key, static_cast<int>(context.world.meshes.size()));
+  if (is_new) try {
+      context.world.meshes.push_back(make());
+    } catch (const std::exception& e) {
+      context.refuse(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+    }
+  return at->second;
+}
+
+// Of a part beside others that have them: pictures show their corner there.
+void complete(MeshPart& part) {
+  if (part.texcoords.empty()) part.texcoords.assign(part.positions_m.size(), Eigen::Vector2f(0, 0));
+  make_tangents(part);
+}
+
+MeshPart part_of(const TriangleMesh& mesh) {
+  MeshPart part;
+  for (const auto& v : mesh.vertices) part.positions_m.push_back(v.cast<float>());
+  for (const auto& n : mesh.normals) part.normals.push_back(n.cast<float>());
+  part.texcoords = mesh.texcoords, part.indices = mesh.indices;
+  return part;
+}
+
+TriangleMesh as_seen(const NamedMesh& named, const std::set<int>& materials, int times) {
+  MeshParts chosen;
+  bool textured = false;
+  for (const MeshPart& part : named.parts->parts)
+    if (is_chosen(part, named.choice)) {
+      chosen.parts.push_back(part);
+      textured = textured || (!part.texcoords.empty() && materials.contains(part.material));
+    }
+  if (textured)
+    for (MeshPart& part : chosen.parts) complete(part);
+  TriangleMesh mesh = join_parts(chosen, named.choice, &materials);
+  if (times == 0) return mesh;
+  mesh = subdivide(mesh, times);
+  if (!textured) return mesh;
+  MeshParts finer;
+  finer.parts.push_back(part_of(mesh));
+  make_tangents(finer.parts.front());
+  return join_parts(finer, {});
+}
+
+}  // namespace
+
+NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
+  NamedMesh named{mesh.Uri(),
+                  context.asset_file(mesh.Uri(), element),
+                  {mesh.Submesh(), mesh.CenterSubmesh(), to_eigen(mesh.Scale())},
+                  nullptr,
+                  ""};
+  const Eigen::Vector3d& scale = named.choice.scale;
+  if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
+    context.refuse(element, "has a <scale> that is zero or not finite");
+  std::ostringstream key;
+  key << named.file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
+  named.key = key.str();
+  auto& parts = context.mesh_files[named.file.string()];
+  if (!parts) try {
+      parts = std::make_shared<const MeshParts>(read_mesh_parts(named.file));
+    } catch (const std::exception& e) {
+      context.refuse(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+    }
+  named.parts = parts.get();
+  return named;
+}
+
+int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
+  return add(context, named.key, named, element, [&] { return join_parts(*named.parts, named.choice); });
+}
+
+int seen_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
+              const sdf::Element& element) {
+  std::string key = named.key + "|seen|" + std::to_string(subdivide);
+  for (const int material : materials) key += "|" + std::to_string(material);
+  return add(context, key, named, element, [&] { return as_seen(named, materials, subdivide); });
+}
+
+int material_of_file(LoadContext& context, const NamedMesh& named, int otherwise) {
+  if (named.parts->material.empty()) return otherwise;
+  const auto [at, is_new] = context.material_of_file.try_emplace(named.file.string(), -1);
+  if (is_new) at->second = define_material(context, named.parts->material, named.file);
+  return at->second;
+}
+
+}  // namespace tactus::sim
