@@ -19,6 +19,7 @@
 #include "sync/sense.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
+#include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/wall_talk.h"
 #include "visual_node/gl/stage.h"
 #include "visual_node/offline/offline.h"
@@ -90,6 +91,7 @@ int main(int argc, char** argv) try {
   visual::Recording recording(keep);
   visual::Frame frame;
   sync::HostTime fence{};
+  visual::FrameTimes times;
   sync::Nanoseconds took{0}, waited{0};
   std::int64_t tick = -1, periods = 0;  // slot of the video; of the loop, ticked and missed
   std::int64_t owed = 0, flashed = 0;
@@ -140,6 +142,7 @@ int main(int argc, char** argv) try {
     waited = agreed ? (latched - drawn) + (clock() - ready) : sync::Nanoseconds(0);
     stage.show();
     fence = clock();
+    times = {now, latched};
     took = fence - now;
     if (agreed && !offline) walls.shown(*agreed);
     const sync::HostTime shown = fence + sync::from_seconds(settings.display_latency_s);
@@ -176,7 +179,12 @@ int main(int argc, char** argv) try {
       if (const auto line = offline->progress(sync::host_now())) say(*line);
       continue;
     }
-    if (auto pair = recording.add(tick, fresh ? fence : now + took, read)) node.bus().publish(channels::kMediaClock, *pair);
+    if (auto pair = recording.add(tick, fresh ? fence : now + took, read)) {
+      times.read = sync::host_now();
+      node.bus().publish(channels::kMediaClock, *pair);
+      if (fresh && settings.motion_marker == "strip")
+        for (media_clock_t& m : visual::stages_of(*pair, times)) node.bus().publish(channels::kMediaClock, m);
+    }
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string walls_note = lock.note(now), video = walls_note.empty() ? recording.note() : walls_note;
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);
@@ -187,6 +195,7 @@ int main(int argc, char** argv) try {
     if (agreed) node.align(lock.next_begin(sync::host_now()), agreed->skipped);
   }
   if (offline) say(offline->result(flashed, owed - flashed, sync::host_now()));
+  if (const std::string how = composer.poses().text(); !how.empty()) say("poses of bodies in the pictures: " + how);
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("visual_node", e);

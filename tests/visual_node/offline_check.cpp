@@ -175,7 +175,7 @@ TEST_CASE(
     // millisecond.
     const double told_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
     INFO("hit at " << kHits[i]);
-    CHECK(seen.at(static_cast<std::uint32_t>(i + 1)) == std::ceil((told_s * 1e9 - 1000) / kPeriod_ns));
+    CHECK(seen.at(static_cast<std::uint32_t>(i + 1)) == std::ceil(told_s * 1e9 / kPeriod_ns));
   }
 }
 
@@ -233,10 +233,7 @@ TEST_CASE("What is no log of a run is refused in one sentence, and leaves no fil
   CHECK_THAT(refusal("none.lcmlog"), Catch::Contains("cannot read"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
   CHECK_THAT(refusal("text.lcmlog"), Catch::Contains("no LCM log"));
-  {
-    RecordedRun without_scene(std::make_unique<sync::FileSink>(folder.file("bare.lcmlog")),
-                              std::vector<sync::Asset>{});
-  }
+  RecordedRun(std::make_unique<sync::FileSink>(folder.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
   CHECK_THAT(refusal("bare.lcmlog"), Catch::Contains("no scene"));
   record(folder.file("run.lcmlog"));
   const Done no_video = render(folder, "run.lcmlog", "");

@@ -23,6 +23,7 @@ struct AgreedFrame {
   // Where the head is then, and which sample that was read from: its header.publish_time_ns; -1: none.
   sync::Sample<sync::BodyPose> head;
   std::int64_t head_ns = -1;
+  std::int64_t head_seq = 0;  // of that sample
 };
 
 }  // namespace tactus::visual

@@ -66,6 +66,8 @@ Frame FrameComposer::frame(sync::HostTime now, const AgreedFrame& agreed, sync::
   Frame frame;
   frame.number = agreed.number;
   draw(frame, now, agreed.delay, agreed.world, agreed.head, newest_arrival);
+  for (PoseSample& sample : frame.samples)
+    if (sample.tool == head_tool_ && agreed.head_ns >= 0) sample.seq = agreed.head_seq;
   return frame;
 }
 
@@ -73,6 +75,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
                          std::optional<sync::SimTime> instant, const sync::Sample<sync::BodyPose>& head,
                          sync::HostTime newest_arrival) {
   tick_ = now;
+  frame.samples = newest_samples(now);
   bodies_.keep(delay);
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
@@ -90,6 +93,9 @@ void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds de
   if (settings_.event_marker == "strip")
     append_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), flashes_.shown(),
                   view_ ? view_->height() : settings_.height / 4 * 4);
+  if (settings_.motion_marker == "strip")
+    append_motion_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), frame.samples,
+                         view_ ? view_->height() : settings_.height / 4 * 4);
   if (const std::string_view text = word(frame); !text.empty())
     append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
 }
@@ -136,15 +142,22 @@ void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::N
   for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
-std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {
+std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) {
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(scene_->bodies.size());
   for (const body_def_t& body : scene_->bodies) {
     sync::Sample<sync::BodyPose> sample;
-    if (t && !body.is_static) sample = bodies_.pose(body.id, *t);
+    if (t && !body.is_static) sample = bodies_.pose(body.id, *t), poses_.add(sample.how);
     poses.push_back(sample.how == sync::How::kNone ? to_eigen(body.pose) : to_isometry(sample.value));
   }
   return poses;
+}
+
+std::vector<PoseSample> FrameComposer::newest_samples(sync::HostTime now) const {
+  std::vector<PoseSample> samples;
+  for (const auto& [tool, told] : tools_)
+    if (now - told.arrival <= kToolStaleAfter) samples.push_back({tool, told.state.header.seq});
+  return samples;
 }
 
 std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const {

@@ -16,6 +16,8 @@
 #include "sync/pose_history.h"
 #include "visual_node/frame/agreed_frame.h"
 #include "visual_node/frame/event_ledger.h"
+#include "visual_node/frame/how_count.h"
+#include "visual_node/frame/motion_marker.h"
 #include "visual_node/frame/render_time.h"
 #include "visual_node/scene_view/flashes.h"
 #include "visual_node/scene_view/scene_view.h"
@@ -28,6 +30,7 @@ struct Frame {
   std::int8_t state = node_health_t::WAITING;  // of the node, for its health
   std::string note;
   std::int64_t number = 0;
+  std::vector<PoseSample> samples;  // newest report of each tool that it shows
 };
 
 class FrameComposer {
@@ -40,7 +43,8 @@ class FrameComposer {
   FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
 
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
-  // Until frames are measured: so long from tick to fence and from latch to fence. 0: of a log, where drawing takes no time.
+  // Until frames are measured: so long from tick to fence and from latch to fence. 0: of a log, where drawing
+  // takes no time.
   void foresee(sync::Nanoseconds frame, sync::Nanoseconds flashes) {
     render_time_ = RenderTime(frame), latch_time_ = RenderTime(flashes);
   }
@@ -71,6 +75,9 @@ class FrameComposer {
   // That frame was presented at `fence`: reports of the events that it showed first or dropped.
   std::vector<presentation_t> presented(sync::HostTime fence);
 
+  // Of every body that moves, in every frame.
+  const HowCount& poses() const { return poses_; }
+
  private:
   struct ToolArrival {
     tool_state_t state;
@@ -81,7 +88,8 @@ class FrameComposer {
   void flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);
   sync::HostTime presented_next(sync::HostTime t) const;
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
-  std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
+  std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t);
+  std::vector<PoseSample> newest_samples(sync::HostTime now) const;
   std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
   std::optional<Eigen::Isometry3d> view_of_head(const sync::Sample<sync::BodyPose>& head, Frame& frame) const;
 
@@ -99,6 +107,7 @@ class FrameComposer {
   sync::HostTime tick_{}, latched_{};
   std::optional<sync::HostTime> due_;  // of the frame being drawn, when the walls agree on it
   std::optional<sync::HostTime> stale_since_;
+  HowCount poses_;
 };
 
 }  // namespace tactus::visual

@@ -57,6 +57,7 @@ std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanosecond
   if (const auto sample = heads_.told_by(by - profile_delay)) {
     frame.head = carried(*sample, frame.due - profile_delay);
     frame.head_ns = sample->publish_ns;
+    frame.head_seq = sample->seq;
   }
   return frame;
 }

@@ -19,6 +19,7 @@ void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
   if (at != samples_.begin() && std::prev(at)->sent == sent) return;
   samples_.insert(at, {sent,
                        m.header.publish_time_ns,
+                       m.header.seq,
                        {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
                         to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
   while (samples_.size() > kMost || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();

@@ -15,6 +15,7 @@ namespace tactus::visual {
 struct HeadSample {
   RoomTime sent;
   std::int64_t publish_ns = -1;  // as its sender said it
+  std::int64_t seq = 0;          // of the message
   sync::BodyPose pose;
 };
 
