@@ -17,6 +17,7 @@ constexpr std::array kKinds{"begin", "hit", "end"};
 constexpr std::array kParts{"whole", "constraint", "transient"};
 constexpr std::array kOutcomes{"presented", "late", "dropped_late", "dropped_by_profile", "inaudible"};
 constexpr std::array kReasons{"start", "periodic", "underflow"};
+constexpr std::array kStages{"ready", "shown"};
 
 }  // namespace
 
@@ -60,6 +61,16 @@ std::string csv_row(const clock_map_t& m) {
   std::ostringstream row;
   row << m.of_clock << ',' << m.to_clock << ',' << m.at_ns << ',' << m.offset_ns << ',' << m.drift << ',' << m.uncertainty_ns
       << ',' << m.uncertainty_drift << ',' << m.epoch << ',' << m.round_trip_ns << ',' << m.replies << '\n';
+  return row.str();
+}
+
+std::string frame_shown_csv_names() { return "node,incarnation,clock,stage,frame,due_ns,sim_ns,head_ns,publish_ns\n"; }
+
+std::string csv_row(const std::string& name, const frame_shown_t& m) {
+  std::ostringstream row;
+  row << name << ',' << m.header.incarnation << ',' << m.header.clock << ',' << name_of(kStages, m.stage) << ','
+      << m.frame << ',' << m.due_ns << ',' << m.header.sim_time_ns << ',' << m.head_ns << ',' << m.header.publish_time_ns
+      << '\n';
   return row.str();
 }
 

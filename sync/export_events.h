@@ -5,6 +5,7 @@
 #include <string>
 #include <tactus/clock_map_t.hpp>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/frame_shown_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <vector>
@@ -21,5 +22,8 @@ std::string media_clock_csv_names();
 std::string csv_row(const media_clock_t&);
 std::string clock_map_csv_names();
 std::string csv_row(const clock_map_t&);
+// name: of the wall's process. Its clock is that of publish_ns; due_ns is one of sim_node's host.
+std::string frame_shown_csv_names();
+std::string csv_row(const std::string& name, const frame_shown_t&);
 
 }  // namespace tactus::sync

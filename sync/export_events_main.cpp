@@ -1,12 +1,13 @@
 // export_events: makes tables of the contact events, of what was presented, and of the clocks of sound and picture.
 //
 //   in   LOG...
-//   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv, DIR/clock_map.csv
+//   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv, DIR/clock_map.csv, DIR/frame_shown.csv
 //
 // A damaged log is read as far as it is intact. Each event and each report is listed once, however often it was sent.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -26,11 +27,13 @@ int main(int argc, char** argv) try {
   sync::parse_or_exit(app, "export_events", argc, argv);
 
   std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv"),
-      maps(out + "/clock_map.csv");
+      maps(out + "/clock_map.csv"), frames(out + "/frame_shown.csv");
   events << sync::events_csv_names();
   presented << sync::presented_csv_names();
   clocks << sync::media_clock_csv_names();
   maps << sync::clock_map_csv_names();
+  frames << sync::frame_shown_csv_names();
+  std::map<std::int32_t, std::string> names;  // of processes, by what their messages say instead
   std::set<std::int64_t> seen;
   std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
   for (const std::string& path : logs) {
@@ -50,10 +53,17 @@ int main(int argc, char** argv) try {
         if (const auto m = sync::decode<media_clock_t>(e.data.data(), e.data.size())) clocks << sync::csv_row(*m);
       if (e.channel == channels::kClockMap)
         if (const auto m = sync::decode<clock_map_t>(e.data.data(), e.data.size())) maps << sync::csv_row(*m);
+      if (e.channel == channels::kNodeHealth)
+        if (const auto m = sync::decode<node_health_t>(e.data.data(), e.data.size())) names[m->header.source] = m->node;
+      if (e.channel == channels::kFrameShown)
+        if (const auto m = sync::decode<frame_shown_t>(e.data.data(), e.data.size())) {
+          const auto name = names.find(m->header.source);
+          frames << sync::csv_row(name == names.end() ? std::to_string(m->header.source) : name->second, *m);
+        }
     }
   }
-  events.close(), presented.close(), clocks.close(), maps.close();
-  if (!events || !presented || !clocks || !maps)
+  events.close(), presented.close(), clocks.close(), maps.close(), frames.close();
+  if (!events || !presented || !clocks || !maps || !frames)
     throw std::runtime_error("cannot write the tables to " + out + "; give --out a folder that can be written");
   std::cout << seen.size() << " events, " << reported.size() << " presentations\n";
   return 0;

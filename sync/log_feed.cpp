@@ -76,7 +76,7 @@ HostTime LogFeed::next(Bus& bus) {
     has_pending_ = true;
     const HostTime at = arrival(pending_);
     if (at > now_) break;
-    bus.hear(pending_.channel, pending_.data, at);
+    if (!left_out_.contains(pending_.channel)) bus.hear(pending_.channel, pending_.data, at);
     has_pending_ = false;
   }
   return now_;

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <string>
 #include <tactus/log_info_t.hpp>
+#include <utility>
 #include <vector>
 
 #include "sync/bus.h"
@@ -27,6 +30,8 @@ class LogFeed {
   // That node's options: in memory, with the run and the clock of the log.
   BusOptions bus() const;
 
+  // Messages on this channel are not handed over from now on.
+  void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
   // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
   // the recorder.
   HostTime next(Bus& bus);
@@ -55,6 +60,7 @@ class LogFeed {
   HostTime arrival(const LogEvent& event);
 
   MappedFile file_;
+  std::set<std::string, std::less<>> left_out_;
   LogScanner whole_, scanner_;
   SummaryClock clock_;
   std::vector<Age> damaged_ages_;

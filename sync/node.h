@@ -74,6 +74,8 @@ class Node {
   const NodeOptions& options() const { return options_; }
   const Declaration& declaration() const { return declaration_; }
   void set_rate(double rate_Hz);
+  // For a loop whose phase is somebody else's: the next tick is then; so many before it are left out and count as missed.
+  void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
   // Ticks done and missed so far: their sum numbers the periods of the loop.
   const Deadlines& deadlines() const { return loop_.deadlines(); }
 

@@ -35,10 +35,19 @@ std::int64_t Deadlines::advance(HostTime now) {
   return skipped;
 }
 
+void Deadlines::align(HostTime next, std::int64_t left_out) {
+  start_ = next_ = next;
+  since_start_ = 0;
+  missed_ += left_out;
+}
+
+void sleep_until(HostTime t) {
+  const timespec at{to_ns(t) / 1'000'000'000, to_ns(t) % 1'000'000'000};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
+}
+
 HostTime Loop::wait() {
-  const std::int64_t deadline = to_ns(deadlines_.next());
-  const timespec t{deadline / 1'000'000'000, deadline % 1'000'000'000};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+  sleep_until(deadlines_.next());
   const HostTime now = host_now();
   lateness_ = std::max(Nanoseconds(0), now - deadlines_.next());
   deadlines_.advance(now);

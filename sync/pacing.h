@@ -23,6 +23,8 @@ class Deadlines {
   // Call after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
   // burst. Returns how many ticks were skipped.
   std::int64_t advance(HostTime now);
+  // The next deadline is then, and others count from there; so many before it were left out on purpose and count as missed.
+  void align(HostTime next, std::int64_t left_out = 0);
 
   std::int64_t ticks() const { return ticks_; }
   std::int64_t missed() const { return missed_; }
@@ -36,6 +38,9 @@ class Deadlines {
   std::int64_t missed_ = 0;
 };
 
+// Sleeps until then; not at all when that is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
+void sleep_until(HostTime t);
+
 // Sleeps on absolute deadlines.
 class Loop {
  public:
@@ -45,6 +50,7 @@ class Loop {
   // Realtime-safe: yes (it only sleeps).
   HostTime wait();
   void set_rate(double rate_Hz) { deadlines_.set_rate(rate_Hz); }
+  void align(HostTime next, std::int64_t left_out) { deadlines_.align(next, left_out); }
 
   // How late the last wake-up was.
   Nanoseconds wake_lateness() const { return lateness_; }

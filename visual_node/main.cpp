@@ -3,11 +3,14 @@
 //   in   WORLD_STATE, CONTACT_EVENTS   where the bodies are, what began and what hit
 //        TOOL_STATE                    where device and proxy of each tool are; of a head, where the eye is
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
+//        PLAYOUT, FRAME_SHOWN          of a room: its delay on the room's clock; which frames the other walls have drawn
 //   out  PRESENTED                     every begin and hit
 //        MEDIA_CLOCK                   which frame of the video was out when
+//        FRAME_SHOWN                   of a room: which frame was seen when
 //
 // Losing WORLD_STATE carries bodies on for 50 ms, then holds them and says so in the picture; the loop waits for
-// nobody.
+// nobody. With --log it hears a recorded run instead of the bus and draws it into --video, as fast as it can; the same log gives
+// the same pixels.
 #include <CLI/CLI.hpp>
 #include <iostream>
 
@@ -15,7 +18,11 @@
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
 #include "visual_node/frame/frame_composer.h"
+#include "visual_node/frame/frame_lock.h"
+#include "visual_node/frame/frame_times.h"
+#include "visual_node/frame/wall_talk.h"
 #include "visual_node/gl/stage.h"
+#include "visual_node/offline/offline.h"
 #include "visual_node/scene_view/meshes.h"
 #include "visual_node/video/recording.h"
 
@@ -44,6 +51,10 @@ int main(int argc, char** argv) try {
   app.add_option("--snapshot-every", keep.snapshot_every_s, "how often, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  visual::OfflineOptions of_log;
+  app.add_option("--log", of_log.log, "draws this log of a run instead of what is on the bus, as fast as it can; needs --video");
+  app.add_option("--video", of_log.video, "file for the pictures of the log, MP4")->needs("--log");
+  app.add_flag("--as-recorded", of_log.as_recorded, "the degradation profiles of the log hold too")->needs("--log");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const std::vector<setting_t> no_scene;
   for (const std::string& wrong :
@@ -54,6 +65,14 @@ int main(int argc, char** argv) try {
   if (options.name.starts_with(declaration.node + "_")) keep.name += options.name.substr(declaration.node.size());
   keep.video = !no_video;
 
+  std::optional<visual::Offline> offline;
+  if (!of_log.log.empty()) {
+    if (of_log.video.empty()) throw std::runtime_error("--log needs --video FILE, which the pictures are written to");
+    of_log.snapshot = keep.snapshot, of_log.snapshot_every_s = keep.snapshot_every_s;
+    offline.emplace(of_log, settings.rate_Hz, sync::host_now());
+    offline->adapt(options);
+  }
+  const auto clock = [&] { return offline ? offline->now() : sync::host_now(); };
   visual::Stage stage(settings, window);
   std::cerr << declaration.node << ": " << stage.description() << std::endl;
 
@@ -66,9 +85,16 @@ int main(int argc, char** argv) try {
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);
   visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
+  visual::FrameLock lock(node.bus().clocks(), declaration.modality, node.bus().identity().incarnation);
+  visual::WallTalk walls(node, lock);
+  if (offline) composer.foresee({}, {});
   visual::Recording recording(keep);
   visual::Frame frame;
-  sync::Nanoseconds took{0};
+  sync::HostTime fence{};
+  visual::FrameTimes times;
+  sync::Nanoseconds took{0}, waited{0};
+  std::int64_t tick = -1, periods = 0;  // slot of the video; of the loop, ticked and missed
+  std::int64_t owed = 0, flashed = 0;
   std::string said;
   const auto say = [&](const std::string& sentence) {
     std::cerr << declaration.node << ": " << sentence << std::endl;
@@ -78,6 +104,7 @@ int main(int argc, char** argv) try {
     while (const auto m = world.pop()) composer.push(m->message, m->arrival);
     while (const auto m = events.pop()) composer.push(m->message, m->arrival);
     while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
+    walls.receive();
   };
   const auto load = [&](sync::HostTime now) {
     settings = {};
@@ -91,23 +118,35 @@ int main(int argc, char** argv) try {
     trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
     if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
     for (const std::string& sentence : trouble) say(sentence);
+    lock.load(*scenes.scene(), settings);
     stage.load(view, composer.frame(now, 0).list, settings);
-    recording.begin(view.width(), view.height(), settings);
+    if (offline) offline->begin(view.width(), view.height(), settings);
+    else recording.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
     sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
   };
-  const auto draw = [&](sync::HostTime now, std::int64_t tick) {
+  const auto draw = [&](sync::HostTime now, const std::optional<visual::AgreedFrame>& agreed) {
     const sync::OutputDef output = sense.output();
-    frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival, sense.profile_delay());
+    const sync::HostTime heard = world.count().newest_arrival;
+    frame = agreed ? composer.frame(now, *agreed, heard)
+                   : composer.frame(now, tick, sense.delay(), heard, sense.profile_delay());
     stage.draw_scene(frame.list, output);
+    const sync::HostTime drawn = clock();
+    if (agreed && !offline) walls.wait_for_latch(*agreed);
     // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
-    const sync::HostTime latched = node.poll();
-    receive(latched);
-    composer.latch(frame, latched, sense.delay(), stage.held());
+    const sync::HostTime latched = offline ? clock() : node.poll();
+    if (!offline) receive(latched);
+    composer.latch(frame, latched, agreed ? agreed->delay : sense.delay(), stage.held());
     stage.draw_over(frame.list);
-    const sync::HostTime fence = sync::host_now();
+    const sync::HostTime ready = clock();
+    if (agreed && !offline) lock.drawn(drawn - now, ready - latched), walls.hold(*agreed, receive);
+    waited = agreed ? (latched - drawn) + (clock() - ready) : sync::Nanoseconds(0);
+    stage.show();
+    fence = clock();
+    times = {now, latched};
     took = fence - now;
+    if (agreed && !offline) walls.shown(*agreed);
     const sync::HostTime shown = fence + sync::from_seconds(settings.display_latency_s);
     // An event that arrives just after the latch waits for that of the next frame; not for a picture that a
     // profile holds.
@@ -116,32 +155,50 @@ int main(int argc, char** argv) try {
     for (const presentation_t& report : composer.presented(shown)) {
       sense.report(report);
       rendered += report.outcome != presentation_t::DROPPED_LATE;
+      ++owed;
     }
     node.count_rendered(rendered);
+    flashed += rendered;
   };
 
-  while (node.running() && !stage.closed()) {
-    const sync::HostTime now = node.wait();
+  while (node.running() && !stage.closed() && !(offline && offline->over())) {
+    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     receive(now);
     if (scenes.poll(now)) {
       load(now);
-      continue;  // that took several ticks
+      if (!offline) continue;  // that took several ticks
     }
-    const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
     for (const std::string& sentence : stage.take_trouble()) say(sentence);
+    if (lock.on() && !offline) receive(node.poll());  // a wall that is slow hears of its head all the same
+    const auto agreed = lock.begin(clock(), sense.profile_delay());
+    const std::int64_t periods_before = std::exchange(periods, node.deadlines().ticks() + node.deadlines().missed());
+    tick += offline ? 1 : agreed ? 1 + agreed->skipped : periods - periods_before;
     const bool fresh = stage.due(now, sense.output());
-    if (fresh) draw(now, tick);
-    sense.publish(sync::host_now());
+    if (fresh) draw(agreed ? clock() : now, agreed);
+    sense.publish(clock());
     const auto read = [&](std::span<std::uint8_t> rgba) { stage.picture().read(rgba); };
-    if (auto pair = recording.add(tick, now + took, read)) node.bus().publish(channels::kMediaClock, *pair);
+    if (offline) {
+      offline->add(read);
+      if (const auto line = offline->progress(sync::host_now())) say(*line);
+      continue;
+    }
+    if (auto pair = recording.add(tick, fresh ? fence : now + took, read)) {
+      times.read = sync::host_now();
+      node.bus().publish(channels::kMediaClock, *pair);
+      if (fresh && settings.motion_marker == "strip")
+        for (media_clock_t& m : visual::stages_of(*pair, times)) node.bus().publish(channels::kMediaClock, m);
+    }
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
-    const std::string video = recording.note();
+    const std::string walls_note = lock.note(now), video = walls_note.empty() ? recording.note() : walls_note;
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);
     visual::QualityControl& quality = stage.quality();
-    if (fresh && scenes.scene()) quality.add(sync::host_now() - now);
+    if (fresh && scenes.scene()) quality.add(sync::host_now() - now - waited);
     if (const std::string change = quality.take_change(); !change.empty()) say(change);
     node.set_quality(quality.step(), quality.steps());
+    if (agreed) node.align(lock.next_begin(sync::host_now()), agreed->skipped);
   }
+  if (offline) say(offline->result(flashed, owed - flashed, sync::host_now()));
+  if (const std::string how = composer.poses().text(); !how.empty()) say("poses of bodies in the pictures: " + how);
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("visual_node", e);

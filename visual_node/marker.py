@@ -8,6 +8,8 @@ import sys
 import numpy as np
 
 CELL, CELLS, ROWS = 4, 68, 12
+MOTION_ROWS = 4
+EVENT, MOTION = [1, 0, 1, 0], [0, 1, 1, 0]  # how a row begins
 
 
 def _crc8(data):
@@ -20,8 +22,8 @@ def _crc8(data):
     return crc
 
 
-def decode_row(frame, row):
-    """(frame number, low 32 bits of the event id) of one row of a luma picture (rows from the top), or None."""
+def decode_row(frame, row, beginning=None):
+    """(frame number, low 32 bits of the event id, or of a row of another beginning what it holds) of one row of a luma picture (rows from the top), or None."""
     height, width = frame.shape
     y = height - CELL * (row + 1)
     if y < 0 or width < CELL * CELLS:
@@ -29,7 +31,7 @@ def decode_row(frame, row):
     # The inner 2 x 2 pixels of each cell, which compression hurts least.
     inner = frame[y + 1:y + 3, :CELL * CELLS].reshape(2, CELLS, CELL)[:, :, 1:3].astype(float)
     bits = (inner.mean(axis=(0, 2)) > 127).astype(np.uint8)
-    if list(bits[:4]) != [1, 0, 1, 0]:
+    if list(bits[:4]) != (beginning or EVENT):
         return None
     data = np.packbits(bits[4:]).tobytes()
     if _crc8(data[:7]) != data[7]:
@@ -56,6 +58,17 @@ def decode_frame(frame):
             break
         events.append(row[1])
     return events
+
+
+def decode_motion(frame):
+    """{index of a tool: low 28 bits of the number of its newest report} of one frame; frame/motion_marker.h says how it is laid out."""
+    samples = {}
+    for row in range(ROWS, ROWS + MOTION_ROWS):
+        found = decode_row(frame, row, MOTION)
+        if found is None:
+            break
+        samples[found[1] >> 28] = found[1] & 0xFFFFFFF
+    return samples
 
 
 def main():

@@ -91,3 +91,17 @@ TEST_CASE("The host clock never runs backwards") {
     before = now;
   }
 }
+
+TEST_CASE("A loop that is given another phase counts its deadlines from there, and what is left out as missed") {
+  Deadlines d(60, kStart);
+  d.advance(d.next());
+  const HostTime elsewhere = kStart + Nanoseconds(90'000'000);
+  d.align(elsewhere, 4);
+  CHECK(d.next() == elsewhere);
+  CHECK(d.missed() == 4);
+  CHECK(d.advance(elsewhere + Nanoseconds(1'000'000)) == 0);
+  CHECK(d.ticks() == 2);
+  CHECK(d.next() == elsewhere + Nanoseconds(16'666'667));
+  for (int i = 0; i < 59; ++i) d.advance(d.next());
+  CHECK(d.next() == elsewhere + Nanoseconds(1'000'000'000));
+}

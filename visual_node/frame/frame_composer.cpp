@@ -51,30 +51,51 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
 
 Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay,
                            sync::HostTime newest_arrival, sync::Nanoseconds view_delay) {
-  tick_ = now;
-  bodies_.keep(delay);
+  due_.reset();
   const sync::HostTime t = now + render_time_.expected();
   const auto map = bodies_.map(now);
-  const auto instant = map ? std::optional(map->to_sim(t - delay)) : std::nullopt;
   Frame frame;
   frame.number = number;
+  draw(frame, now, delay, map ? std::optional(map->to_sim(t - delay)) : std::nullopt, head_.at(t - view_delay),
+       newest_arrival);
+  return frame;
+}
+
+Frame FrameComposer::frame(sync::HostTime now, const AgreedFrame& agreed, sync::HostTime newest_arrival) {
+  due_ = agreed.here;
+  Frame frame;
+  frame.number = agreed.number;
+  draw(frame, now, agreed.delay, agreed.world, agreed.head, newest_arrival);
+  for (PoseSample& sample : frame.samples)
+    if (sample.tool == head_tool_ && agreed.head_ns >= 0) sample.seq = agreed.head_seq;
+  return frame;
+}
+
+void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds delay,
+                         std::optional<sync::SimTime> instant, const sync::Sample<sync::BodyPose>& head,
+                         sync::HostTime newest_arrival) {
+  tick_ = now;
+  frame.samples = newest_samples(now);
+  bodies_.keep(delay);
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
   if (view_)
-    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now), view_at(t - view_delay, frame));
+    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now), view_of_head(head, frame));
   else
     frame.list.lighting.background = kNoScene;
-  return frame;
 }
 
 void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, sync::Nanoseconds held) {
   latched_ = now;
-  const sync::HostTime t = now + latch_time_.expected();
+  const sync::HostTime t = due_.value_or(now + latch_time_.expected());
   flash_due(t, delay, held);
   if (view_) frame.list.glows = flashes_.frame(t, frame.list.camera);
   if (settings_.event_marker == "strip")
     append_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), flashes_.shown(),
                   view_ ? view_->height() : settings_.height / 4 * 4);
+  if (settings_.motion_marker == "strip")
+    append_motion_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), frame.samples,
+                         view_ ? view_->height() : settings_.height / 4 * 4);
   if (const std::string_view text = word(frame); !text.empty())
     append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
 }
@@ -103,6 +124,7 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
 // When the frame after the one that is presented at t will be: a loop that is late skips ticks.
 sync::HostTime FrameComposer::presented_next(sync::HostTime t) const {
   const sync::Nanoseconds period = sync::from_seconds(1 / settings_.rate_Hz);
+  if (due_) return t + period;
   const auto ticks = std::max<std::int64_t>(1, (t - tick_ + period - sync::Nanoseconds(1)) / period);
   return tick_ + ticks * period + render_time_.expected();
 }
@@ -120,15 +142,22 @@ void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::N
   for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
-std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) const {
+std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) {
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(scene_->bodies.size());
   for (const body_def_t& body : scene_->bodies) {
     sync::Sample<sync::BodyPose> sample;
-    if (t && !body.is_static) sample = bodies_.pose(body.id, *t);
+    if (t && !body.is_static) sample = bodies_.pose(body.id, *t), poses_.add(sample.how);
     poses.push_back(sample.how == sync::How::kNone ? to_eigen(body.pose) : to_isometry(sample.value));
   }
   return poses;
+}
+
+std::vector<PoseSample> FrameComposer::newest_samples(sync::HostTime now) const {
+  std::vector<PoseSample> samples;
+  for (const auto& [tool, told] : tools_)
+    if (now - told.arrival <= kToolStaleAfter) samples.push_back({tool, told.state.header.seq});
+  return samples;
 }
 
 std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const {
@@ -148,9 +177,9 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
 }
 
 // Nothing: the scene's own. A head that is lost stays where it was; either is said in the note of the frame.
-std::optional<Eigen::Isometry3d> FrameComposer::view_at(sync::HostTime t, Frame& frame) const {
+std::optional<Eigen::Isometry3d> FrameComposer::view_of_head(const sync::Sample<sync::BodyPose>& head,
+                                                             Frame& frame) const {
   if (head_tool_ < 0) return {};
-  const auto head = head_.at(t);
   if (head.how == sync::How::kNone || head.how == sync::How::kStale)
     frame.note += std::string(frame.note.empty() ? "" : "; ") + (head.how == sync::How::kNone
                                                                      ? "no head yet: the view is the scene's"

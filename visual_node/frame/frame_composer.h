@@ -14,7 +14,10 @@
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
 #include "sync/pose_history.h"
+#include "visual_node/frame/agreed_frame.h"
 #include "visual_node/frame/event_ledger.h"
+#include "visual_node/frame/how_count.h"
+#include "visual_node/frame/motion_marker.h"
 #include "visual_node/frame/render_time.h"
 #include "visual_node/scene_view/flashes.h"
 #include "visual_node/scene_view/scene_view.h"
@@ -27,6 +30,7 @@ struct Frame {
   std::int8_t state = node_health_t::WAITING;  // of the node, for its health
   std::string note;
   std::int64_t number = 0;
+  std::vector<PoseSample> samples;  // newest report of each tool that it shows
 };
 
 class FrameComposer {
@@ -39,6 +43,11 @@ class FrameComposer {
   FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
 
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
+  // Until frames are measured: so long from tick to fence and from latch to fence. 0: of a log, where drawing
+  // takes no time.
+  void foresee(sync::Nanoseconds frame, sync::Nanoseconds flashes) {
+    render_time_ = RenderTime(frame), latch_time_ = RenderTime(flashes);
+  }
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) {
@@ -56,6 +65,8 @@ class FrameComposer {
   Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
               sync::HostTime newest_arrival = sync::HostTime{},
               sync::Nanoseconds view_delay = sync::Nanoseconds(0));
+  // The frame that all walls of the room agree on, with its own number, instant and head.
+  Frame frame(sync::HostTime now, const AgreedFrame& agreed, sync::HostTime newest_arrival);
   // The surfaces of that frame are drawn, now: adds what lies over them, with the events that arrived until now.
   // held: each picture stays for so long because a profile wants few; it shows the events up to its instant. 0: a
   // picture in every tick.
@@ -64,17 +75,23 @@ class FrameComposer {
   // That frame was presented at `fence`: reports of the events that it showed first or dropped.
   std::vector<presentation_t> presented(sync::HostTime fence);
 
+  // Of every body that moves, in every frame.
+  const HowCount& poses() const { return poses_; }
+
  private:
   struct ToolArrival {
     tool_state_t state;
     sync::HostTime arrival;
   };
+  void draw(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, std::optional<sync::SimTime> instant,
+            const sync::Sample<sync::BodyPose>& head, sync::HostTime newest_arrival);
   void flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);
   sync::HostTime presented_next(sync::HostTime t) const;
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
-  std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t) const;
+  std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t);
+  std::vector<PoseSample> newest_samples(sync::HostTime now) const;
   std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
-  std::optional<Eigen::Isometry3d> view_at(sync::HostTime t, Frame& frame) const;
+  std::optional<Eigen::Isometry3d> view_of_head(const sync::Sample<sync::BodyPose>& head, Frame& frame) const;
 
   Settings settings_;
   sync::ContactStream contacts_;
@@ -88,7 +105,9 @@ class FrameComposer {
   EventLedger ledger_;
   RenderTime render_time_, latch_time_{kFlashesTake};  // from tick and latch to the fence
   sync::HostTime tick_{}, latched_{};
+  std::optional<sync::HostTime> due_;  // of the frame being drawn, when the walls agree on it
   std::optional<sync::HostTime> stale_since_;
+  HowCount poses_;
 };
 
 }  // namespace tactus::visual

@@ -13,12 +13,11 @@
 #include <span>
 #include <vector>
 
+#include "visual_node/frame/marker_row.h"
 #include "visual_node/scene_view/draw_list.h"
 
 namespace tactus::visual {
 
-inline constexpr int kMarkerCell_px = 4;
-inline constexpr int kMarkerCells = 4 + 24 + 32 + 8;
 inline constexpr int kMarkerRows = 12;
 
 struct Marker {

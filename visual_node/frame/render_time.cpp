@@ -15,4 +15,10 @@ sync::Nanoseconds RenderTime::expected() const {
   return sorted[kFrames / 2];
 }
 
+sync::Nanoseconds RenderTime::second_longest() const {
+  auto sorted = taken_;
+  std::nth_element(sorted.begin(), sorted.end() - 2, sorted.end());
+  return sorted[kFrames - 2];
+}
+
 }  // namespace tactus::visual

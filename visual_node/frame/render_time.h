@@ -18,6 +18,8 @@ class RenderTime {
 
   void add(sync::Nanoseconds taken);
   sync::Nanoseconds expected() const;
+  // What nearly none of them took longer than: the second longest.
+  sync::Nanoseconds second_longest() const;
 
  private:
   std::array<sync::Nanoseconds, kFrames> taken_;

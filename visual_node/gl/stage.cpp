@@ -28,6 +28,10 @@ void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
 
 void Stage::draw_over(const DrawList& list) {
   renderer_->draw_over(list);
+  renderer_->wait();
+}
+
+void Stage::show() {
   display_->show(picture().framebuffer(), picture().width(), picture().height());
   renderer_->wait();
 }

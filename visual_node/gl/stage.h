@@ -36,9 +36,10 @@ class Stage {
   // For how long each picture is held on purpose; 0: for the tick.
   sync::Nanoseconds held() const { return rate_.held(); }
 
-  // The two parts of a picture. Each returns when it has been drawn; the second is then presented.
+  // The two parts of a picture. Each returns when it has been drawn; then it is presented, which ends with a fence.
   void draw_scene(const DrawList& list, const sync::OutputDef& output);
   void draw_over(const DrawList& list);
+  void show();
 
  private:
   std::unique_ptr<Display> display_;

@@ -121,6 +121,14 @@ Encoder::~Encoder() {
   waitpid(child_, nullptr, 0);
 }
 
+bool Encoder::finish() {
+  close(pipe_);
+  int status = -1;
+  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) continue;
+  child_ = -1;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 bool Encoder::write(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(pipe_, bytes.data(), bytes.size());

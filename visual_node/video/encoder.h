@@ -25,6 +25,8 @@ class Encoder {
 
   // Blocks while the encoder is busy. False when it has died; the process must ignore SIGPIPE, as sync::Node does.
   bool write(std::span<const std::uint8_t> bytes);
+  // Closes its input and waits until it has finished the file, however long that takes. True: it succeeded. Then it is over.
+  bool finish();
 
  private:
   int pipe_ = -1;

@@ -1,0 +1,303 @@
+// Walls that never talk: the same number is the same instant of the world and the same sample of the head.
+#include "visual_node/frame/frame_lock.h"
+
+#include <catch2/catch.hpp>
+#include <memory>
+#include <queue>
+#include <random>
+
+#include "tests/visual_node/test_scene.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr std::int64_t kRun = 3;
+constexpr std::int32_t kSimClock = 100;
+constexpr std::int64_t kBegin_ns = 7'200'000'000'000;
+
+struct Seen {
+  std::int64_t world_ns, head_ns, due_ns;
+};
+
+// One wall: its own clock, its own time to draw, what it has heard.
+struct Wall {
+  Wall(std::int32_t clock, sync::Nanoseconds ahead_of_room, Settings settings, sync::Nanoseconds draws)
+      : maps(kRun), ahead(ahead_of_room), draws(draws), lock({kRun, clock, &maps}, "visual", clock) {
+    settings.room = "cave4";
+    scene_t scene = test::empty_scene();
+    test::add_tool(scene, 0.01);
+    scene.tools[0].name = "head";
+    lock.load(scene, settings);
+    if (clock == kSimClock) return;
+    clock_map_t m{};
+    m.header.run_id = kRun, m.header.incarnation = clock;
+    m.of_clock = kSimClock, m.to_clock = clock, m.offset_ns = -ahead.count(), m.uncertainty_ns = 20'000;
+    m.at_ns = kBegin_ns + ahead.count();
+    maps.observe(m, {});
+  }
+  sync::HostTime here(std::int64_t room_ns) const { return sync::host_time(room_ns) + ahead; }
+
+  sync::ClockMaps maps;
+  sync::Nanoseconds ahead, draws;
+  FrameLock lock;
+  std::int64_t busy_until_ns = 0, frames = 0;
+  std::map<std::int64_t, Seen> seen;
+  std::optional<AgreedFrame> drawing;
+};
+
+// The bus and the walls on it, in steps of 0.1 ms of the room's clock.
+struct Room {
+  std::mt19937 random{7};
+  std::vector<std::unique_ptr<Wall>> walls;
+  double lost = 0;
+  // Simulated time as sim_node's map tells it: sim_ns at host_ns, at this rate; it may change from step to step.
+  std::int64_t sim_ns = 0;
+  double rate = 1;
+
+  Wall& add(std::int32_t clock, sync::Nanoseconds ahead, sync::Nanoseconds draws, const Settings& settings = {}) {
+    return *walls.emplace_back(std::make_unique<Wall>(clock, ahead, settings, draws));
+  }
+  bool arrives() { return std::uniform_real_distribution<>(0, 1)(random) >= lost; }
+
+  void run(
+      double seconds, const std::function<void(std::int64_t)>& meanwhile = [](std::int64_t) {}) {
+    const std::int64_t from = t, to = from + static_cast<std::int64_t>(seconds * 1e9);
+    for (; t < to; t += 100'000) {
+      if (t % 1'000'000 == 0) {
+        meanwhile(t);
+        sim_ns += static_cast<std::int64_t>(1e6 * rate);
+        tell();
+      }
+      for (const auto& wall : walls) draw(*wall);
+    }
+  }
+
+ private:
+  template <class Message>
+  void send(Message m) {
+    for (const auto& wall : walls)
+      if (arrives())  // on its way for 0.1 .. 1.5 ms
+        pending.emplace(t + 100'000 + static_cast<std::int64_t>(random() % 1'400'000),
+                        [m, w = wall.get()](std::int64_t at) { w->lock.push(m, w->here(at)); });
+  }
+  header_t stamp(std::int64_t sim, std::int64_t incarnation, std::int64_t seq) const {
+    header_t h{};
+    h.sim_time_ns = sim, h.publish_time_ns = t, h.clock = kSimClock, h.run_id = kRun, h.incarnation = incarnation,
+    h.seq = seq;
+    return h;
+  }
+  void tell() {
+    const std::int64_t ms = t / 1'000'000;
+    if (ms % 17 == 0) {
+      world_state_t w{};
+      w.header = stamp(sim_ns, 50, ms);
+      w.clock.sim_ns = sim_ns, w.clock.host_ns = t, w.clock.rate = rate;
+      w.pages = 1;
+      send(w);
+    }
+    tool_state_t head{};
+    head.header = stamp(-1, 60, ms);
+    head.device.orientation.w = 1;
+    send(head);
+    if (ms % 100 == 0) {
+      playout_t p{};
+      p.header = stamp(-1, 70, ms);
+      p.entries.resize(1), p.count = 1;
+      p.entries[0].modality = "visual", p.entries[0].delay_ns = asked_ns;
+      send(p);
+    }
+    for (; !pending.empty() && pending.begin()->first <= t; pending.erase(pending.begin()))
+      pending.begin()->second(t);
+  }
+  // As the loop does it: begin when it is best, draw, hold until due.
+  void draw(Wall& w) {
+    if (t < w.busy_until_ns) return;
+    const auto room_of = [&](sync::HostTime here) { return sync::to_ns(here - w.ahead); };
+    if (!w.drawing) {
+      w.drawing = w.lock.begin(w.here(t));
+      if (!w.drawing) {
+        w.busy_until_ns = t + 16'666'667;
+        return;
+      }
+      const auto jitter = microseconds(random() % 1500);
+      w.lock.drawn(w.draws + jitter, microseconds(800));
+      const std::int64_t ready = t + (w.draws + jitter + microseconds(800)).count();
+      w.busy_until_ns = std::max(ready, room_of(w.drawing->here));
+      // Never shown before it is due, nor held for longer than a period.
+      held_ns = std::max(held_ns, w.busy_until_ns - ready);
+      return;
+    }
+    const AgreedFrame& f = *w.drawing;
+    REQUIRE(w.seen.count(f.number) == 0);
+    if (!w.seen.empty()) REQUIRE(f.number > w.seen.rbegin()->first);
+    w.seen[f.number] = {sync::to_ns(f.world), f.head_ns, sync::to_ns(f.due)};
+    late_ns = std::max(late_ns, t - sync::to_ns(f.due));
+    w.drawing.reset();
+    w.busy_until_ns = std::max(t, room_of(w.lock.next_begin(w.here(t))));
+  }
+
+ public:
+  std::int64_t t = kBegin_ns, held_ns = 0, late_ns = 0, asked_ns = 0;
+  std::multimap<std::int64_t, std::function<void(std::int64_t)>> pending;
+};
+
+// Frames that both have shown, and of those the share with the same instant and the same head; the first second is
+// left out.
+struct Common {
+  int frames = 0, world = 0, head = 0;
+};
+Common common(const Wall& a, const Wall& b) {
+  Common c;
+  for (const auto& [number, x] : a.seen) {
+    const auto y = b.seen.find(number);
+    if (y == b.seen.end() || x.due_ns < kBegin_ns + 1'000'000'000) continue;
+    CHECK(x.due_ns == y->second.due_ns);
+    ++c.frames, c.world += x.world_ns == y->second.world_ns, c.head += x.head_ns == y->second.head_ns;
+  }
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("Walls on hosts whose clocks differ draw each frame of one instant and one head, and none is left out") {
+  Room room;
+  room.add(kSimClock, {}, milliseconds(5));
+  room.add(2, std::chrono::hours(1), milliseconds(9));
+  room.add(3, -std::chrono::minutes(50), milliseconds(12));
+  room.run(6);
+  for (const auto& wall : room.walls) {
+    const Common c = common(*room.walls[0], *wall);
+    CHECK(c.frames >= 298);  // 5 s at 60 Hz
+    CHECK(c.world == c.frames);
+    CHECK(c.head == c.frames);
+  }
+  // Ready by the second longest of nine and a margin: jitter of 1.5 ms, a step of the test, a margin.
+  CHECK(room.held_ns < 4'000'000 + 16'700'000);
+}
+
+TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, of the same instant as the others") {
+  Settings settings;
+  settings.frame_lag_s = 0.12;  // longer than it draws: then the head is the same too
+  Room room;
+  room.add(kSimClock, {}, milliseconds(5), settings);
+  room.add(2, std::chrono::hours(1), milliseconds(100), settings);
+  room.run(10);
+  const Common c = common(*room.walls[0], *room.walls[1]);
+  CHECK(c.frames > 70);
+  CHECK(c.frames < 95);
+  CHECK(c.world == c.frames);
+  CHECK(c.head == c.frames);
+  CHECK(room.walls[0]->seen.size() > 590);  // the fast one misses nothing
+}
+
+TEST_CASE("With a lag shorter than it draws, the slow wall has the same instant and an older head, and says so") {
+  Room room;
+  room.add(kSimClock, {}, milliseconds(5));
+  Wall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
+  room.run(6);
+  const Common c = common(*room.walls[0], slow);
+  REQUIRE(c.frames > 30);
+  CHECK(c.world == c.frames);
+  CHECK(c.head == 0);
+  CHECK(slow.lock.note(slow.here(room.t)).find("frame_lag") != std::string::npos);
+  CHECK(room.walls[0]->lock.note(room.walls[0]->here(room.t)).empty());
+}
+
+TEST_CASE("While the simulation slows down, stands still and goes on, the walls stay together") {
+  Room room;
+  room.add(kSimClock, {}, milliseconds(4));
+  room.add(2, milliseconds(777), milliseconds(11));
+  room.run(2);
+  for (const double rate : {0.37, 0.0, 1.0, 0.0, 0.92, 1.0}) {
+    room.rate = rate;
+    room.run(1);
+  }
+  std::mt19937 random(9);  // a machine that is too slow: another rate with every step
+  room.run(3, [&](std::int64_t) { room.rate = 0.2 + 1e-3 * static_cast<double>(random() % 900); });
+  const Common c = common(*room.walls[0], *room.walls[1]);
+  CHECK(c.frames >= 590);
+  CHECK(c.world == c.frames);
+  CHECK(c.head == c.frames);
+}
+
+TEST_CASE(
+    "A delay of presentation that is asked for and changed moves all walls alike, and the world not the head") {
+  Room room;
+  Wall& a = room.add(kSimClock, {}, milliseconds(4));
+  Wall& b = room.add(2, milliseconds(777), milliseconds(11));
+  room.asked_ns = 40'000'000;
+  room.run(3);
+  room.asked_ns = 15'000'000;
+  room.run(3);
+  const Common c = common(a, b);
+  CHECK(c.frames >= 298);
+  CHECK(c.world == c.frames);
+  const Seen& last = a.seen.rbegin()->second;
+  // The world began at kBegin and runs at 1: it is told at the end of each ms, so that it is 1 ms ahead.
+  CHECK(last.due_ns - kBegin_ns - last.world_ns == 15'000'000 - 1'000'000);
+  // The head is the newest of 1 kHz that is older than the lag.
+  CHECK(last.due_ns - last.head_ns >= 25'000'000);
+  CHECK(last.due_ns - last.head_ns < 26'000'000);
+}
+
+TEST_CASE("Of a hundred messages one is lost: 99 of 100 frames are the same all the same") {
+  Room room;
+  room.lost = 0.005;  // on the way to either of two
+  room.add(kSimClock, {}, milliseconds(4));
+  room.add(2, milliseconds(777), milliseconds(11));
+  room.run(21);
+  const Common c = common(*room.walls[0], *room.walls[1]);
+  CHECK(c.frames >= 1195);
+  // In real time every map tells the same line; a head is another when just the newest of 1 kHz is lost, or its
+  // border falls between: 1 % and three standard deviations of 1200 trials, 0.9 %.
+  CHECK(c.world == c.frames);
+  CHECK(c.head >= 0.981 * c.frames);
+}
+
+TEST_CASE("A slow wall holds nobody: the other's frames come as if it were alone") {
+  Room alone, beside;
+  alone.add(kSimClock, {}, milliseconds(5));
+  beside.add(kSimClock, {}, milliseconds(5));
+  beside.add(2, milliseconds(777), milliseconds(250));
+  alone.run(4), beside.run(4);
+  CHECK(alone.walls[0]->seen.size() == beside.walls[0]->seen.size());
+}
+
+TEST_CASE("Without a room, when it is off, and before sim_node is heard, there is no lock") {
+  sync::ClockMaps maps(kRun);
+  const auto locked = [&](const char* room, const char* mode, bool heard) {
+    FrameLock lock({kRun, kSimClock, &maps}, "visual", 1);
+    Settings s;
+    s.room = room, s.frame_lock = mode;
+    lock.load(test::empty_scene(), s);
+    world_state_t w{};
+    w.header.run_id = kRun, w.header.clock = kSimClock, w.header.incarnation = 5,
+    w.header.publish_time_ns = kBegin_ns;
+    w.clock.host_ns = kBegin_ns, w.clock.rate = 1;
+    if (heard) lock.push(w, sync::host_time(kBegin_ns));
+    return lock.begin(sync::host_time(kBegin_ns + 50'000'000)).has_value();
+  };
+  CHECK(locked("cave4", "time", true));
+  CHECK(locked("cave4", "wait", true));
+  CHECK_FALSE(locked("cave4", "off", true));
+  CHECK_FALSE(locked("none", "time", true));
+  CHECK_FALSE(locked("cave4", "time", false));
+}
+
+TEST_CASE("What is told of a frame is its number, when it is due, its instant and its head") {
+  Room room;
+  Wall& wall = room.add(kSimClock, {}, milliseconds(5));
+  room.run(2);
+  const AgreedFrame frame = *wall.lock.begin(wall.here(room.t));
+  const frame_shown_t m = wall.lock.message(frame, frame_shown_t::SHOWN);
+  CHECK(m.frame == frame.number);
+  CHECK(m.due_ns == std::llround(static_cast<double>(frame.number) * 1e9 / 60));
+  CHECK(m.header.sim_time_ns == sync::to_ns(frame.world));
+  CHECK(m.head_ns == frame.head_ns);
+  CHECK(frame.head.how == sync::How::kExtrapolated);
+  CHECK(m.stage == frame_shown_t::SHOWN);
+}

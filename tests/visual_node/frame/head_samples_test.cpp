@@ -1,0 +1,63 @@
+#include "visual_node/frame/head_samples.h"
+
+#include <catch2/catch.hpp>
+
+#include "lcmtypes/vectors.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr RoomTime kBegin = room_time(10'000'000'000);
+
+tool_state_t head(std::int64_t publish_ns, double x_m, double speed_m_s = 0, double spin_rad_s = 0) {
+  tool_state_t m{};
+  m.header.publish_time_ns = publish_ns, m.header.incarnation = 4;
+  m.device.position_m.x = x_m, m.device.orientation.w = 1;
+  m.device_velocity_m_s.x = static_cast<float>(speed_m_s);
+  m.device_spin_rad_s.z = static_cast<float>(spin_rad_s);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Of the head the newest sample that was told by then is taken, whatever came since") {
+  HeadSamples samples;
+  CHECK_FALSE(samples.told_by(kBegin));
+  for (int i = 0; i < 100; ++i) samples.push(head(500 + i, i), kBegin + milliseconds(i));
+  CHECK_FALSE(samples.told_by(kBegin - milliseconds(1)));
+  CHECK(samples.told_by(kBegin + milliseconds(30))->publish_ns == 530);
+  CHECK(samples.told_by(kBegin + milliseconds(31) - sync::Nanoseconds(1))->publish_ns == 530);
+  CHECK(samples.told_by(kBegin + milliseconds(5000))->publish_ns == 599);
+}
+
+TEST_CASE("A sample is carried on with its velocity and its spin, for a bounded time") {
+  HeadSamples samples;
+  samples.push(head(1, 2, 0.5, 1.5), kBegin);
+  const HeadSample s = *samples.told_by(kBegin);
+  CHECK(carried(s, kBegin).how == sync::How::kExact);
+  const auto soon = carried(s, kBegin + milliseconds(20));
+  CHECK(soon.how == sync::How::kExtrapolated);
+  CHECK(soon.value.position.x() == Approx(2.01).margin(1e-9));
+  CHECK(soon.value.orientation.angularDistance(Eigen::Quaterniond::Identity()) == Approx(0.03).margin(1e-7));
+  const auto later = carried(s, kBegin + milliseconds(150));
+  CHECK(later.how == sync::How::kHeld);
+  CHECK(later.value.position.x() == Approx(2.025).margin(1e-9));
+  CHECK(carried(s, kBegin + milliseconds(201)).how == sync::How::kStale);
+}
+
+TEST_CASE("Another process that holds the head, or a clock put back, ends what was known; memory is bounded") {
+  HeadSamples samples;
+  for (int i = 0; i < 10'000; ++i) samples.push(head(i, 0), kBegin + sync::Nanoseconds(i * 1000));
+  CHECK_FALSE(
+      samples.told_by(kBegin + sync::Nanoseconds(1000 * (10'000 - 1 - static_cast<int>(HeadSamples::kMost)))));
+  CHECK(samples.told_by(kBegin + milliseconds(9)));
+  samples.push(head(7, 0), kBegin - milliseconds(2000));
+  CHECK(samples.told_by(kBegin)->publish_ns == 7);
+  tool_state_t other = head(8, 0);
+  other.header.incarnation = 5;
+  samples.push(other, kBegin - milliseconds(3000));
+  CHECK(samples.told_by(kBegin)->publish_ns == 8);
+}

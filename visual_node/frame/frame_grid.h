@@ -1,0 +1,34 @@
+// Which frame is due when: number k at k periods of the room's clock, on every wall. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "visual_node/frame/room_time.h"
+
+namespace tactus::visual {
+
+class FrameGrid {
+ public:
+  // A frame so many before the last one: the clock itself was put back, or is another one.
+  static constexpr std::int64_t kPutBack = 3;
+
+  explicit FrameGrid(double rate_Hz = 60) : period_ns_(1e9 / rate_Hz) {}
+
+  RoomTime due(std::int64_t frame) const;
+  std::int64_t first_due_at_or_after(RoomTime t) const;
+  sync::Nanoseconds period() const { return sync::Nanoseconds(static_cast<std::int64_t>(period_ns_)); }
+
+  // The frame to be drawn when its picture can be seen at `ready` at the earliest: the first that is due then or
+  // later, and later than the last one that was picked.
+  std::int64_t next(RoomTime ready) const;
+  std::int64_t pick(RoomTime ready) { return *(last_ = next(ready)); }
+  std::optional<std::int64_t> last() const { return last_; }
+  void restart() { last_.reset(); }
+
+ private:
+  double period_ns_;
+  std::optional<std::int64_t> last_;
+};
+
+}  // namespace tactus::visual

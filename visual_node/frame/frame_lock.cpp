@@ -1,0 +1,116 @@
+#include "visual_node/frame/frame_lock.h"
+
+#include <algorithm>
+
+#include "lcmtypes/pointing.h"
+#include "sync/playout/lockstep.h"
+
+namespace tactus::visual {
+namespace {
+
+// Of a clock that was put forward nobody has missed frames: no more than half an hour is counted at 60 Hz.
+constexpr std::int64_t kMostSkipped = 100'000;
+
+}  // namespace
+
+void FrameLock::load(const scene_t& scene, const Settings& s) {
+  mode_ = s.room == "none" || s.frame_lock == "off" ? Mode::kOff
+          : s.frame_lock == "wait"                  ? Mode::kWait
+                                                    : Mode::kTime;
+  lag_ = sync::from_seconds(s.frame_lag_s);
+  wait_at_most_ = sync::from_seconds(s.lock_wait_s);
+  grid_ = FrameGrid(s.rate_Hz);
+  head_tool_ = head_of(scene);
+  heads_.forget();
+}
+
+void FrameLock::push(const world_state_t& m, sync::HostTime arrival) {
+  clock_.hear(m.header, m.clock, arrival);
+  if (clock_.clocks() == clock_count_) return;
+  clock_count_ = clock_.clocks();
+  grid_.restart();
+  delay_.restart();
+  heads_.forget();
+}
+
+void FrameLock::push(const tool_state_t& m, sync::HostTime arrival) {
+  if (m.tool == head_tool_ && clock_.known()) heads_.push(m, clock_.sent(m.header, arrival));
+}
+
+void FrameLock::push(const playout_t& m, sync::HostTime arrival) {
+  lockstep_Hz_ = m.lockstep_Hz;
+  if (!clock_.known()) return;
+  for (const playout_entry_t& e : m.entries)
+    if (e.modality == modality_) delay_.ask(clock_.sent(m.header, arrival), sync::Nanoseconds(e.delay_ns));
+}
+
+std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanoseconds profile_delay) {
+  if (!on()) return std::nullopt;
+  AgreedFrame frame;
+  const std::optional<std::int64_t> before = grid_.last();
+  frame.number = grid_.pick(clock_.room(now + likely() - kGrace, now));
+  if (before) frame.skipped = std::clamp<std::int64_t>(frame.number - *before - 1, 0, kMostSkipped);
+  frame.due = grid_.due(frame.number);
+  frame.here = clock_.here(frame.due, now);
+  const RoomTime by = frame.due - lag_;
+  show_world(frame, by, profile_delay);
+  if (const auto sample = heads_.told_by(by - profile_delay)) {
+    frame.head = carried(*sample, frame.due - profile_delay);
+    frame.head_ns = sample->publish_ns;
+    frame.head_seq = sample->seq;
+  }
+  return frame;
+}
+
+sync::Nanoseconds FrameLock::lead() const {
+  const sync::Nanoseconds safe = surfaces_.second_longest() + flashes_.second_longest() + kMargin;
+  return std::max(likely(), std::min(safe, lag_ - kOnTheWay));
+}
+
+void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
+  const sim_clock_t told = clock_.told_by(by);
+  // Here its host times are the room's.
+  const sync::TimeMap map{sync::sim_time(told.sim_ns), sync::host_time(told.host_ns), told.rate};
+  const sync::HostTime due = sync::host_time(sync::to_ns(frame.due));
+  frame.delay = delay_.at(frame.due, by) + profile_delay;
+  frame.world = map.to_sim(due - frame.delay);
+  if (lockstep_Hz_ <= 0 || map.rate <= 0) return;
+  const sync::HostTime turn = sync::Lockstep{map, lockstep_Hz_}.begin_of_turn(due - frame.delay);
+  frame.delay = due - turn;
+  frame.world = map.to_sim(turn);
+}
+
+sync::HostTime FrameLock::latch_at(const AgreedFrame& frame) const {
+  return frame.here - flashes_.second_longest() - kMargin / 2;
+}
+
+void FrameLock::drawn(sync::Nanoseconds surfaces, sync::Nanoseconds flashes) {
+  surfaces_.add(surfaces);
+  flashes_.add(flashes);
+}
+
+sync::HostTime FrameLock::next_begin(sync::HostTime now) const {
+  return clock_.here(grid_.due(grid_.next(clock_.room(now + lead(), now))), now) - lead();
+}
+
+frame_shown_t FrameLock::message(const AgreedFrame& frame, std::int8_t stage) const {
+  frame_shown_t m{};
+  m.header.sim_time_ns = sync::to_ns(frame.world);
+  m.frame = frame.number;
+  m.due_ns = sync::to_ns(frame.due);
+  m.head_ns = frame.head_ns;
+  m.stage = stage;
+  return m;
+}
+
+std::string FrameLock::note(sync::HostTime now) const {
+  if (!on()) return "";
+  if (!clock_.mapped(now)) return "walls by arrival: no map of sim_node's clock";
+  if (head_tool_ >= 0 && likely() + kOnTheWay > lag_)
+    return "drawing takes longer than frame_lag: other walls have a newer head";
+  if (const int left = peers_.not_waited_for(now); waits() && left > 0)
+    return "does not wait for " + std::to_string(left) + " of " + std::to_string(peers_.present(now)) + " walls";
+  return "";
+}
+
+}  // namespace tactus::visual

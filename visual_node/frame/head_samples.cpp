@@ -1,0 +1,49 @@
+#include "visual_node/frame/head_samples.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+#include "sync/pose_history.h"
+
+namespace tactus::visual {
+
+void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
+  if (m.header.incarnation != incarnation_) {  // another process holds it now
+    incarnation_ = m.header.incarnation;
+    samples_.clear();
+  }
+  if (!samples_.empty() && sent < samples_.back().sent - kSpan) samples_.clear();  // its clock was put back
+  // One may overtake another on its way.
+  auto at = samples_.end();
+  while (at != samples_.begin() && std::prev(at)->sent > sent) --at;
+  if (at != samples_.begin() && std::prev(at)->sent == sent) return;
+  samples_.insert(at, {sent,
+                       m.header.publish_time_ns,
+                       m.header.seq,
+                       {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
+                        to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
+  while (samples_.size() > kMost || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();
+}
+
+std::optional<HeadSample> HeadSamples::told_by(RoomTime t) const {
+  const auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
+                                      [](RoomTime x, const HeadSample& s) { return x < s.sent; });
+  if (after == samples_.begin()) return std::nullopt;
+  return *std::prev(after);
+}
+
+sync::Sample<sync::BodyPose> carried(const HeadSample& sample, RoomTime t) {
+  sync::BodyPose pose = sample.pose;
+  const sync::Nanoseconds past = std::max(t - sample.sent, sync::Nanoseconds(0));
+  if (past > sync::PoseHistory::kStaleAfter) return {pose, sync::How::kStale};
+  const double s = sync::to_seconds(std::min(past, kCarryAtMost));
+  pose.position += s * pose.velocity;
+  if (const double angle = pose.angular_velocity.norm() * s; angle > 0)
+    pose.orientation =
+        (Eigen::AngleAxisd(angle, pose.angular_velocity.normalized()) * pose.orientation).normalized();
+  return {pose, past == sync::Nanoseconds(0) ? sync::How::kExact
+                : past > kCarryAtMost        ? sync::How::kHeld
+                                             : sync::How::kExtrapolated};
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,42 @@
+// The poses of the head as they were told, by the room's clock: every wall takes the same one and carries it on
+// alike. Pure.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <tactus/tool_state_t.hpp>
+
+#include "sync/body_history.h"
+#include "visual_node/frame/room_time.h"
+
+namespace tactus::visual {
+
+struct HeadSample {
+  RoomTime sent;
+  std::int64_t publish_ns = -1;  // as its sender said it
+  std::int64_t seq = 0;          // of the message
+  sync::BodyPose pose;
+};
+
+class HeadSamples {
+ public:
+  // design: as sync::PoseHistory
+  static constexpr std::size_t kMost = 4096;
+  static constexpr sync::Nanoseconds kSpan{1'000'000'000};
+
+  void push(const tool_state_t& m, RoomTime sent);
+  void forget() { samples_.clear(); }
+  // The newest that had been told by t.
+  std::optional<HeadSample> told_by(RoomTime t) const;
+
+ private:
+  std::int64_t incarnation_ = 0;
+  std::deque<HeadSample> samples_;  // in order of time
+};
+
+// Where the head is at t, with the velocity that it had, for at most kCarryAtMost; and how good that is.
+inline constexpr sync::Nanoseconds kCarryAtMost{50'000'000};  // design: what frame_lag is at the most of use
+sync::Sample<sync::BodyPose> carried(const HeadSample& sample, RoomTime t);
+
+}  // namespace tactus::visual

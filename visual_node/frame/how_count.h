@@ -1,0 +1,32 @@
+// How the poses of the bodies in the pictures were obtained, counted: a picture of what was received, or of what was foretold. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "sync/how.h"
+
+namespace tactus::visual {
+
+class HowCount {
+ public:
+  void add(sync::How how) { ++counts_[static_cast<std::size_t>(how)]; }
+  std::int64_t of(sync::How how) const { return counts_[static_cast<std::size_t>(how)]; }
+  // One line, in percent of all; empty: there was none.
+  std::string text() const {
+    std::int64_t all = 0;
+    for (const std::int64_t n : counts_) all += n;
+    std::string line;
+    for (std::size_t i = 0; i < counts_.size() && all > 0; ++i)
+      if (counts_[i] > 0)
+        line += (line.empty() ? "" : ", ") + std::to_string(100 * counts_[i] / all) + " % " +
+                sync::to_string(static_cast<sync::How>(i));
+    return line;
+  }
+
+ private:
+  std::array<std::int64_t, 6> counts_{};  // by sync::How
+};
+
+}  // namespace tactus::visual

@@ -1,0 +1,27 @@
+// One row of cells at the lower left edge of a frame, which survives video compression: a beginning that says what
+// the row is, 56 bits, and their check sum. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "visual_node/scene_view/draw_list.h"
+
+namespace tactus::visual {
+
+inline constexpr int kMarkerCell_px = 4;
+inline constexpr int kMarkerCells = 4 + 56 + 8;
+
+// The cells of one row, true: white. beginning: 4 bits.
+std::vector<bool> encode_row(std::uint64_t beginning, std::uint64_t payload);
+// Nothing when they hold no such row: wrong beginning or check sum.
+std::optional<std::uint64_t> decode_row(const std::vector<bool>& cells, std::uint64_t beginning);
+
+// Row 0 lies on the lowest 4 pixels, row k above it.
+void append_row(std::vector<Rect>& overlay, const std::vector<bool>& cells, int row, int height);
+// From the luma of a picture, rows from the top, one byte per pixel. Empty: the picture has no such row.
+std::vector<bool> read_row(std::span<const std::uint8_t> luma, int width, int height, int row);
+
+}  // namespace tactus::visual

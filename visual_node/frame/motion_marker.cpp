@@ -1,0 +1,33 @@
+#include "visual_node/frame/motion_marker.h"
+
+#include <algorithm>
+
+#include "visual_node/frame/marker.h"
+
+namespace tactus::visual {
+namespace {
+
+constexpr std::uint64_t kBeginning = 0b0110;
+
+}  // namespace
+
+void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,
+                          int height) {
+  const std::size_t rows = std::min<std::size_t>(samples.size(), kMotionRows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::uint64_t tool = static_cast<std::uint64_t>(samples[i].tool) & 0xf;
+    const std::uint64_t sample = static_cast<std::uint64_t>(samples[i].seq) & 0xfffffff;
+    const std::uint64_t payload = std::uint64_t{frame & 0xffffff} << 32 | tool << 28 | sample;
+    append_row(overlay, encode_row(kBeginning, payload), kMarkerRows + static_cast<int>(i), height);
+  }
+}
+
+std::optional<MotionMarker> read_motion_marker(std::span<const std::uint8_t> luma, int width, int height,
+                                               int row) {
+  const auto payload = decode_row(read_row(luma, width, height, kMarkerRows + row), kBeginning);
+  if (!payload) return std::nullopt;
+  return MotionMarker{static_cast<std::uint32_t>(*payload >> 32), static_cast<int>(*payload >> 28 & 0xf),
+                      static_cast<std::uint32_t>(*payload & 0xfffffff)};
+}
+
+}  // namespace tactus::visual

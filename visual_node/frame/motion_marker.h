@@ -1,0 +1,38 @@
+// Cells above those of frame/marker.h that name the newest pose sample of each tool that the frame shows, so that
+// the way from motion to pixel can be read from the frames themselves. visual_node/marker.py reads them back.
+// Pure.
+//
+// A row as there, which begins with 0 1 1 0 and goes on with
+//   frame, 24 bits | index of the tool, 4 bits | low 28 bits of header.seq of its TOOL_STATE
+// There are kMotionRows rows at the most, on rows kMarkerRows and above, one for each tool that was heard of.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "visual_node/scene_view/draw_list.h"
+
+namespace tactus::visual {
+
+inline constexpr int kMotionRows = 4;
+
+// Of which report a frame shows where a tool is.
+struct PoseSample {
+  int tool = 0;
+  std::int64_t seq = 0;
+};
+
+struct MotionMarker {
+  std::uint32_t frame = 0;   // modulo 2^24
+  int tool = 0;              // modulo 2^4
+  std::uint32_t sample = 0;  // modulo 2^28: at 1 kHz three days
+};
+
+void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,
+                          int height);
+// row: 0 .. kMotionRows - 1.
+std::optional<MotionMarker> read_motion_marker(std::span<const std::uint8_t> luma, int width, int height, int row);
+
+}  // namespace tactus::visual

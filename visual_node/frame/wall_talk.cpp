@@ -1,0 +1,54 @@
+#include "visual_node/frame/wall_talk.h"
+
+#include <algorithm>
+
+namespace tactus::visual {
+namespace {
+
+constexpr sync::Nanoseconds kLook{
+    1'000'000};  // whether the others are ready: so often, and whenever something arrives
+
+}  // namespace
+
+WallTalk::WallTalk(sync::Node& node, FrameLock& lock)
+    : node_(node),
+      lock_(lock),
+      world_(node.bus().queue<world_state_t>(channels::kWorldState, 4096)),
+      tools_(node.bus().queue<tool_state_t>(channels::kToolState, 4096)),
+      playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
+      walls_(node.bus().queue<frame_shown_t>(channels::kFrameShown, 256)) {}
+
+void WallTalk::receive() {
+  const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
+  while (const auto m = world_.pop()) lock_.push(m->message, m->arrival);
+  while (const auto m = tools_.pop()) lock_.push(m->message, m->arrival);
+  while (const auto m = playouts_.pop())
+    if (ours(m->message.header)) lock_.push(m->message, m->arrival);
+  while (const auto m = walls_.pop())
+    if (ours(m->message.header)) lock_.push(m->message, m->arrival);
+}
+
+void WallTalk::wait_for_latch(const AgreedFrame& frame) const {
+  sync::sleep_until(std::min(lock_.latch_at(frame), sync::host_now() + lock_.period()));
+}
+
+void WallTalk::hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
+  const sync::HostTime ready = sync::host_now();
+  if (lock_.waits()) {
+    tell(frame, frame_shown_t::READY);
+    const sync::HostTime until = ready + lock_.wait_at_most();
+    for (sync::HostTime now = ready; now < until && !lock_.others_ready(frame, now); now = sync::host_now()) {
+      node_.bus().wait(std::min(kLook, until - now));
+      meanwhile(node_.poll());
+    }
+  }
+  sync::sleep_until(std::min(frame.here, ready + lock_.period()));
+  lock_.shown(frame, sync::host_now());
+}
+
+void WallTalk::tell(const AgreedFrame& frame, std::int8_t stage) {
+  frame_shown_t m = lock_.message(frame, stage);
+  node_.bus().publish(channels::kFrameShown, m);
+}
+
+}  // namespace tactus::visual
