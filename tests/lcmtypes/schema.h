@@ -20,7 +20,7 @@ namespace tactus::test {
 
 struct FieldDef {
   std::string type, name;
-  std::string count;        // name of the field that holds the array's length; empty: a scalar
+  std::string count;        // name of the field that holds the array's length, or a number; empty: a scalar
   bool enumerated = false;  // constants are listed under it
 };
 using StructDef = std::vector<FieldDef>;
@@ -99,7 +99,9 @@ class Schema {
     for (const FieldDef& field : fields) {
       const std::string name = path.empty() ? field.name : path + "." + field.name;
       if (!field.count.empty()) {
-        for (std::int64_t i = 0; i < counts.at(field.count); ++i)
+        const bool fixed = field.count.find_first_not_of("0123456789") == std::string::npos;
+        const std::int64_t length = fixed ? std::stoll(field.count) : counts.at(field.count);
+        for (std::int64_t i = 0; i < length; ++i)
           walk_value(field, name + "[" + std::to_string(i) + "]", false, bytes, at, spots);
         continue;
       }
