@@ -3,8 +3,12 @@
 //   in   WORLD_STATE, CONTACT_EVENTS   where the bodies are, what began and what hit
 //        TOOL_STATE                    where device and proxy of each tool are; of a head, where the eye is
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
+//        SETTING                       changes of overlays and stream while it runs
+//        CONTACTS, NODE_HEALTH         while an overlay shows them, and whatever a plot names
 //   out  PRESENTED                     every begin and hit
 //        MEDIA_CLOCK                   which frame of the video was out when
+//        SIM_COMMAND, DEVICE_STATE     keys and mouse of a window
+//        PICTURE_CHUNK                 the picture for who looks on, when streamed
 //
 // Losing WORLD_STATE carries bodies on for 50 ms, then holds them and says so in the picture; the loop waits for
 // nobody.
@@ -14,9 +18,12 @@
 #include "sync/node.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
+#include "sync/setting_changes.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/gl/stage.h"
+#include "visual_node/overlay/live_desk.h"
 #include "visual_node/scene_view/meshes.h"
+#include "visual_node/video/picture_stream.h"
 #include "visual_node/video/recording.h"
 
 using namespace tactus;
@@ -67,17 +74,34 @@ int main(int argc, char** argv) try {
   visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::Recording recording(keep);
+  visual::PictureStream stream;
+  visual::LiveOverlays overlays(node.bus());
+  visual::LiveDesk desk(node.bus());
+  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
+  sync::SettingChanges changes(options.name, options.run_id);
+  visual::Settings own = settings;
   visual::Frame frame;
   sync::Nanoseconds took{0};
   std::string said;
   const auto say = [&](const std::string& sentence) {
     std::cerr << declaration.node << ": " << sentence << std::endl;
   };
+  for (const std::string& sentence : overlays.configure(settings)) say(sentence);
+  const auto change = [&](const std::string& name, const std::string& value) {
+    visual::Settings changed = settings;
+    sync::change_live(changed, own, visual::setting_fields(), name, value);
+    visual::LiveOverlays::check(changed);
+    settings = changed;
+    if (name.starts_with("stream"))
+      stream.begin(stage.picture().width(), stage.picture().height(), settings);
+    else
+      overlays.configure(settings);
+  };
   const auto receive = [&](sync::HostTime now) {
     sense.step(now);
-    while (const auto m = world.pop()) composer.push(m->message, m->arrival);
-    while (const auto m = events.pop()) composer.push(m->message, m->arrival);
-    while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
+    while (const auto m = world.pop()) composer.push(m->message, m->arrival), overlays.push(m->message), desk.push(m->message);
+    while (const auto m = events.pop()) composer.push(m->message, m->arrival), overlays.push(m->message, m->arrival);
+    while (const auto m = tools.pop()) composer.push(m->message, m->arrival), overlays.push(m->message);
   };
   const auto load = [&](sync::HostTime now) {
     settings = {};
@@ -88,21 +112,36 @@ int main(int argc, char** argv) try {
     const visual::SceneView& view = composer.load(*scenes.scene(), visual::meshes_of(scenes), settings,
                                                   visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), trouble));
     if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
+    for (const std::string& sentence : overlays.configure(own = settings)) trouble.push_back(sentence);
     for (const std::string& sentence : trouble) say(sentence);
     stage.load(view, composer.frame(now, 0).list, settings);
     recording.begin(view.width(), view.height(), settings);
+    stream.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
     sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
   };
   const auto draw = [&](sync::HostTime now, std::int64_t tick) {
     const sync::OutputDef output = sense.output();
+    overlays.tint(composer, scenes.scene() ? scenes.scene()->bodies.size() : 0);
     frame = composer.frame(now, tick, sense.delay(), world.count().newest_arrival, sense.profile_delay());
     stage.draw_scene(frame.list, output);
     // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
     const sync::HostTime latched = node.poll();
     receive(latched);
     composer.latch(frame, latched, sense.delay(), stage.held());
+    if (overlays.on().any()) {
+      visual::PanelFacts facts;
+      facts.rendering = took;
+      facts.period = sync::from_seconds(1 / settings.rate_Hz);
+      facts.quality = stage.quality().step();
+      facts.qualities = stage.quality().steps();
+      facts.profile = sense.profile_name();
+      facts.delay = sense.delay();
+      facts.profile_delay = sense.profile_delay();
+      facts.output = output;
+      overlays.append(frame, facts, latched, stage.picture().width(), stage.picture().height());
+    }
     stage.draw_over(frame.list);
     const sync::HostTime fence = sync::host_now();
     took = fence - now;
@@ -118,7 +157,7 @@ int main(int argc, char** argv) try {
     node.count_rendered(rendered);
   };
 
-  while (node.running() && !stage.closed()) {
+  while (node.running() && !stage.closed() && !desk.closing()) {
     const sync::HostTime now = node.wait();
     receive(now);
     if (scenes.poll(now)) {
@@ -126,11 +165,17 @@ int main(int argc, char** argv) try {
       continue;  // that took several ticks
     }
     const std::int64_t tick = node.deadlines().ticks() + node.deadlines().missed() - 1;
+    const visual::SceneView* view = composer.view();
+    desk.step(now, stage.display(), overlays, frame.list, view ? std::span(view->geometries()) : std::span<const visual::Triangles>{}, say);
     const bool fresh = stage.due(now, sense.output());
     if (fresh) draw(now, tick);
     sense.publish(sync::host_now());
     const auto read = [&](std::span<std::uint8_t> rgba) { stage.picture().read(rgba); };
     if (auto pair = recording.add(tick, now + took, read)) node.bus().publish(channels::kMediaClock, *pair);
+    if (fresh) stream.add(now, frame.instant ? sync::to_ns(*frame.instant) : -1, read);
+    for (picture_chunk_t& chunk : stream.take_chunks()) node.bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
+    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
+    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string video = recording.note();
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);

@@ -58,10 +58,12 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   const auto instant = map ? std::optional(map->to_sim(t - delay)) : std::nullopt;
   Frame frame;
   frame.number = number;
+  frame.instant = instant;
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
+  if (view_) frame.tools = tool_poses(instant, now);
   if (view_)
-    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now), view_at(t - view_delay, frame));
+    frame.list = view_->draw(body_poses(instant), frame.tools, view_at(t - view_delay, frame));
   else
     frame.list.lighting.background = kNoScene;
   return frame;

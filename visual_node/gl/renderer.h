@@ -45,6 +45,7 @@ class Renderer {
   void draw_surfaces(const DrawList& list);
   void draw_surfaces(const DrawList& list, const Camera& camera);
   void draw_glows(const DrawList& list, std::pair<int, int> size);
+  void draw_strokes(const DrawList& list);
   void scale_up();
   void describe(const Program& surface, const DrawList& list, const Camera& camera) const;
   void draw_surface(const Batch& batch);
@@ -56,11 +57,13 @@ class Renderer {
   std::unique_ptr<ShadowTarget> shadow_, coarse_shadow_;  // null: no lamp casts one
   Surfaces shadowed_, plain_;
   const Surfaces* surfaces_ = nullptr;  // of the picture being drawn
-  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"};
+  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"},
+      stroke_{"stroke"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
-  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2};
+  QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2},
+      strokes_{static_cast<int>(sizeof(Stroke) / 16)};
 };
 
 }  // namespace tactus::visual
