@@ -16,6 +16,7 @@
 #include "sync/identity.h"
 #include "sync/inbox.h"
 #include "sync/pacing.h"
+#include "sync/raw_queue.h"
 
 namespace tactus::sync {
 
@@ -46,6 +47,10 @@ class Bus {
   template <class Message>
   Queue<Message>& queue(const char* channel, std::size_t capacity, Port port = Port::kRealtime) {
     return add(std::make_unique<Queue<Message>>(channel, capacity), channel, port);
+  }
+  // The bytes of any channel, unread. One may come later, too: what came before is not in it.
+  RawQueue& raw(const char* channel, std::size_t capacity, Port port = Port::kBoth) {
+    return add(std::make_unique<RawQueue>(channel, capacity), channel, port);
   }
 
   // Heeds the clock maps of this run from now on. For processes that drain; call before the first drain.

@@ -65,6 +65,7 @@ void Sense::put_in_force(const ProfileInForce& profile) {
     stack_.set_scene(names_);
     for (const auto& stream : streams_) stream->change_profile();
     profile_hash_ = profile.hash;
+    profile_name_ = parsed.name;
     node_.set_profile(profile.hash);
     if (profile.generation > 0 || !parsed.rules.empty())
       std::cerr << d.node << ": profile \"" << parsed.name << "\", "

@@ -96,6 +96,8 @@ class Sense {
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
   // What is wrong with the output itself.
   const OutputDef& output() const { return output_; }
+  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
+  const std::string& profile_name() const { return profile_name_; }
   // When the newest message of any stream really arrived.
   HostTime newest_arrival() const;
 
@@ -143,6 +145,7 @@ class Sense {
   Queue<playout_t>& playouts_;
   ProfileReceiver receiver_;
   std::int64_t profile_hash_ = 0;
+  std::string profile_name_;
   Stack stack_;
   SceneNames names_;
   int tool_ = -1;

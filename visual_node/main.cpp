@@ -4,9 +4,13 @@
 //        TOOL_STATE                    where device and proxy of each tool are; of a head, where the eye is
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
 //        PLAYOUT, FRAME_SHOWN          of a room: its delay on the room's clock; which frames the other walls have drawn
+//        SETTING                       changes of overlays and stream while it runs
+//        CONTACTS, NODE_HEALTH         while an overlay shows them, and whatever a plot names
 //   out  PRESENTED                     every begin and hit
 //        MEDIA_CLOCK                   which frame of the video was out when
 //        FRAME_SHOWN                   of a room: which frame was seen when
+//        SIM_COMMAND, DEVICE_STATE     keys and mouse of a window
+//        PICTURE_CHUNK                 the picture for who looks on, when streamed
 //
 // Losing WORLD_STATE carries bodies on for 50 ms, then holds them and says so in the picture; the loop waits for
 // nobody. With --log it hears a recorded run instead of the bus and draws it into --video, as fast as it can; the same log gives
@@ -17,13 +21,16 @@
 #include "sync/node.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
+#include "sync/setting_changes.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/wall_talk.h"
 #include "visual_node/gl/stage.h"
 #include "visual_node/offline/offline.h"
+#include "visual_node/overlay/live_desk.h"
 #include "visual_node/scene_view/meshes.h"
+#include "visual_node/video/picture_stream.h"
 #include "visual_node/video/recording.h"
 
 using namespace tactus;
@@ -89,6 +96,12 @@ int main(int argc, char** argv) try {
   visual::WallTalk walls(node, lock);
   if (offline) composer.foresee({}, {});
   visual::Recording recording(keep);
+  visual::PictureStream stream;
+  visual::LiveOverlays overlays(node.bus());
+  visual::LiveDesk desk(node.bus());
+  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
+  sync::SettingChanges changes(options.name, options.run_id);
+  visual::Settings own = settings;
   visual::Frame frame;
   sync::HostTime fence{};
   visual::FrameTimes times;
@@ -99,11 +112,22 @@ int main(int argc, char** argv) try {
   const auto say = [&](const std::string& sentence) {
     std::cerr << declaration.node << ": " << sentence << std::endl;
   };
+  for (const std::string& sentence : overlays.configure(settings)) say(sentence);
+  const auto change = [&](const std::string& name, const std::string& value) {
+    visual::Settings changed = settings;
+    sync::change_live(changed, own, visual::setting_fields(), name, value);
+    visual::LiveOverlays::check(changed);
+    settings = changed;
+    if (name.starts_with("stream"))
+      stream.begin(stage.picture().width(), stage.picture().height(), settings);
+    else
+      overlays.configure(settings);
+  };
   const auto receive = [&](sync::HostTime now) {
     sense.step(now);
-    while (const auto m = world.pop()) composer.push(m->message, m->arrival);
-    while (const auto m = events.pop()) composer.push(m->message, m->arrival);
-    while (const auto m = tools.pop()) composer.push(m->message, m->arrival);
+    while (const auto m = world.pop()) composer.push(m->message, m->arrival), overlays.push(m->message), desk.push(m->message);
+    while (const auto m = events.pop()) composer.push(m->message, m->arrival), overlays.push(m->message, m->arrival);
+    while (const auto m = tools.pop()) composer.push(m->message, m->arrival), overlays.push(m->message);
     walls.receive();
   };
   const auto load = [&](sync::HostTime now) {
@@ -117,17 +141,20 @@ int main(int argc, char** argv) try {
                                                   visual::look_files_of(scenes, trouble));
     trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
     if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
+    for (const std::string& sentence : overlays.configure(own = settings)) trouble.push_back(sentence);
     for (const std::string& sentence : trouble) say(sentence);
     lock.load(*scenes.scene(), settings);
     stage.load(view, composer.frame(now, 0).list, settings);
     if (offline) offline->begin(view.width(), view.height(), settings);
     else recording.begin(view.width(), view.height(), settings);
+    stream.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
     sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
   };
   const auto draw = [&](sync::HostTime now, const std::optional<visual::AgreedFrame>& agreed) {
     const sync::OutputDef output = sense.output();
+    overlays.tint(composer, scenes.scene() ? scenes.scene()->bodies.size() : 0);
     const sync::HostTime heard = world.count().newest_arrival;
     frame = agreed ? composer.frame(now, *agreed, heard)
                    : composer.frame(now, tick, sense.delay(), heard, sense.profile_delay());
@@ -138,6 +165,18 @@ int main(int argc, char** argv) try {
     const sync::HostTime latched = offline ? clock() : node.poll();
     if (!offline) receive(latched);
     composer.latch(frame, latched, agreed ? agreed->delay : sense.delay(), stage.held());
+    if (overlays.on().any()) {
+      visual::PanelFacts facts;
+      facts.rendering = took;
+      facts.period = sync::from_seconds(1 / settings.rate_Hz);
+      facts.quality = stage.quality().step();
+      facts.qualities = stage.quality().steps();
+      facts.profile = sense.profile_name();
+      facts.delay = sense.delay();
+      facts.profile_delay = sense.profile_delay();
+      facts.output = output;
+      overlays.append(frame, facts, latched, stage.picture().width(), stage.picture().height());
+    }
     stage.draw_over(frame.list);
     const sync::HostTime ready = clock();
     if (agreed && !offline) lock.drawn(drawn - now, ready - latched), walls.hold(*agreed, receive);
@@ -161,7 +200,7 @@ int main(int argc, char** argv) try {
     flashed += rendered;
   };
 
-  while (node.running() && !stage.closed() && !(offline && offline->over())) {
+  while (node.running() && !stage.closed() && !desk.closing() && !(offline && offline->over())) {
     const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     receive(now);
     if (scenes.poll(now)) {
@@ -173,6 +212,8 @@ int main(int argc, char** argv) try {
     const auto agreed = lock.begin(clock(), sense.profile_delay());
     const std::int64_t periods_before = std::exchange(periods, node.deadlines().ticks() + node.deadlines().missed());
     tick += offline ? 1 : agreed ? 1 + agreed->skipped : periods - periods_before;
+    const visual::SceneView* view = composer.view();
+    if (!offline) desk.step(now, stage.display(), overlays, frame.list, view ? std::span(view->geometries()) : std::span<const visual::Triangles>{}, say);
     const bool fresh = stage.due(now, sense.output());
     if (fresh) draw(agreed ? clock() : now, agreed);
     sense.publish(clock());
@@ -188,6 +229,10 @@ int main(int argc, char** argv) try {
       if (fresh && settings.motion_marker == "strip")
         for (media_clock_t& m : visual::stages_of(*pair, times)) node.bus().publish(channels::kMediaClock, m);
     }
+    if (fresh) stream.add(now, frame.instant ? sync::to_ns(*frame.instant) : -1, read);
+    for (picture_chunk_t& chunk : stream.take_chunks()) node.bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
+    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
+    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string walls_note = lock.note(now), video = walls_note.empty() ? recording.note() : walls_note;
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);

@@ -32,7 +32,7 @@ class Headless : public Display {
     eglDestroyContext(display_, context_);
     eglTerminate(display_);
   }
-  void show(unsigned, int, int) override {}
+  void show(unsigned, int, int, bool) override {}
   bool closed() override { return false; }
   bool has_screen() const override { return false; }
 

@@ -1,44 +1,154 @@
+#include <dlfcn.h>
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "visual_node/egl/display.h"
 
+// Of GLFW, whose header for it would bring X11's.
+extern "C" void* glfwGetX11Display();
+
 namespace tactus::visual {
 namespace {
 
+constexpr std::size_t kMostKeys = 64;  // between two frames
+
 class Window : public Display {
  public:
-  Window(const std::string& title, int width, int height) {
+  Window(const std::string& title, const WindowOptions& o) : windowed_width_(o.width), windowed_height_(o.height) {
     if (!glfwInit()) refuse();
-    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    choose_monitor(o.monitor);
+    // EGL knows no buffers for two eyes; the desktop's own contexts may.
+    if (o.quad_buffer) open(title, o, GLFW_NATIVE_CONTEXT_API, true);
+    if (!window_) {
+      if (o.quad_buffer) trouble_ = "this display has no buffer for each eye; both eyes are shown side by side";
+      open(title, o, GLFW_EGL_CONTEXT_API, false);
+    }
     if (!window_) refuse();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(0);  // the loop has its own pace and waits for no screen
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+      auto& keys = static_cast<Window*>(glfwGetWindowUserPointer(w))->keys_;
+      if (action == GLFW_PRESS && keys.size() < kMostKeys) keys.push_back(key);
+    });
+    survive_the_server();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
+    if (o.full_screen) toggle_full_screen();
   }
-  ~Window() override { glfwTerminate(); }
+  ~Window() override {
+    if (!lost_) glfwTerminate();  // what is asked of a display server that is gone ends the process
+  }
 
-  void show(unsigned framebuffer, int width, int height) override {
+  void show(unsigned framebuffer, int width, int height, bool halves) override {
+    if (lost_) return;
     int window_width = 0, window_height = 0;
     glfwGetFramebufferSize(window_, &window_width, &window_height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes are encoded already
-    glBlitFramebuffer(0, 0, width, height, 0, 0, window_width, window_height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
-    glfwSwapBuffers(window_);
+    // What is iconified or has no size shows nothing; a desktop may let its swap wait until it is seen again.
+    if (window_width > 0 && window_height > 0 && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) {
+      glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+      glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+      glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes are encoded already
+      const auto blit = [&](int left, int right) {
+        glBlitFramebuffer(left, 0, right, height, 0, 0, window_width, window_height, GL_COLOR_BUFFER_BIT,
+                          GL_LINEAR);
+      };
+      if (halves && quad_) {
+        glDrawBuffer(GL_BACK_LEFT);
+        blit(0, width / 2);
+        glDrawBuffer(GL_BACK_RIGHT);
+        blit(width / 2, width);
+      } else {
+        if (quad_) glDrawBuffer(GL_BACK);
+        blit(0, width);
+      }
+      glfwSwapBuffers(window_);
+    }
     glfwPollEvents();
   }
-  bool closed() override { return glfwWindowShouldClose(window_); }
+  bool closed() override { return lost_ || glfwWindowShouldClose(window_); }
   bool has_screen() const override { return true; }
 
+  Inputs take_inputs() override {
+    Inputs inputs{std::exchange(keys_, {}), std::nullopt};
+    if (lost_ || glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) != GLFW_PRESS) return inputs;
+    int width = 0, height = 0;
+    double x = 0, y = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetCursorPos(window_, &x, &y);
+    if (width > 0 && height > 0 && x >= 0 && y >= 0 && x <= width && y <= height)
+      inputs.aim.emplace(static_cast<float>(x / width), static_cast<float>(y / height));
+    return inputs;
+  }
+
+  void toggle_full_screen() override {
+    if (lost_) return;
+    if (glfwGetWindowMonitor(window_)) {
+      glfwSetWindowMonitor(window_, nullptr, windowed_x_, windowed_y_, windowed_width_, windowed_height_,
+                           GLFW_DONT_CARE);
+      return;
+    }
+    const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
+    if (!mode) {
+      trouble_ = "no monitor is known: the window stays as it is";
+      return;
+    }
+    glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
+    glfwGetWindowSize(window_, &windowed_width_, &windowed_height_);
+    glfwSetWindowMonitor(window_, monitor_, 0, 0, mode->width, mode->height, mode->refreshRate);
+    glfwSwapInterval(0);
+  }
+
  private:
+  void choose_monitor(int number) {
+    int count = 0;
+    GLFWmonitor** monitors = glfwGetMonitors(&count);
+    if (count == 0) return;
+    if (number >= count)
+      trouble_ = "there is no monitor " + std::to_string(number) + "; the last of " + std::to_string(count) +
+                 ", counted from 0, is taken";
+    monitor_ = monitors[std::clamp(number, 0, count - 1)];
+  }
+
+  void open(const std::string& title, const WindowOptions& o, int api, bool stereo) {
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_STEREO, stereo ? GLFW_TRUE : GLFW_FALSE);
+    window_ = glfwCreateWindow(std::max(1, o.width), std::max(1, o.height), title.c_str(), nullptr, nullptr);
+    quad_ = window_ && stereo;
+    if (!window_) return;
+    if (monitor_) {
+      int x = 0, y = 0;
+      glfwGetMonitorPos(monitor_, &x, &y);
+      if (o.monitor > 0) glfwSetWindowPos(window_, x, y);
+    }
+  }
+
+  // Xlib ends the process when its server goes away, unless it is led elsewhere. It is in GLFW's hands: found, not
+  // linked.
+  void survive_the_server() {
+    using Handler = void (*)(void*, void*);
+    using Set = void (*)(void*, Handler, void*);
+    void* library = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+    const auto set = library ? reinterpret_cast<Set>(dlsym(library, "XSetIOErrorExitHandler")) : nullptr;
+    void* display = set ? glfwGetX11Display() : nullptr;
+    if (!display) return;
+    set(
+        display,
+        [](void*, void* window) {
+          auto* self = static_cast<Window*>(window);
+          if (!self->lost_) self->trouble_ = "the display server of the window is gone: the node ends";
+          self->lost_ = true;
+        },
+        this);
+  }
+
   [[noreturn]] static void refuse() {
     const char* why = nullptr;
     glfwGetError(&why);
@@ -49,12 +159,16 @@ class Window : public Display {
         "); start it on a desktop with DISPLAY or WAYLAND_DISPLAY set, or leave --window out");
   }
   GLFWwindow* window_ = nullptr;
+  GLFWmonitor* monitor_ = nullptr;
+  bool quad_ = false, lost_ = false;
+  int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
+  std::vector<int> keys_;
 };
 
 }  // namespace
 
-std::unique_ptr<Display> make_window(const std::string& title, int width, int height) {
-  return std::make_unique<Window>(title, width, height);
+std::unique_ptr<Display> make_window(const std::string& title, const WindowOptions& options) {
+  return std::make_unique<Window>(title, options);
 }
 
 }  // namespace tactus::visual

@@ -77,10 +77,12 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
   tick_ = now;
   frame.samples = newest_samples(now);
   bodies_.keep(delay);
+  frame.instant = instant;
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
+  if (view_) frame.tools = tool_poses(instant, now);
   if (view_)
-    frame.list = view_->draw(body_poses(instant), tool_poses(instant, now), view_of_head(head, frame));
+    frame.list = view_->draw(body_poses(instant), frame.tools, view_of_head(head, frame));
   else
     frame.list.lighting.background = kNoScene;
 }

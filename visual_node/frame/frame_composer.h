@@ -31,6 +31,8 @@ struct Frame {
   std::string note;
   std::int64_t number = 0;
   std::vector<PoseSample> samples;  // newest report of each tool that it shows
+  std::optional<sync::SimTime> instant;  // of the world that it shows
+  std::vector<ToolPose> tools;           // as they are drawn
 };
 
 class FrameComposer {
@@ -57,6 +59,13 @@ class FrameComposer {
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
   const SceneView& load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
                         const HeightMaps& height_maps = {}, LookFiles look_files = {});
+
+  // Null before the first scene.
+  const SceneView* view() const { return view_ ? &*view_ : nullptr; }
+  // Colours of the scene's bodies from now on, as SceneView::tint.
+  void tint(std::vector<Eigen::Vector4f> bodies) {
+    if (view_) view_->tint(std::move(bodies));
+  }
 
   // The frame that begins now, number `number` of all. delay: what it shows happened so long before it is seen;
   // newest_arrival: of any message, raw: a gap in what is let through is then commanded and no loss.

@@ -10,10 +10,16 @@ namespace tactus::visual {
 
 inline constexpr int kGlyphWidth = 5, kGlyphHeight = 7;
 
-// Rows of a capital letter, top first, the leftmost pixel in bit 4; null: there is no such glyph.
+// Rows of a letter, digit or sign, top first, the leftmost pixel in bit 4; null: there is no such glyph.
 const unsigned char* glyph(char letter);
 
-// Capital letters on a dark plate whose upper left corner is at (x, y), each pixel of a letter `size` pixels wide.
+// Text on a dark plate whose upper left corner is at (x, y), each pixel of a letter `size` pixels wide.
 void append_text(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size);
+// How large that plate is, pixels.
+float text_width(std::size_t letters, float size);
+constexpr float text_height(float size) { return (kGlyphHeight + 4) * size; }
+// Without a plate, sRGB; what has no glyph is drawn as a question mark.
+void append_letters(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size,
+                    const Eigen::Vector3f& colour = Eigen::Vector3f::Ones());
 
 }  // namespace tactus::visual

@@ -105,6 +105,7 @@ void Renderer::warm_up(DrawList list) {
             {.geometry = 0, .first = first, .count = 1, .casts_shadow = true, .relief = relief, .look = look});
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
+  list.strokes.push_back({Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
   const Quality before = quality_;
   // With and without shadows twice; then what is left, which has no programs of its own.
@@ -147,6 +148,7 @@ void Renderer::draw_over(const DrawList& list) {
   glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  draw_strokes(list);
   overlay_.use();
   overlay_.set("size",
                Eigen::Vector2f(static_cast<float>(picture_.width()), static_cast<float>(picture_.height())));
@@ -165,6 +167,21 @@ void Renderer::draw_glows(const DrawList& list, std::pair<int, int> size) {
     set(view, size);
     glow_.set("clip_from_world", view.camera.clip_from_world());
     glows_.draw(list.glows.data(), list.glows.size());
+  }
+  unset(size);
+}
+
+// Where blending and colours are those of the overlay; a profile that makes pictures coarse leaves them fine.
+void Renderer::draw_strokes(const DrawList& list) {
+  if (list.strokes.empty()) return;
+  glDisable(GL_DEPTH_TEST);
+  stroke_.use();
+  const std::pair size{picture_.width(), picture_.height()};
+  for (const View& view : views_in(list)) {
+    set(view, size);
+    stroke_.set("clip_from_world", view.camera.clip_from_world());
+    stroke_.set("size", Eigen::Vector2f(view.width * static_cast<float>(size.first), view.height * static_cast<float>(size.second)));
+    strokes_.draw(list.strokes.data(), list.strokes.size());
   }
   unset(size);
 }

@@ -49,6 +49,7 @@ class Renderer {
   void draw_surfaces(const DrawList& list);
   void draw_surfaces(const DrawList& list, const Camera& camera);
   void draw_glows(const DrawList& list, std::pair<int, int> size);
+  void draw_strokes(const DrawList& list);
   void scale_up();
   void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
   void draw_sky(const DrawList& list, const Camera& camera);
@@ -68,12 +69,14 @@ class Renderer {
   std::unique_ptr<EnvironmentTexture> environment_;
   bool sky_ = false;  // it is a picture, and seen
   std::vector<std::string> trouble_;
-  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"};
+  Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"},
+      stroke_{"stroke"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
   QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2},
-      sky_quad_{1};
+      sky_quad_{1},
+      strokes_{static_cast<int>(sizeof(Stroke) / 16)};
 };
 
 }  // namespace tactus::visual

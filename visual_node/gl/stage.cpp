@@ -4,7 +4,12 @@ namespace tactus::visual {
 
 Stage::Stage(const Settings& s, bool window) : quality_(s), loop_rate_Hz_(s.rate_Hz) {
   quiet_software_renderer();
-  display_ = window ? make_window("Tactus", s.width, s.height) : make_headless(s.egl_device);
+  const WindowOptions options{.width = s.window_width > 0 ? s.window_width : s.width,
+                              .height = s.window_height > 0 ? s.window_height : s.height,
+                              .full_screen = s.full_screen,
+                              .monitor = s.monitor,
+                              .quad_buffer = s.stereo == "quad_buffer"};
+  display_ = window ? make_window("Tactus", options) : make_headless(s.egl_device);
   renderer_ = std::make_unique<Renderer>(s.width / 4 * 4, s.height / 4 * 4, s.shadow_size);
 }
 
@@ -16,6 +21,7 @@ void Stage::load(const SceneView& view, const DrawList& sample, const Settings& 
   quality_ = QualityControl(s);
   rate_.restart();
   loop_rate_Hz_ = s.rate_Hz;
+  halves_ = s.stereo == "quad_buffer";
 }
 
 void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
@@ -32,7 +38,7 @@ void Stage::draw_over(const DrawList& list) {
 }
 
 void Stage::show() {
-  display_->show(picture().framebuffer(), picture().width(), picture().height());
+  display_->show(picture().framebuffer(), picture().width(), picture().height(), halves_);
   renderer_->wait();
 }
 

@@ -21,6 +21,7 @@ class Stage {
 
   const std::string& description() const { return display_->description(); }
   bool closed() { return display_->closed(); }
+  Display& display() { return *display_; }
   const PictureTarget& picture() const { return renderer_->picture(); }
   QualityControl& quality() { return quality_; }
 
@@ -48,6 +49,7 @@ class Stage {
   PictureRate rate_;
   double loop_rate_Hz_;
   std::unique_ptr<ShaderWatch> shaders_;
+  bool halves_ = false;  // of the picture, one for each eye of the display
 };
 
 }  // namespace tactus::visual

@@ -18,7 +18,7 @@ struct View {
 
 // As the setting `stereo` says; one view of all where it is off. Left and right halves, or upper and lower, hold
 // the whole wall, squeezed: displays for two eyes stretch them. Anaglyph: the left eye sees red, the right one
-// green and blue.
+// green and blue. Quad-buffer: halves too, which the display shows to one eye each.
 std::vector<View> views_of(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
                            const Settings& settings);
 

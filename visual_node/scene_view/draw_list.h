@@ -67,6 +67,14 @@ struct Glow {
 };
 static_assert(sizeof(Glow) == 4 * 16);
 
+// A straight line, drawn over everything, in sRGB.
+struct Stroke {
+  Eigen::Vector4f from;    // m, world; w: width in pixels
+  Eigen::Vector4f to;      // m, world; w unused
+  Eigen::Vector4f colour;  // w: opacity
+};
+static_assert(sizeof(Stroke) == 3 * 16);
+
 // A filled rectangle in pixels from the top left, over everything, in sRGB.
 struct Rect {
   float x = 0, y = 0, width = 0, height = 0;
@@ -81,6 +89,7 @@ struct DrawList {
   std::vector<Batch> opaque;       // roughly front to back
   std::vector<Batch> translucent;  // back to front
   std::vector<Glow> glows;
+  std::vector<Stroke> strokes;
   std::vector<Rect> overlay;
 };
 

@@ -228,6 +228,19 @@ bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
   return part.radius_m < 0.5f && (pose.translation().cast<float>() - lamp).norm() < part.radius_m;
 }
 
+namespace {
+// So much of a tint shines by itself: in a dark room it is seen too.
+constexpr float kTintShines = 0.12f;
+
+void add_tint(Instance& instance, const Eigen::Vector4f& tint) {
+  const Eigen::Vector3f linear = tint.head<3>().array().pow(2.2f);
+  const float share = tint.w();
+  instance.diffuse.head<3>() = (1 - share) * instance.diffuse.head<3>() + share * linear;
+  instance.ambient.head<3>() = (1 - share) * instance.ambient.head<3>() + share * linear;
+  instance.emissive.head<3>() += share * kTintShines * linear;
+}
+}  // namespace
+
 SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const {
   const Eigen::Isometry3d pose = body * part.in_body;
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
@@ -236,6 +249,8 @@ SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& bo
   p.instance.position.head<3>() = pose.translation().cast<float>();
   p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
   p.instance.body_position.head<3>() = body.translation().cast<float>();
+  if (part.body >= 0 && part.body < static_cast<int>(tints_.size()))
+    add_tint(p.instance, tints_[static_cast<std::size_t>(part.body)]);
   p.distance_m = (p.instance.position.head<3>() - camera.eye).norm();
   if (part.levels) {
     const float radius_px = part.look.scale.x() * camera.focal_px / std::max(p.distance_m, 1e-3f);

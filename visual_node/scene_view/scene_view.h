@@ -48,6 +48,9 @@ class SceneView {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  // Colours of bodies from now on, sRGB and how much of it, 0 .. 1; none, or fewer than there are bodies: their own.
+  void tint(std::vector<Eigen::Vector4f> bodies) { tints_ = std::move(bodies); }
+
   // One pose T_world_body per body and one entry per tool; a tool that is known is drawn where its proxy is.
   // head: T_world_head; nothing: where the scene's camera is.
   DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
@@ -107,6 +110,7 @@ class SceneView {
   std::vector<Tool> tools_;
   int missing_meshes_ = 0;
   std::vector<std::string> trouble_;
+  std::vector<Eigen::Vector4f> tints_;
 };
 
 }  // namespace tactus::visual

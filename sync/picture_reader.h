@@ -1,0 +1,42 @@
+// Puts the pictures of a stream together again from their pieces (PICTURE_CHUNK). Pure. Bounded: of each source
+// only the newest picture is on its way; one with a piece missing is skipped when the next begins.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <tactus/picture_chunk_t.hpp>
+#include <vector>
+
+namespace tactus::sync {
+
+struct StreamedPicture {
+  std::int32_t source = 0;  // header.source: which wall
+  std::int64_t picture = 0;
+  std::int64_t sim_time_ns = -1;
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> jpeg;
+};
+
+class PictureReader {
+ public:
+  // 4 MiB a picture; and so many walls. Of more, the one that was heard of least lately is forgotten.
+  static constexpr int kMostChunks = 4096;
+  static constexpr std::size_t kMostSources = 8;
+
+  // The picture that this piece completes.
+  std::optional<StreamedPicture> take(const picture_chunk_t& m);
+  // Pictures that began and were never whole.
+  std::int64_t skipped() const { return skipped_; }
+
+ private:
+  struct Partial {
+    std::int64_t incarnation = 0, picture = -1, heard = 0;
+    std::int32_t missing = 0;
+    std::vector<std::vector<std::uint8_t>> chunks;
+  };
+  std::map<std::int32_t, Partial> partials_;
+  std::int64_t skipped_ = 0, messages_ = 0;
+};
+
+}  // namespace tactus::sync

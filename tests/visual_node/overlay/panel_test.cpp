@@ -1,0 +1,123 @@
+#include "visual_node/overlay/panel.h"
+
+#include <catch2/catch.hpp>
+
+#include "sync/histogram.h"
+#include "visual_node/frame/text.h"
+#include "visual_node/overlay/keys.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+
+namespace {
+
+using std::chrono::microseconds;
+
+node_health_t health(std::int64_t seq, const sync::Histogram& ticks, std::int64_t incarnation = 1) {
+  node_health_t m{};
+  m.header.seq = seq, m.header.incarnation = incarnation;
+  m.nominal_rate_Hz = 1000, m.realtime_factor = 1;
+  m.tick = ticks.to_message();
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("The setting names overlays; a word that is none is refused with those that are near") {
+  CHECK_FALSE(parse_overlays("none").any());
+  CHECK_FALSE(parse_overlays("").any());
+  const OverlaySet set = parse_overlays(" contacts,report tools ");
+  for (std::size_t i = 0; i < kOverlayNames.size(); ++i) {
+    const std::string_view name = kOverlayNames[i];
+    CHECK(set.on(static_cast<Overlay>(i)) == (name == "contacts" || name == "report" || name == "tools"));
+  }
+  CHECK(parse_overlays("all").on(Overlay::kAges));
+  CHECK_THROWS_WITH(parse_overlays("contacts contract"),
+                    Catch::Contains("\"contract\"") && Catch::Contains("contacts"));
+}
+
+TEST_CASE("Every overlay has a key, and every key is told by the help") {
+  std::size_t reached = 0;
+  for (std::size_t i = 0; i < kOverlayNames.size(); ++i)
+    for (int key = 0; key < 400; ++key) reached += wish_of(key) == Wish{Act::kOverlay, static_cast<Overlay>(i)};
+  CHECK(reached == kOverlayNames.size());
+  std::size_t keys = 0;
+  for (int key = 0; key < 400; ++key) keys += wish_of(key).has_value();
+  CHECK(help_lines().size() == keys + 1);  // and the mouse
+  CHECK(wish_of(' ') == Wish{Act::kPauseOrResume});
+  CHECK_FALSE(wish_of('Q'));
+}
+
+TEST_CASE("The time of a tick is that of the last interval, not of all since the start") {
+  TickTimes times;
+  sync::Histogram ticks;
+  for (int i = 0; i < 1000; ++i) ticks.add(microseconds(100));
+  times.push(health(0, ticks));
+  CHECK_FALSE(times.median());
+  for (int i = 0; i < 100; ++i) ticks.add(microseconds(800));
+  times.push(health(1, ticks));
+  REQUIRE(times.median());
+  // Bins are logarithmic: within one of them.
+  CHECK(sync::to_seconds(*times.median()) == Approx(800e-6).epsilon(0.35));
+  times.push(health(2, ticks));  // no tick: the last time stays
+  CHECK(times.median());
+  times.push(health(0, ticks, 2));  // another life
+  CHECK_FALSE(times.median());
+}
+
+TEST_CASE("What is off has no line, and what is on has its figures") {
+  PanelFacts facts;
+  facts.contacts = 12;
+  facts.rendering = microseconds(8200), facts.period = microseconds(16667);
+  facts.quality = 1, facts.qualities = 4;
+  facts.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::How::kInterpolated},
+                  {"TOOL_STATE", {}, sync::How::kNone}};
+  facts.profile = "late sound";
+  CHECK(panel_lines({}, facts).empty());
+  const auto text = [&](Overlay o) {
+    OverlaySet on;
+    on.set(o);
+    std::string all;
+    for (const std::string& line : panel_lines(on, facts)) all += line + "\n";
+    return all;
+  };
+  CHECK(text(Overlay::kReport) == "contacts  12\nphysics   not heard of\nrendering 8.2 of 16.7 ms\n");
+  CHECK(text(Overlay::kAges) == "WORLD_STATE 12.3 ms interpolated\nTOOL_STATE nothing yet\n");
+  CHECK_THAT(text(Overlay::kDegradation), Catch::Contains("late sound") && Catch::Contains("step 1 of 0 to 3"));
+  CHECK(text(Overlay::kContacts).empty());
+}
+
+TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
+  for (char c = 'a'; c <= 'z'; ++c) CHECK(glyph(c));
+  for (char c = 'A'; c <= 'Z'; ++c) CHECK(glyph(c));
+  for (const char c : std::string("0123456789.-+:/%_()[]=@,<>?!*")) CHECK(glyph(c));
+  CHECK_FALSE(glyph(' '));
+  std::vector<Rect> overlay;
+  const std::vector<std::string> lines(500, std::string(500, 'M'));
+  append_lines(overlay, lines, 8, 36, text_size(480), 640, 480);
+  REQUIRE(!overlay.empty());
+  for (const Rect& r : overlay) {
+    CHECK(r.x + r.width <= 640);
+    CHECK(r.y + r.height <= 480);
+  }
+  CHECK(overlay.size() < 640u * 480u / 4u);
+  std::vector<Rect> none;
+  append_lines(none, {}, 8, 36, 2, 640, 480);
+  append_lines(none, {"no room"}, 8, 36, 2, 4, 4);
+  CHECK(none.empty());
+}
+
+TEST_CASE("A letter is drawn pixel for pixel as its rows say") {
+  std::vector<Rect> overlay;
+  append_letters(overlay, "B", 10, 20, 1);
+  int pixels = 0, wanted = 0;
+  for (const Rect& r : overlay) {
+    for (int i = 0; i < static_cast<int>(r.width); ++i) {
+      const int column = static_cast<int>(r.x) - 10 + i, row = static_cast<int>(r.y) - 20;
+      CHECK((glyph('B')[row] >> (kGlyphWidth - 1 - column) & 1) == 1);
+      ++pixels;
+    }
+  }
+  for (int row = 0; row < kGlyphHeight; ++row) wanted += __builtin_popcount(glyph('B')[row]);
+  CHECK(pixels == wanted);
+}

@@ -1,0 +1,129 @@
+#include "visual_node/overlay/plots.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "sync/decode.h"
+#include "sync/identity.h"
+#include "tests/lcmtypes/samples.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+
+namespace {
+
+sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
+constexpr sync::Nanoseconds kSpan{1'500'000'000};  // slices of 10 ms
+
+std::vector<std::uint8_t> tool_state(int tool, float force_z_N, const char* node = "haptic_node") {
+  tool_state_t m{};
+  test::Samples(3).fill(m);
+  m.tool = tool, m.force_N.z = force_z_N;
+  m.header.source = static_cast<std::int32_t>(sync::fnv1a_32(node));
+  return sync::encode(m);
+}
+
+std::string sentence(const char* text) {
+  std::vector<std::string> trouble;
+  parse_plots(text, trouble);
+  return trouble.empty() ? "" : trouble.front();
+}
+
+}  // namespace
+
+TEST_CASE("A plot names a variable of a channel, of one process and one tool when that is said") {
+  std::vector<std::string> trouble;
+  const auto specs = parse_plots(
+      "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", trouble);
+  CHECK(trouble.empty());
+  REQUIRE(specs.size() == 3);
+  CHECK(specs[0].kind == PlotSpec::Kind::kGraph);
+  CHECK(specs[1].kind == PlotSpec::Kind::kBar);
+  CHECK(specs[2].kind == PlotSpec::Kind::kText);
+  CHECK(specs[0].title == "TOOL_STATE.force_N.z@tool=1");
+  CHECK(std::get<double>(*specs[0].read(tool_state(1, 2.5f))) == 2.5);
+  CHECK_FALSE(specs[0].read(tool_state(0, 2.5f)));
+  const PlotSpec of_hand = parse_plot("graph TOOL_STATE.force_N.z@haptic_node@tool=0");
+  CHECK(of_hand.read(tool_state(0, 1)));
+  CHECK_FALSE(of_hand.read(tool_state(0, 1, "another_node")));
+  CHECK_FALSE(of_hand.read(tool_state(1, 1)));
+  CHECK(parse_plots("none", trouble).empty());
+  CHECK(trouble.empty());
+}
+
+TEST_CASE("A plot of what there is not is refused in one sentence with the names that are near") {
+  CHECK_THAT(sentence("graph TOOL_STAT.force_N.z"),
+             Catch::Contains("there is no channel \"TOOL_STAT\"; nearest: TOOL_STATE"));
+  CHECK_THAT(sentence("graph TOOL_STATE.farce_N.z"), Catch::Contains("nearest: force_N"));
+  CHECK_THAT(sentence("graph TOOL_STATE"), Catch::Contains("which field"));
+  CHECK_THAT(sentence("pie TOOL_STATE.tool"), Catch::Contains("graph, bar, text"));
+  CHECK_THAT(sentence("graph NODE_HEALTH.note"), Catch::Contains("text and no number"));
+  CHECK_THAT(sentence("graph TOOL_STATE.fade@tool=x"), Catch::Contains("is no number"));
+  CHECK_THAT(sentence("graph TOOL_STATE.fade@tolo=1"), Catch::Contains("nearest: tool"));
+  CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("@ is followed by"));
+  std::string many;
+  for (int i = 0; i < 40; ++i) many += "text TOOL_STATE.tool;";
+  std::vector<std::string> trouble;
+  CHECK(parse_plots(many, trouble).size() == kMostPlots);
+  CHECK(trouble.size() == 1);
+}
+
+TEST_CASE("A course keeps the lowest and highest value of each slice of time, and forgets what is past its span") {
+  Course course(kSpan);
+  for (int ms = 0; ms < 3000; ++ms) course.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
+  const auto slices = course.slices(at_ms(2999));
+  CHECK(slices.size() == Course::kColumns);
+  CHECK(slices.front().number == 150);
+  CHECK(slices.back().number == 299);
+  CHECK(slices[50].lowest == -7);
+  CHECK(slices[50].highest == 50);
+  CHECK(course.range(at_ms(2999)) == std::pair(-7.0, 50.0));
+  CHECK(course.range(at_ms(4000)) == std::pair(1.0, 1.0));
+  CHECK_FALSE(course.range(at_ms(9000)));
+}
+
+TEST_CASE("A course takes late and impossible values without harm") {
+  Course course(kSpan);
+  course.add(1, at_ms(100));
+  course.add(9, at_ms(50));  // late: with the newest
+  course.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
+  course.add(std::numeric_limits<double>::infinity(), at_ms(200));
+  REQUIRE(course.slices(at_ms(100)).size() == 1);
+  CHECK(course.slices(at_ms(100)).front().highest == 9);
+}
+
+TEST_CASE("Numbers are labelled with what is worth reading") {
+  CHECK(label(0) == "0");
+  CHECK(label(1000) == "1000");
+  CHECK(label(-12.3456) == "-12.35");
+  CHECK(label(1.5e-5) == "1.5e-05");
+  CHECK(label(123456789) == "1.235e+08");
+}
+
+TEST_CASE("Plots stay within the picture, and hear each channel once") {
+  std::vector<std::string> trouble;
+  Plots plots(
+      parse_plots(
+          "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.note; graph TOOL_STATE.energy_J;"
+          "graph TOOL_STATE.force_N.x; graph TOOL_STATE.force_N.y; graph TOOL_STATE.coupling",
+          trouble),
+      kSpan);
+  CHECK(plots.channels() == std::vector<std::string>{"TOOL_STATE", "NODE_HEALTH"});
+  for (int ms = 0; ms < 2000; ++ms)
+    plots.push("TOOL_STATE", tool_state(0, static_cast<float>(std::sin(ms * 0.01))), at_ms(ms));
+  for (const auto& [width, height] :
+       {std::pair(640, 480), std::pair(320, 240), std::pair(1920, 1080), std::pair(4, 4)}) {
+    std::vector<Rect> overlay;
+    plots.append(overlay, at_ms(2000), width, height);
+    CHECK(overlay.empty() == (width == 4));
+    float right = 0, bottom = 0;
+    for (const Rect& r : overlay) {
+      right = std::max(right, r.x + r.width);
+      bottom = std::max(bottom, r.y + r.height);
+      REQUIRE(r.x >= 0);
+    }
+    CHECK(right <= static_cast<float>(width));
+    CHECK(bottom <= static_cast<float>(height));
+  }
+}

@@ -1,0 +1,95 @@
+#include "visual_node/overlay/aim.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::visual {
+namespace {
+
+struct Ray {
+  Eigen::Vector3f from, along;
+};
+
+// Möller and Trumbore 1997: how many times `along` it is to the triangle; infinite: beside it or behind.
+float distance(const Ray& ray, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  const Eigen::Vector3f ab = b - a, ac = c - a, p = ray.along.cross(ac);
+  const float det = ab.dot(p);
+  if (std::abs(det) < 1e-20f) return kNever;
+  const Eigen::Vector3f s = (ray.from - a) / det;
+  const float u = s.dot(p);
+  if (u < 0 || u > 1) return kNever;
+  const Eigen::Vector3f q = s.cross(ab);
+  const float v = ray.along.dot(q);
+  if (v < 0 || u + v > 1) return kNever;
+  const float t = ac.dot(q);
+  return t > 0 ? t : kNever;
+}
+
+// In the frame of the shape, where distances along the ray are the same number of times `along`.
+Ray in_shape(const Ray& ray, const Instance& i) {
+  const Eigen::Quaternionf world_shape(i.orientation);
+  const Eigen::Vector3f scale = i.scale.head<3>();
+  return {(world_shape.conjugate() * (ray.from - i.position.head<3>())).cwiseQuotient(scale),
+          (world_shape.conjugate() * ray.along).cwiseQuotient(scale)};
+}
+
+std::optional<Ray> ray_at(const DrawList& list, float x, float y) {
+  std::vector<View> views = list.views;
+  if (views.empty()) views.push_back({.camera = list.camera});
+  for (const View& v : views) {
+    const float across = (x - v.x) / v.width, up = (1 - y - v.y) / v.height;
+    if (!(across >= 0 && across <= 1 && up >= 0 && up <= 1)) continue;
+    const Eigen::Matrix4f world_clip = v.camera.clip_from_world().inverse();
+    const auto point = [&](float depth) -> Eigen::Vector3f {
+      return (world_clip * Eigen::Vector4f(2 * across - 1, 2 * up - 1, depth, 1)).hnormalized();
+    };
+    const Eigen::Vector3f near = point(-1), along = (point(0) - near).normalized();
+    if (near.allFinite() && along.allFinite()) return Ray{near, along};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Triangles> geometries, float x,
+                                      float y) {
+  const auto ray = ray_at(list, x, y);
+  if (!ray) return std::nullopt;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const Batch& batch : list.opaque) {
+    if (batch.geometry < 0 || static_cast<std::size_t>(batch.geometry) >= geometries.size()) continue;
+    const Triangles& t = geometries[static_cast<std::size_t>(batch.geometry)];
+    for (int i = batch.first; i < batch.first + batch.count; ++i) {
+      const Ray own = in_shape(*ray, list.instances[static_cast<std::size_t>(i)]);
+      for (std::size_t k = 0; k + 2 < t.indices.size(); k += 3)
+        nearest = std::min(nearest, distance(own, t.positions[t.indices[k]], t.positions[t.indices[k + 1]],
+                                             t.positions[t.indices[k + 2]]));
+    }
+  }
+  if (!std::isfinite(nearest)) return std::nullopt;
+  return ray->from + nearest * ray->along;
+}
+
+std::optional<device_state_t> MousePointer::state(sync::HostTime now) {
+  if (!target_) return std::nullopt;
+  const bool first = !last_;
+  const double dt_s = first ? 0 : std::clamp(sync::to_seconds(now - *last_), 0.0, 0.1);
+  last_ = now;
+  const Eigen::Vector3d before = at_, way = *target_ - at_;
+  const double most_m = kFastest_m_s * dt_s;
+  at_ = first || way.norm() <= most_m ? *target_ : Eigen::Vector3d(at_ + way.normalized() * most_m);
+  device_state_t m{};
+  m.header.sim_time_ns = -1;
+  m.device = kMouseDevice;
+  m.pose = to_pose(Eigen::Isometry3d(Eigen::Translation3d(at_)));
+  if (!first && dt_s > 0) m.velocity_m_s = to_vec3f(Eigen::Vector3d((at_ - before) / dt_s));
+  m.state = device_state_t::ANSWERS;
+  return m;
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,124 @@
+#include "visual_node/overlay/live.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sync/decode.h"
+#include "visual_node/overlay/touches.h"
+
+namespace tactus::visual {
+namespace {
+
+// Messages of a channel between two frames: a state of 1 kHz for a tenth of a second, or two snapshots of 300
+// contacts.
+constexpr std::size_t kMostHeard = 256;
+// The first line is below the word that says how good the frame is.
+constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
+
+}  // namespace
+
+void LiveOverlays::check(const Settings& settings) {
+  parse_overlays(settings.overlay);
+  std::vector<std::string> trouble;
+  parse_plots(settings.plots, trouble);
+  if (!trouble.empty()) throw std::invalid_argument(trouble.front());
+}
+
+std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
+  std::vector<std::string> trouble;
+  try {
+    on_ = parse_overlays(settings.overlay);
+  } catch (const std::invalid_argument& e) {
+    trouble.emplace_back(e.what());
+  }
+  force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
+  plots_ = Plots(parse_plots(settings.plots, trouble), sync::from_seconds(settings.plot_span_s));
+  if (!plots_.empty()) on_.set(Overlay::kPlots);
+  groups_.forget();
+  tools_.clear();
+  listen();
+  return trouble;
+}
+
+void LiveOverlays::toggle(Overlay o) {
+  on_.toggle(o);
+  listen();
+}
+
+void LiveOverlays::listen() {
+  std::vector<std::string> wanted;
+  if (on_.on(Overlay::kPlots)) wanted = plots_.channels();
+  if (wants_contacts()) wanted.emplace_back(channels::kContacts);
+  if (on_.on(Overlay::kReport)) wanted.emplace_back(channels::kNodeHealth);
+  for (auto& [channel, queue] : heard_)
+    queue->set_wanted(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
+  for (const std::string& channel : wanted)
+    if (!heard_.contains(channel)) heard_[channel] = &bus_.raw(channel.c_str(), kMostHeard);
+  if (!on_.on(Overlay::kForces)) tools_.clear();
+  if (!on_.on(Overlay::kGroups)) groups_.forget();
+}
+
+void LiveOverlays::hear() {
+  for (auto& [channel, queue] : heard_)
+    queue->read([&, &name = channel](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+      if (on_.on(Overlay::kPlots)) plots_.push(name, bytes, arrival);
+      if (name == channels::kContacts && wants_contacts())
+        if (const auto m = sync::decode<contact_frame_t>(bytes.data(), bytes.size())) contacts_.push(*m, arrival);
+      if (name == channels::kNodeHealth && on_.on(Overlay::kReport))
+        if (const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size()); m && m->node == "sim_node")
+          physics_.push(*m);
+    });
+}
+
+void LiveOverlays::tint(FrameComposer& composer, std::size_t bodies) {
+  const bool now = on_.on(Overlay::kGroups);
+  if (now || tinted_) composer.tint(now ? groups_.tints(bodies) : std::vector<Eigen::Vector4f>{});
+  tinted_ = now;
+}
+
+std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::How contacts, sync::HostTime now) const {
+  std::vector<InputLine> lines;
+  for (const char* channel :
+       {channels::kWorldState, channels::kContactEvents, channels::kToolState, channels::kContacts})
+    for (const auto& inbox : bus_.inboxes()) {
+      if (inbox->count().channel != channel) continue;
+      InputLine line{channel, sync::age_of(inbox->count(), bus_.clocks(), now), sync::How::kNone};
+      if (line.age.age < sync::Nanoseconds(0) && inbox->count().newest_arrival != sync::HostTime{})
+        line.age.age = now - inbox->count().newest_arrival;
+      if (channel == channels::kWorldState) line.how = frame.how;
+      if (channel == channels::kContacts) line.how = contacts;
+      lines.push_back(line);
+      break;
+    }
+  return lines;
+}
+
+void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width,
+                          int picture_height) {
+  if (!on_.any()) return;
+  hear();
+  sync::Sample<sync::Contacts> touching;
+  if (wants_contacts() && frame.instant) {
+    touching = contacts_.state_at(*frame.instant);
+    contacts_.take_events(*frame.instant);
+  }
+  auto& strokes = frame.list.strokes;
+  if (on_.on(Overlay::kContacts)) append_contacts(strokes, touching.value);
+  if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_);
+  for (std::size_t i = 0; i < std::min<std::size_t>(frame.tools.size(), kMostTools); ++i) {
+    if (on_.on(Overlay::kTools)) append_tool(strokes, frame.tools[i]);
+    const auto state = tools_.find(static_cast<int>(i));
+    if (on_.on(Overlay::kForces) && state != tools_.end())
+      append_hand_force(strokes, frame.tools[i], state->second, force_scale_m_N_);
+  }
+  facts.contacts = touching.value.size();
+  facts.physics = physics_;
+  facts.haptic_bodies = groups_.haptic();
+  facts.visual_bodies = groups_.visual();
+  if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.how, now);
+  append_lines(frame.list.overlay, panel_lines(on_, facts), kPanelAt_px, kPanelBelow_px, text_size(picture_height),
+               static_cast<float>(picture_width), static_cast<float>(picture_height));
+  if (on_.on(Overlay::kPlots)) plots_.append(frame.list.overlay, now, picture_width, picture_height);
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,34 @@
+#include "visual_node/overlay/live_desk.h"
+
+#include "sync/asking.h"
+
+namespace tactus::visual {
+
+void LiveDesk::heed(const Wish& wish, Display& display, LiveOverlays& overlays) {
+  switch (wish.act) {
+    case Act::kOverlay: return overlays.toggle(wish.overlay);
+    case Act::kFullScreen: return display.toggle_full_screen();
+    case Act::kClose: closing_ = true; return;
+    default: wishes_.ask(wish.act, sync::question_id());
+  }
+}
+
+void LiveDesk::step(sync::HostTime now, Display& display, LiveOverlays& overlays, const DrawList& list,
+                    std::span<const Triangles> geometries, const Say& say) {
+  if (!display.has_screen()) return;
+  if (!replies_) replies_ = &bus_.queue<sim_reply_t>(channels::kSimReply, 64);
+  const Inputs inputs = display.take_inputs();
+  for (const int key : inputs.keys)
+    if (const auto wish = wish_of(key)) heed(*wish, display, overlays);
+  if (inputs.aim)
+    if (const auto hit = hit_at(list, geometries, inputs.aim->first, inputs.aim->second))
+      pointer_.aim(hit->cast<double>());
+  if (auto state = pointer_.state(now)) bus_.publish(channels::kDeviceState, *state);
+  while (const auto m = replies_->pop())
+    if (m->message.header.run_id == bus_.identity().run_id) wishes_.push(m->message);
+  if (auto command = wishes_.step(now)) bus_.publish(channels::kSimCommand, *command);
+  for (const std::string& sentence : {wishes_.take_answer(), display.take_trouble()})
+    if (!sentence.empty()) say(sentence);
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,195 @@
+#include "visual_node/overlay/plots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sync/printable.h"
+#include "visual_node/frame/text.h"
+#include "visual_node/overlay/panel.h"
+
+namespace tactus::visual {
+namespace {
+
+using Colour = Eigen::Vector3f;
+const Colour kTitle{0.75f, 0.85f, 1.0f}, kLabel{0.8f, 0.8f, 0.8f}, kLine{0.4f, 1.0f, 0.6f}, kOld{0.6f, 0.6f, 0.6f};
+constexpr float kMargin_px = 6, kPad_px = 3;
+constexpr std::size_t kLongestWords = 64;
+// A value that has not come for so long is grey.
+constexpr sync::Nanoseconds kOldAfter{2'000'000'000};
+
+struct Box {  // where a plot is, pixels
+  float x, y, width, size;
+  float line() const { return (kGlyphHeight + 2) * size; }
+};
+
+void plate(std::vector<Rect>& out, const Box& b, float height) {
+  out.push_back({b.x, b.y, b.width, height, 0, 0, 0, 0.65f});
+}
+
+void fill(std::vector<Rect>& out, float x, float y, float width, float height, const Colour& c, float alpha = 1) {
+  out.push_back({x, y, width, height, c.x(), c.y(), c.z(), alpha});
+}
+
+// Ends where the box does.
+void words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
+  const auto room =
+      static_cast<std::size_t>(std::max(0.0f, (b.width - 2 * kPad_px) / ((kGlyphWidth + 1) * b.size)));
+  append_letters(out, text.substr(0, room), b.x + kPad_px, y, b.size, colour);
+}
+
+void right_words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
+  const float width = (kGlyphWidth + 1) * b.size * static_cast<float>(text.size());
+  append_letters(out, text, b.x + b.width - kPad_px - width, y, b.size, colour);
+}
+
+}  // namespace
+
+std::string label(double value) {
+  char buffer[40];
+  const bool whole = std::abs(value) < 1e7 && value == std::nearbyint(value);
+  std::snprintf(buffer, sizeof buffer, whole ? "%.0f" : "%.4g", value);
+  return buffer;
+}
+
+void Course::add(double value, sync::HostTime t) {
+  if (!std::isfinite(value)) return;
+  const std::int64_t slice = number(t);
+  if (slices_.empty() || slice > slices_.back().number) {
+    slices_.push_back({slice, value, value});
+    while (slices_.size() > kColumns) slices_.pop_front();
+    return;
+  }
+  // Late by a slice or more: the newest slice takes it.
+  slices_.back().lowest = std::min(slices_.back().lowest, value);
+  slices_.back().highest = std::max(slices_.back().highest, value);
+}
+
+std::vector<Course::Slice> Course::slices(sync::HostTime now) const {
+  std::vector<Slice> seen;
+  for (const Slice& s : slices_)
+    if (s.number > number(now) - kColumns && s.number <= number(now)) seen.push_back(s);
+  return seen;
+}
+
+std::optional<std::pair<double, double>> Course::range(sync::HostTime now) const {
+  std::optional<std::pair<double, double>> range;
+  for (const Slice& s : slices(now)) {
+    if (!range) range.emplace(s.lowest, s.highest);
+    range->first = std::min(range->first, s.lowest);
+    range->second = std::max(range->second, s.highest);
+  }
+  return range;
+}
+
+Plots::Plots(std::vector<PlotSpec> specs, sync::Nanoseconds span) {
+  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), "", 0, {}});
+}
+
+std::vector<std::string> Plots::channels() const {
+  std::vector<std::string> names;
+  for (const Plot& p : plots_)
+    if (std::find(names.begin(), names.end(), p.spec.channel) == names.end()) names.push_back(p.spec.channel);
+  return names;
+}
+
+void Plots::push(const std::string& channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+  for (Plot& p : plots_) {
+    if (p.spec.channel != channel) continue;
+    const auto read = p.spec.read(bytes);
+    if (!read) continue;
+    p.at = arrival;
+    if (const auto* words = std::get_if<std::string>(&*read)) {
+      p.newest = sync::printable(words->substr(0, kLongestWords));
+      continue;
+    }
+    p.value = std::get<double>(*read);
+    p.newest = label(p.value);
+    p.course.add(p.value, arrival);
+  }
+}
+
+namespace {
+
+// The course between its least and its most, which are written beside it.
+void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, const std::string& unit,
+                  sync::HostTime now, float height) {
+  const auto range = course.range(now);
+  const float top = b.y + b.line() + kPad_px, left = b.x + kPad_px;
+  const float width = b.width - 2 * kPad_px, bottom = top + height;
+  fill(out, left, bottom, width, 1, kLabel, 0.6f);
+  fill(out, left, top, 1, height, kLabel, 0.6f);
+  const std::string seconds = label(-sync::to_seconds(course.span())) + " s";
+  words(out, b, seconds, bottom + kPad_px, kLabel);
+  right_words(out, b, "now", bottom + kPad_px, kLabel);
+  if (!range) return;
+  const double least = range->first, most = range->second;
+  // A course that does not change is a line in the middle.
+  const auto place = [&](double v) {
+    const double share = most > least ? (v - least) / (most - least) : 0.5;
+    return bottom - static_cast<float>(share) * (height - 1);
+  };
+  const std::int64_t last = course.number(now);
+  const float column = width / Course::kColumns;
+  double before = 0;
+  bool first = true;
+  for (const Course::Slice& s : course.slices(now)) {
+    // Drawn to where the slice before was, so that a step is a line.
+    const double low = first ? s.lowest : std::min(s.lowest, before),
+                 high = first ? s.highest : std::max(s.highest, before);
+    first = false;
+    before = (s.lowest + s.highest) / 2;
+    const float x = left + column * static_cast<float>(Course::kColumns - 1 - (last - s.number));
+    fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, kLine);
+  }
+  if (least < 0 && most > 0) fill(out, left, place(0), width, 1, kLabel, 0.4f);
+  right_words(out, b, label(most) + (unit.empty() ? "" : " " + unit), top, kLabel);
+  right_words(out, b, label(least), bottom - b.line(), kLabel);
+}
+
+// From zero to what it was at most of late.
+void append_bar(std::vector<Rect>& out, const Box& b, double value, const Course& course, sync::HostTime now,
+                float y) {
+  const auto range = course.range(now);
+  if (!range) return;
+  const double least = std::min(0.0, range->first), most = std::max(0.0, range->second);
+  const float left = b.x + kPad_px, width = b.width - 2 * kPad_px, height = b.line() * 0.8f;
+  const auto place = [&](double v) {
+    return left +
+           static_cast<float>(most > least ? (std::clamp(v, least, most) - least) / (most - least) : 0) * width;
+  };
+  fill(out, left, y, width, height, kLabel, 0.25f);
+  const float from = std::min(place(0), place(value)), to = std::max(place(0), place(value));
+  fill(out, from, y, std::max(1.0f, to - from), height, kLine);
+}
+
+}  // namespace
+
+void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int picture_width, int picture_height) const {
+  const float size = std::max(1.0f, text_size(picture_height) - 1);
+  Box b{0, kMargin_px, 0.36f * static_cast<float>(picture_width), size};
+  b.x = static_cast<float>(picture_width) - b.width - kMargin_px;
+  const float graph_height = 46 * size;
+  for (const Plot& p : plots_) {
+    const float body = p.spec.kind == PlotSpec::Kind::kGraph ? graph_height + b.line() + 2 * kPad_px : b.line();
+    const float height = b.line() + body + 2 * kPad_px;
+    if (b.y + height > static_cast<float>(picture_height)) return;
+    plate(overlay, b, height);
+    words(overlay, b, p.spec.title, b.y + kPad_px, kTitle);
+    const std::string unit = p.spec.value.unit();
+    const std::string value = p.newest.empty() ? "nothing yet" : p.newest + (unit.empty() ? "" : " " + unit);
+    const bool old = p.newest.empty() || now - p.at > kOldAfter;
+    const float y = b.y + b.line() + kPad_px;
+    switch (p.spec.kind) {
+      case PlotSpec::Kind::kGraph: append_graph(overlay, b, p.course, unit, now, graph_height); break;
+      case PlotSpec::Kind::kBar:
+        append_bar(overlay, b, p.value, p.course, now, y);
+        right_words(overlay, b, value, y, old ? kOld : kLabel);
+        break;
+      case PlotSpec::Kind::kText: words(overlay, b, value, y, old ? kOld : kLabel); break;
+    }
+    b.y += height + kMargin_px;
+  }
+}
+
+}  // namespace tactus::visual
