@@ -42,6 +42,17 @@ Picture beside(const std::vector<Picture>& parts) {
   return all;
 }
 
+// Two rows become one: their bytes differ by little.
+Picture half_as_high(const Picture& from) {
+  Picture to{from.width, from.height / 2, {}};
+  const auto row = static_cast<std::size_t>(4 * from.width);
+  for (std::size_t i = 0; i < row * static_cast<std::size_t>(to.height); ++i) {
+    const std::size_t upper = i / row * 2 * row + i % row;
+    to.rgba.push_back(static_cast<std::uint8_t>((from.rgba[upper] + from.rgba[upper + row]) / 2));
+  }
+  return to;
+}
+
 // Nothing of a scene may be drawn otherwise than it says.
 Picture checked(const ShippedScene& from, Picture picture) {
   if (!from.trouble.empty()) throw std::runtime_error(from.trouble.front());
@@ -54,18 +65,23 @@ Picture dark_room(int samples) {
   return checked(s, std::move(picture));
 }
 
-// The lamp goes once around the boards, as low as it is.
+// The boards from above, the deepest relief at the lower end, in light that comes in low from the left, from
+// above, from the right and from below.
 Picture bump_plane(int samples) {
   ShippedScene s = load("bump_plane");
+  scene_t scene = s.scene;
+  // Looks down, the picture's up is +y.
+  Eigen::Matrix3d axes;
+  axes << -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY();
+  scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.2) * Eigen::Quaterniond(axes)));
+  scene.camera_fov_rad = 2 * std::atan(0.195 / 1.2);
   std::vector<Picture> parts;
-  for (const double azimuth_deg : {-60.0, 0.0, 60.0, 120.0}) {
-    scene_t scene = s.scene;
+  for (const double azimuth_deg : {180.0, 90.0, 0.0, -90.0}) {
     const double a = azimuth_deg * std::numbers::pi / 180;
-    const Eigen::Vector3d lamp(0.7 * std::cos(a), 0.7 * std::sin(a), 0.35);
+    const Eigen::Vector3d lamp(0.8 * std::cos(a), 0.8 * std::sin(a), 0.35);
     scene.lights[0].pose.position_m = to_vec3(lamp);
     scene.lights[0].direction = to_vec3(Eigen::Vector3d(-lamp.normalized()));
-    scene.camera = test::look_at({-0.42, 0, 0.42}, {0.01, 0, 0});
-    parts.push_back(s.draw(scene, sized(300, 260, samples)));
+    parts.push_back(s.draw(scene, sized(180, 300, samples)));
   }
   return checked(s, beside(parts));
 }
@@ -73,9 +89,9 @@ Picture bump_plane(int samples) {
 Picture looks(int samples) {
   ShippedScene s = load("looks_bench");
   scene_t scene = s.scene;
-  scene.camera = test::look_at({-0.62, 0, 0.24}, {0, 0, 0.045});
-  scene.camera_fov_rad = 1.36;
-  Picture picture = s.draw(scene, sized(1200, 300, samples));
+  scene.camera = test::look_at({-1.4, 0, 0.4}, {0, 0, 0.04});
+  scene.camera_fov_rad = 0.76;
+  Picture picture = s.draw(scene, sized(1200, 250, samples));
   return checked(s, std::move(picture));
 }
 
@@ -89,14 +105,15 @@ Picture reflecting(int samples) {
   return checked(s, std::move(picture));
 }
 
-// For eyes that look straight ahead, or for a stereoscope: the left eye's picture is on the left.
+// The left eye's picture on the left, for who lets the eyes look straight ahead. Both are squeezed for a display
+// that stretches them, and made as narrow here in height.
 Picture stereo(int samples) {
   ShippedScene s = load("dark_room");
-  visual::Settings settings = sized(1000, 400, samples);
+  visual::Settings settings = sized(1000, 800, samples);
   settings.stereo = std::string("side_by_side");
   settings.stereo_distance_m = 1.2;
   Picture picture = s.draw(s.scene, settings);
-  return checked(s, std::move(picture));
+  return checked(s, half_as_high(picture));
 }
 
 }  // namespace

@@ -193,6 +193,8 @@ Vector3d around_at(const Vector3d& d) {
   return Vector3d(128, 128, 128) + Vector3d(100 * d.x(), 90 * d.y(), 80 * d.z());
 }
 
+Vector3d decoded(const Vector3d& bytes) { return bytes.unaryExpr(&linear); }
+
 Raster around() {
   Raster r{256, 128, false, {}};
   for (int j = 0; j < r.height; ++j)
@@ -210,8 +212,7 @@ Raster around() {
 
 Vector3d mirrored(const Point& p, const Vector3d& eye) {
   const Vector3d in = (p.at - eye).normalized(), out = in - 2 * in.dot(p.normal) * p.normal;
-  const Vector3d c = around_at(out);
-  return {linear(c.x()), linear(c.y()), linear(c.z())};
+  return decoded(around_at(out));
 }
 // The picture is rounded twice to eight bits, half a level each time, before it is seen.
 constexpr double kRounded = 1;
@@ -224,11 +225,15 @@ TEST_CASE(
   const float reflectance = GENERATE(0.04f, 0.5f, 1.0f);
   scene_t scene = lit(shape, light_def_t::POINT);
   scene.environment_asset = 9;
+  scene.visuals[0].alpha = GENERATE(1.0f, 0.4f);
   wear(scene, "reflecting", 0, 0, reflectance);
   compare(scene, {{{9, around()}}, {}}, kTolerance + kRounded,
           [&](const Hit& hit, const Vector3d& eye) -> Vector3d {
             const double f = fresnel(reflectance, hit.point.normal.dot((eye - hit.point.at).normalized()));
-            return (1 - f) * phong(scene, scene.visuals[0], hit.point, eye) + f * mirrored(hit.point, eye);
+            const double a = scene.visuals[0].alpha;
+            const Vector3d behind = decoded(around_at(hit.point.at.normalized()));  // the eye is at the origin
+            const Vector3d through = a * phong(scene, scene.visuals[0], hit.point, eye) + (1 - a) * behind;
+            return (1 - f) * through + f * mirrored(hit.point, eye);
           });
 }
 
@@ -260,6 +265,7 @@ TEST_CASE("What is translucent lets through what it neither returns nor mirrors,
   const float alpha = GENERATE(0.1f, 0.5f, 0.9f);
   const float reflectance = GENERATE(0.0f, 0.04f);
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
+  scene.lights[0].intensity = GENERATE(0.8f, 4.0f);  // brighter than white, were it opaque
   scene.background = to_vec3f({0.2, 0.5, 0.3});
   scene.visuals[0].alpha = alpha;
   wear(scene, reflectance > 0 ? "reflecting" : "phong", 0, 0, reflectance);
@@ -270,4 +276,25 @@ TEST_CASE("What is translucent lets through what it neither returns nor mirrors,
     const Vector3d through = alpha * phong(scene, scene.visuals[0], hit.point, eye) + (1 - alpha) * behind;
     return (1 - f) * through + f * behind;  // the background is what lies around
   });
+}
+
+TEST_CASE("What lies around is seen where nothing else is, in the direction that it lies in") {
+  scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
+  scene.environment_asset = 9;
+  scene.camera =
+      to_pose(Eigen::Isometry3d(Eigen::AngleAxisd(GENERATE(0.0, 2.0, 4.0), Vector3d(0.3, -0.2, 1).normalized())));
+  scene.visuals.clear();
+  visual::Settings settings;
+  settings.exposure = GENERATE(0.7, 1.0);
+  display();
+  const visual::SceneView view(scene, {}, settings, {}, {{{9, around()}}, {}});
+  visual::Renderer renderer(kWidth, kHeight, settings.shadow_size);
+  renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
+  const Image image = draw(renderer, view.draw({}, {}));
+  for (int y = 5; y < kHeight; y += 30)
+    for (int x = 5; x < kWidth; x += 30) {
+      const Vector3d expected = settings.exposure * decoded(around_at(ray(scene, x, y)));
+      for (int c = 0; c < 3; ++c)
+        REQUIRE(image.at(x, y)[c] == Approx(srgb(expected[c])).margin(kTolerance + kRounded));
+    }
 }
