@@ -1,9 +1,9 @@
-// Stripes of a colour around a body, lit by the lamps of the scene; of looks_bench.sdf. visual_node/README.md says what a shader
-// like this finds there.
+// Stripes of a colour around a body, lit as everything else; of looks_bench.sdf. What is given: visual_node/README.md.
 uniform float width_m;
 uniform vec3 tint;
 
 vec4 shade() {
-  if (fract(at.z / (2.0 * width_m)) >= 0.5) base.rgb = tint;
+  float stripe = step(0.5, fract(at.z / (2.0 * width_m)));
+  base.rgb = bounce = mix(base.rgb, tint, stripe);
   return vec4(lit(), base.a);
 }
