@@ -23,7 +23,7 @@ TEST_CASE("Drawing that needs more than its share of the frame gets cheaper, and
 
 TEST_CASE("A step that is set stays whatever drawing takes") {
   Settings settings;
-  settings.quality = "2";
+  settings.quality = std::string("2");
   QualityControl control(settings);
   CHECK_THAT(control.take_change(), Catch::Contains("as set"));
   for (int i = 0; i < 1000; ++i) control.add(milliseconds(i % 100));

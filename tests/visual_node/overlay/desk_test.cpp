@@ -21,9 +21,9 @@ sim_reply_t reply(std::int64_t id, bool paused) {
 }
 
 // A floor seen straight from above from 2 m; a box of 20 cm stands on it at (0, -0.5).
-struct Room {
+struct SmallRoom {
   scene_t scene = empty_scene();
-  Room() {
+  SmallRoom() {
     add_visual(scene, add_body(scene, {0, 0, 0}), shape_def_t::PLANE, {10, 10, 0});
     add_visual(scene, add_body(scene, {0, -0.5, 0.1}), shape_def_t::BOX, {0.2, 0.2, 0.2});
     scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2) *
@@ -42,7 +42,7 @@ struct Room {
 }  // namespace
 
 TEST_CASE("The mouse points at what is seen under it") {
-  const Room room;
+  const SmallRoom room;
   const auto middle = room.hit(0.5f, 0.5f);
   REQUIRE(middle);
   CHECK(middle->norm() < 1e-3f);
@@ -61,7 +61,7 @@ TEST_CASE("The mouse points at what is seen under it") {
 }
 
 TEST_CASE("In a picture for two eyes it points within the half that it is in") {
-  const Room room;
+  const SmallRoom room;
   for (const float x : {0.25f, 0.75f}) {
     const auto hit = room.hit(x, 0.5f, "side_by_side");
     REQUIRE(hit);
