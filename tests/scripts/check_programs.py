@@ -83,6 +83,8 @@ def scene_arguments(root, program):
         return ["haptic_node", "force_limit=5"]
     if name_of(program) == "convert_geometry":
         return [os.path.join(root, "sim_node", "scenes", "peg.obj"), os.path.join(tempfile.gettempdir(), "never_written.glb")]
+    if name_of(program) == "save_pictures":
+        return [os.path.join(tempfile.gettempdir(), "tactus_pictures")]
     if name_of(program) == "sim_node":
         return [os.path.join(root, "sim_node", "scenes", "dark_room.sdf")]
     return []
