@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sync/degradation/profile_exchange.h"
+#include "sync/health_size.h"
 #include "sync/kernel_drops.h"
 #include "sync/printable.h"
 
@@ -225,6 +226,7 @@ node_health_t Node::health_message(HostTime now) {
   m.foreign_control = bus_.clocks().maps->foreign();
   if (forgotten > 0) m.note += "; " + std::to_string(forgotten) + " senders too many";
   m.input_count = static_cast<std::int32_t>(m.inputs.size());
+  make_fit(m);
   return m;
 }
 

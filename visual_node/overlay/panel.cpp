@@ -96,8 +96,8 @@ std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& f) 
   std::vector<std::string> lines;
   if (on.on(Overlay::kReport)) append_report(lines, f);
   if (on.on(Overlay::kGroups)) {
-    lines.push_back(text("orange    %zu bodies at haptic rate", f.haptic_bodies));
-    lines.push_back(text("blue      %zu at visual rate", f.visual_bodies));
+    lines.push_back(text("orange    %zu haptic bodies", f.haptic_bodies));
+    lines.push_back(text("blue      %zu visual bodies", f.visual_bodies));
   }
   if (on.on(Overlay::kDegradation)) append_degradation(lines, f);
   if (on.on(Overlay::kAges)) append_ages(lines, f);

@@ -89,9 +89,7 @@ TEST_CASE("What is off has no line, and what is on has its figures") {
 }
 
 TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
-  for (char c = 'a'; c <= 'z'; ++c) CHECK(glyph(c));
-  for (char c = 'A'; c <= 'Z'; ++c) CHECK(glyph(c));
-  for (const char c : std::string("0123456789.-+:/%_()[]=@,<>?!*")) CHECK(glyph(c));
+  for (char c = '!'; c <= '~'; ++c) CHECK(glyph(c));
   CHECK_FALSE(glyph(' '));
   std::vector<Rect> overlay;
   const std::vector<std::string> lines(500, std::string(500, 'M'));

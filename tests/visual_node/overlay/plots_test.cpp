@@ -149,7 +149,11 @@ TEST_CASE("A bar has its value below it, and text that is empty is not taken for
   node_health_t health{};
   test::Samples(3).fill(health);
   health.note.clear();
-  const auto pixels = [](const std::vector<Rect>& rects) { return rects.size(); };
+  const auto pixels = [](const std::vector<Rect>& rects) {
+    double sum = 0;
+    for (const Rect& r : rects) sum += r.alpha == 1 ? r.width * r.height : 0;
+    return sum;
+  };
   CHECK(pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", sync::encode(health))) !=
         pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
 }
