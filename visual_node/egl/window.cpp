@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "visual_node/egl/context_loss.h"
 #include "visual_node/egl/display.h"
 
 // Of GLFW, whose header for it would bring X11's.
@@ -69,7 +70,11 @@ class Window : public Display {
     }
     glfwPollEvents();
   }
-  bool closed() override { return lost_ || glfwWindowShouldClose(window_); }
+  bool closed() override { return !lost_ && glfwWindowShouldClose(window_); }
+  std::string lost() override {
+    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
+  }
+  bool server_gone() override { return lost_; }
   bool has_screen() const override { return true; }
 
   Inputs take_inputs() override {
@@ -130,23 +135,22 @@ class Window : public Display {
     }
   }
 
-  // Xlib ends the process when its server goes away, unless it is led elsewhere. It is in GLFW's hands: found, not
-  // linked.
+  // Xlib says why and ends the process when its server goes away, unless both are led elsewhere. It is in GLFW's
+  // hands: found, not linked.
   void survive_the_server() {
-    using Handler = void (*)(void*, void*);
-    using Set = void (*)(void*, Handler, void*);
+    using ErrorHandler = int (*)(void*);
+    using ExitHandler = void (*)(void*, void*);
+    using SetError = ErrorHandler (*)(ErrorHandler);
+    using SetExit = void (*)(void*, ExitHandler, void*);
     void* library = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-    const auto set = library ? reinterpret_cast<Set>(dlsym(library, "XSetIOErrorExitHandler")) : nullptr;
-    void* display = set ? glfwGetX11Display() : nullptr;
+    if (!library) return;  // a desktop without it
+    const auto set_error = reinterpret_cast<SetError>(dlsym(library, "XSetIOErrorHandler"));
+    const auto set_exit = reinterpret_cast<SetExit>(dlsym(library, "XSetIOErrorExitHandler"));
+    void* display = set_error && set_exit ? glfwGetX11Display() : nullptr;
     if (!display) return;
-    set(
-        display,
-        [](void*, void* window) {
-          auto* self = static_cast<Window*>(window);
-          if (!self->lost_) self->trouble_ = "the display server of the window is gone: the node ends";
-          self->lost_ = true;
-        },
-        this);
+    set_error([](void*) { return 0; });
+    set_exit(
+        display, [](void*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   }
 
   [[noreturn]] static void refuse() {

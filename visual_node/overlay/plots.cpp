@@ -92,7 +92,7 @@ std::optional<std::pair<double, double>> Course::range(sync::HostTime now) const
 }
 
 Plots::Plots(std::vector<PlotSpec> specs, sync::Nanoseconds span) {
-  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), "", 0, {}});
+  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), std::nullopt, 0, {}});
 }
 
 std::vector<std::string> Plots::channels() const {
