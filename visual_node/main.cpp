@@ -243,6 +243,7 @@ int main(int argc, char** argv) try {
     node.set_quality(quality.step(), quality.steps());
     if (agreed) node.align(lock.next_begin(sync::host_now()), agreed->skipped);
   }
+  if (stage.closed() || desk.closing()) say("the window was closed");
   if (offline) say(offline->result(flashed, owed - flashed, sync::host_now()));
   if (const std::string how = composer.poses().text(); !how.empty()) say("poses of bodies in the pictures: " + how);
   return 0;
