@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "sync/degradation/profile_exchange.h"
-#include "sync/health_size.h"
+#include "sync/health_inputs.h"
 #include "sync/kernel_drops.h"
 #include "sync/printable.h"
 
@@ -210,8 +210,7 @@ node_health_t Node::health_message(HostTime now) {
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
   std::int64_t forgotten = 0;
-  for (const auto& inbox : bus_.inboxes()) {
-    const InputCount& c = inbox->count();
+  const auto list = [&](const InputCount& c) {
     input_health_t in{};
     in.channel = c.channel;
     const InputAge age = age_of(c, bus_.clocks(), now);
@@ -220,13 +219,19 @@ node_health_t Node::health_message(HostTime now) {
     in.messages = c.sequence.messages();
     in.gaps = saturated(c.sequence.gaps() + c.dropped);
     in.bad = saturated(c.bad);
-    m.inputs.push_back(in);
+    add_input(m, in);
     forgotten += c.sequence.forgotten();
-  }
+  };
+  // What it cannot do without comes first: it is listed whatever there is room for.
+  const auto needed = [&](const InputCount& c) {
+    return std::find(declaration_.inputs.begin(), declaration_.inputs.end(), c.channel) != declaration_.inputs.end();
+  };
+  for (const bool first : {true, false})
+    for (const auto& inbox : bus_.inboxes())
+      if (needed(inbox->count()) == first) list(inbox->count());
   m.foreign_control = bus_.clocks().maps->foreign();
   if (forgotten > 0) m.note += "; " + std::to_string(forgotten) + " senders too many";
-  m.input_count = static_cast<std::int32_t>(m.inputs.size());
-  make_fit(m);
+  fit(m, channels::kMaxMessageBytes);
   return m;
 }
 
