@@ -64,7 +64,7 @@ struct Seeing : Running {
     ear.listen(0.5);
     return picture();
   }
-  // What the program `set` says, in one line.
+  // What the program `set` says: a line for each change, one when it is refused.
   std::string set(const std::vector<std::string>& words, int wanted_status = 0) {
     const std::string name = "set" + std::to_string(++asked);
     std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId), "visual_node"};
@@ -74,7 +74,7 @@ struct Seeing : Running {
     const std::string said = processes.said(name);
     INFO(said);
     CHECK(status == wanted_status);
-    CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+    CHECK(std::count(said.begin(), said.end(), '\n') == (status == 0 ? static_cast<long>(words.size()) : 1));
     return said;
   }
   bool goes_on(const std::string& node) {

@@ -52,7 +52,7 @@ struct Desktop : Seeing {
     return processes.said(name);
   }
   std::string window() {
-    const std::string found = x({"search", "--name", "^Tactus$"});
+    const std::string found = x({"search", "--sync", "--name", "^Tactus$"});
     return found.substr(0, found.find('\n'));
   }
   std::string geometry() { return x({"getwindowgeometry", window()}); }
@@ -131,7 +131,7 @@ TEST_CASE(
   c.x({"key", "space"});
   CHECK(c.hear_until([&] { return c.rate > 0; }));
   const std::string said = c.processes.said("visual_node");
-  CHECK_THAT(said, Catch::Contains("step") && Catch::Contains("begins anew"));
+  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("as at its first instant"));
 
   c.x({"key", "F11"});
   c.ear.listen(1);
