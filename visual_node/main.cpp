@@ -207,6 +207,7 @@ int main(int argc, char** argv) try {
       load(now);
       if (!offline) continue;  // that took several ticks
     }
+    if (const std::string lost = stage.recover(now, composer.view(), frame.list); !lost.empty()) say(lost);
     for (const std::string& sentence : stage.take_trouble()) say(sentence);
     if (lock.on() && !offline) receive(node.poll());  // a wall that is slow hears of its head all the same
     const auto agreed = lock.begin(clock(), sense.profile_delay());
@@ -242,6 +243,7 @@ int main(int argc, char** argv) try {
     node.set_quality(quality.step(), quality.steps());
     if (agreed) node.align(lock.next_begin(sync::host_now()), agreed->skipped);
   }
+  if (stage.closed() || desk.closing()) say("the window was closed");
   if (offline) say(offline->result(flashed, owed - flashed, sync::host_now()));
   if (const std::string how = composer.poses().text(); !how.empty()) say("poses of bodies in the pictures: " + how);
   return 0;

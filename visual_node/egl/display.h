@@ -28,11 +28,15 @@ class Display {
   virtual ~Display() = default;
   // What draws, e.g. "llvmpipe (LLVM 15.0.6, 256 bits) on EGL device 0".
   const std::string& description() const { return description_; }
-  // Shows the picture in this framebuffer; without a window it does nothing. halves: its left half to the left eye, its right
-  // half to the right one, where the display can.
+  // Shows the picture in this framebuffer; without a window it does nothing. halves: its left half to the left
+  // eye, its right half to the right one, where the display can.
   virtual void show(unsigned framebuffer, int width, int height, bool halves = false) = 0;
-  // True once the window was closed, or is no more.
+  // True once a person has closed the window.
   virtual bool closed() = 0;
+  // Why nothing can be drawn with it any more, as a clause; empty: it can.
+  virtual std::string lost() = 0;
+  // It is lost since there is no display server any more that a window could be opened on again.
+  virtual bool server_gone() { return false; }
   // True when show() adds a wait for the screen to what the fence knows.
   virtual bool has_screen() const = 0;
   // Since it was asked last.

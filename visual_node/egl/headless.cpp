@@ -2,9 +2,9 @@
 #include <unistd.h>
 
 #include <dlfcn.h>
-#include <malloc.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <malloc.h>
 
 #include <array>
 #include <cstdlib>
@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "visual_node/egl/context_loss.h"
 #include "visual_node/egl/display.h"
 
 namespace tactus::visual {
@@ -35,6 +36,7 @@ class Headless : public Display {
   }
   void show(unsigned, int, int, bool) override {}
   bool closed() override { return false; }
+  std::string lost() override { return why_context_is_lost(); }
   bool has_screen() const override { return false; }
 
  private:
@@ -86,9 +88,16 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
   if (!epoxy_has_egl_extension(c.display, "EGL_KHR_surfaceless_context"))
     return give_up("no contexts without a surface");
   if (!eglBindAPI(EGL_OPENGL_API)) return give_up("no OpenGL");
-  constexpr std::array<EGLint, 7> attributes{
-      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  // One that says when it is lost, where the driver can; the last two are left out where it cannot.
+  std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                   3,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   3,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                   EGL_LOSE_CONTEXT_ON_RESET,
+                                   EGL_NONE};
   EGLConfig config = nullptr;  // EGL_NO_CONFIG_KHR
   if (!epoxy_has_egl_extension(c.display, "EGL_KHR_no_config_context")) {
     constexpr std::array<EGLint, 3> any{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
@@ -96,7 +105,11 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
     if (!eglChooseConfig(c.display, any.data(), &config, 1, &found) || found == 0)
       return give_up("no OpenGL configuration");
   }
-  const EGLContext context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
+  EGLContext context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) {
+    attributes[6] = EGL_NONE;
+    context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
+  }
   if (context == EGL_NO_CONTEXT) return give_up("no OpenGL 3.3 core context");
   if (!eglMakeCurrent(c.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     eglDestroyContext(c.display, context);
@@ -109,12 +122,13 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
 
 void quiet_software_renderer() {
   setenv("LP_NUM_THREADS", "1", 0);
-  // For every picture it takes and gives back some MB in blocks of 64 KiB: kept here, they are not cleared and mapped anew by the
-  // kernel, which took a quarter of the time. The second is the most that malloc allows; both are far above what a picture needs.
+  // For every picture it takes and gives back some MB in blocks of 64 KiB: kept here, they are not cleared and
+  // mapped anew by the kernel, which took a quarter of the time. The second is the most that malloc allows; both
+  // are far above what a picture needs.
   mallopt(M_TRIM_THRESHOLD, 64 << 20);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  // Mesa keeps compiled shaders under the home that the password file names, and complains where that cannot be written: in a
-  // user namespace it is root's.
+  // Mesa keeps compiled shaders under the home that the password file names, and complains where that cannot be
+  // written: in a user namespace it is root's.
   const passwd* me = getpwuid(getuid());
   const bool told = std::getenv("XDG_CACHE_HOME") || std::getenv("MESA_SHADER_CACHE_DIR");
   if (!told && (me == nullptr || access(me->pw_dir, W_OK) != 0)) setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);

@@ -6,13 +6,24 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "visual_node/egl/context_loss.h"
 #include "visual_node/egl/display.h"
 
 // Of GLFW, whose header for it would bring X11's.
 extern "C" void* glfwGetX11Display();
+extern "C" unsigned long glfwGetX11Window(GLFWwindow* window);
 
 namespace tactus::visual {
 namespace {
+
+// XErrorEvent of X11's header, and two of its codes.
+struct ProtocolError {
+  int type;
+  void* display;
+  unsigned long resource, serial;
+  unsigned char code, request, minor;
+};
+constexpr unsigned char kBadWindow = 3, kBadDrawable = 9;
 
 constexpr std::size_t kMostKeys = 64;  // between two frames
 
@@ -21,10 +32,13 @@ class Window : public Display {
   Window(const std::string& title, const WindowOptions& o) : windowed_width_(o.width), windowed_height_(o.height) {
     if (!glfwInit()) refuse();
     choose_monitor(o.monitor);
+    stay_on_monitor();
     // EGL knows no buffers for two eyes; the desktop's own contexts may.
     if (o.quad_buffer) open(title, o, GLFW_NATIVE_CONTEXT_API, true);
     if (!window_) {
-      if (o.quad_buffer) trouble_ = "this display has no buffer for each eye; both eyes are shown side by side";
+      if (o.quad_buffer)
+        trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+                    "this display has no buffer for each eye; both eyes are shown side by side";
       open(title, o, GLFW_EGL_CONTEXT_API, false);
     }
     if (!window_) refuse();
@@ -69,7 +83,13 @@ class Window : public Display {
     }
     glfwPollEvents();
   }
-  bool closed() override { return lost_ || glfwWindowShouldClose(window_); }
+  bool closed() override {
+    return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
+  }
+  std::string lost() override {
+    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
+  }
+  bool server_gone() override { return lost_; }
   bool has_screen() const override { return true; }
 
   Inputs take_inputs() override {
@@ -113,6 +133,19 @@ class Window : public Display {
     monitor_ = monitors[std::clamp(number, 0, count - 1)];
   }
 
+  // A software renderer needs memory for all of a window, seen or not.
+  void stay_on_monitor() {
+    const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
+    const int most_width = mode ? mode->width : 4096, most_height = mode ? mode->height : 4096;
+    if (windowed_width_ > most_width || windowed_height_ > most_height)
+      trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+                  "the window is larger than its monitor: it is made " +
+                  std::to_string(std::min(windowed_width_, most_width)) + " x " +
+                  std::to_string(std::min(windowed_height_, most_height)) + " pixels";
+    windowed_width_ = std::clamp(windowed_width_, 1, most_width);
+    windowed_height_ = std::clamp(windowed_height_, 1, most_height);
+  }
+
   void open(const std::string& title, const WindowOptions& o, int api, bool stereo) {
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
@@ -120,7 +153,8 @@ class Window : public Display {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_STEREO, stereo ? GLFW_TRUE : GLFW_FALSE);
-    window_ = glfwCreateWindow(std::max(1, o.width), std::max(1, o.height), title.c_str(), nullptr, nullptr);
+    for (const int unused : {GLFW_DEPTH_BITS, GLFW_STENCIL_BITS, GLFW_ALPHA_BITS}) glfwWindowHint(unused, 0);
+    window_ = glfwCreateWindow(windowed_width_, windowed_height_, title.c_str(), nullptr, nullptr);
     quad_ = window_ && stereo;
     if (!window_) return;
     if (monitor_) {
@@ -130,23 +164,31 @@ class Window : public Display {
     }
   }
 
-  // Xlib ends the process when its server goes away, unless it is led elsewhere. It is in GLFW's hands: found, not
-  // linked.
+  // Xlib says why and ends the process when its server goes away, unless both are led elsewhere. It is in GLFW's
+  // hands: found, not linked.
   void survive_the_server() {
-    using Handler = void (*)(void*, void*);
-    using Set = void (*)(void*, Handler, void*);
+    using ErrorHandler = int (*)(void*);
+    using ExitHandler = void (*)(void*, void*);
+    using SetProtocol = void* (*)(int (*)(void*, const ProtocolError*));
+    using SetError = ErrorHandler (*)(ErrorHandler);
+    using SetExit = void (*)(void*, ExitHandler, void*);
     void* library = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-    const auto set = library ? reinterpret_cast<Set>(dlsym(library, "XSetIOErrorExitHandler")) : nullptr;
-    void* display = set ? glfwGetX11Display() : nullptr;
+    if (!library) return;  // a desktop without it
+    const auto set_error = reinterpret_cast<SetError>(dlsym(library, "XSetIOErrorHandler"));
+    const auto set_exit = reinterpret_cast<SetExit>(dlsym(library, "XSetIOErrorExitHandler"));
+    void* display = set_error && set_exit ? glfwGetX11Display() : nullptr;
     if (!display) return;
-    set(
-        display,
-        [](void*, void* window) {
-          auto* self = static_cast<Window*>(window);
-          if (!self->lost_) self->trouble_ = "the display server of the window is gone: the node ends";
-          self->lost_ = true;
-        },
-        this);
+    x11_window_ = glfwGetX11Window(window_);
+    set_error([](void*) { return 0; });
+    // Likewise an error of a window that another program has destroyed.
+    const auto set_protocol = reinterpret_cast<SetProtocol>(dlsym(library, "XSetErrorHandler"));
+    if (set_protocol)
+      set_protocol([](void*, const ProtocolError* e) {
+        if (e->code == kBadWindow || e->code == kBadDrawable) destroyed_ = e->resource;
+        return 0;
+      });
+    set_exit(
+        display, [](void*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   }
 
   [[noreturn]] static void refuse() {
@@ -161,6 +203,8 @@ class Window : public Display {
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;
   bool quad_ = false, lost_ = false;
+  unsigned long x11_window_ = 0;               // 0: another desktop
+  static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
   std::vector<int> keys_;
 };

@@ -340,12 +340,13 @@ void Renderer::draw_batch(const Batch& batch) {
   geometries_[at]->draw(instances_, batch.first, batch.count);
 }
 
-void Renderer::wait() const {
+bool Renderer::wait() const {
   // A fence, not glFinish: a driver may treat that as a flush.
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   constexpr GLuint64 kAtMost_ns = 1'000'000'000;  // a device that hangs longer is not waited for
-  glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kAtMost_ns);
+  const GLenum done = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kAtMost_ns);
   glDeleteSync(fence);
+  return done == GL_ALREADY_SIGNALED || done == GL_CONDITION_SATISFIED;
 }
 
 }  // namespace tactus::visual

@@ -38,8 +38,8 @@ class Renderer {
   // take nearly all of the time, and then flashes and overlay. Each gives the work to the device and returns.
   void draw_scene(const DrawList& list);
   void draw_over(const DrawList& list);
-  // Waits until the device has finished what it was given.
-  void wait() const;
+  // Waits until the device has finished what it was given; false when it does not within a second, or cannot.
+  bool wait() const;
   const PictureTarget& picture() const { return picture_; }
 
  private:

@@ -1,19 +1,58 @@
 #include "visual_node/gl/stage.h"
 
+#include <stdexcept>
+#include <utility>
+
 namespace tactus::visual {
 
-Stage::Stage(const Settings& s, bool window) : quality_(s), loop_rate_Hz_(s.rate_Hz) {
-  quiet_software_renderer();
+std::unique_ptr<Display> make_display(const Settings& s, bool window) {
   const WindowOptions options{.width = s.window_width > 0 ? s.window_width : s.width,
                               .height = s.window_height > 0 ? s.window_height : s.height,
                               .full_screen = s.full_screen,
                               .monitor = s.monitor,
                               .quad_buffer = s.stereo == "quad_buffer"};
-  display_ = window ? make_window("Tactus", options) : make_headless(s.egl_device);
-  renderer_ = std::make_unique<Renderer>(s.width / 4 * 4, s.height / 4 * 4, s.shadow_size);
+  return window ? make_window("Tactus", options) : make_headless(s.egl_device);
+}
+
+Stage::Stage(const Settings& s, bool window, MakeDisplay make)
+    : settings_(s), window_(window), make_(std::move(make)), quality_(s), loop_rate_Hz_(s.rate_Hz) {
+  quiet_software_renderer();
+  open();
+}
+
+void Stage::open() {
+  display_ = make_(settings_, window_);
+  if (!display_) throw std::runtime_error("nothing to draw on");
+  renderer_ = std::make_unique<Renderer>(settings_.width / 4 * 4, settings_.height / 4 * 4, settings_.shadow_size);
+  unfinished_ = 0;
+}
+
+std::string Stage::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
+  std::string why = display_->lost();
+  const bool hangs = unfinished_ >= kMostUnfinished;
+  if (why.empty() && hangs) why = "the graphics device does not finish what it is given";
+  if (why.empty()) return {};
+  losses_.push_back(now);
+  if (losses_.size() > kMostLosses) {
+    if (now - losses_.front() < kLossesWithin)
+      throw std::runtime_error(why + ", " + std::to_string(losses_.size()) +
+                               " times in a minute: look what the system's log says of it");
+    losses_.pop_front();
+  }
+  window_ = window_ && !display_->server_gone();
+  renderer_.reset();
+  display_.reset();  // before the next: some systems give only one
+  try {
+    open();
+    if (view) load(*view, sample, settings_);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(why + ", and it cannot be opened again: " + e.what());
+  }
+  return why + ": draws on, with " + description();
 }
 
 void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s) {
+  settings_ = s;
   shaders_ = std::make_unique<ShaderWatch>(s.shader_folder);
   renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size, s.anti_aliasing);
   renderer_->load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
@@ -29,17 +68,17 @@ void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
     if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
   renderer_->set_quality(degraded(quality_.quality(), output.resolution));
   renderer_->draw_scene(list);
-  renderer_->wait();
+  finish();
 }
 
 void Stage::draw_over(const DrawList& list) {
   renderer_->draw_over(list);
-  renderer_->wait();
+  finish();
 }
 
 void Stage::show() {
   display_->show(picture().framebuffer(), picture().width(), picture().height(), halves_);
-  renderer_->wait();
+  finish();
 }
 
 }  // namespace tactus::visual

@@ -39,7 +39,7 @@ std::vector<std::string> help_lines() {
   std::vector<std::string> lines;
   for (const Key& k : kKeys)
     lines.push_back(std::string(k.name) + std::string(8 - std::string(k.name).size(), ' ') + k.does);
-  lines.emplace_back("mouse   left button: aims the spot light");
+  lines.emplace_back("mouse   left button aims the lamp");
   return lines;
 }
 

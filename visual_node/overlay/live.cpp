@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "sync/decode.h"
+#include "visual_node/frame/marker.h"
+#include "visual_node/frame/motion_marker.h"
 #include "visual_node/overlay/touches.h"
 
 namespace tactus::visual {
@@ -14,6 +16,7 @@ namespace {
 constexpr std::size_t kMostHeard = 256;
 // The first line is below the word that says how good the frame is.
 constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
+constexpr int kMarkers_px = (kMarkerRows + kMotionRows) * kMarkerCell_px;
 
 }  // namespace
 
@@ -116,9 +119,15 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   facts.haptic_bodies = groups_.haptic();
   facts.visual_bodies = groups_.visual();
   if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.how, now);
-  append_lines(frame.list.overlay, panel_lines(on_, facts), kPanelAt_px, kPanelBelow_px, text_size(picture_height),
-               static_cast<float>(picture_width), static_cast<float>(picture_height));
-  if (on_.on(Overlay::kPlots)) plots_.append(frame.list.overlay, now, picture_width, picture_height);
+  // What a program reads at the lower edge is drawn over by nothing.
+  const float bottom = static_cast<float>(picture_height - kMarkers_px);
+  float right = static_cast<float>(picture_width);
+  if (on_.on(Overlay::kPlots) && !plots_.empty()) {
+    right = plots_left(picture_width);
+    plots_.append(frame.list.overlay, now, picture_width, picture_height - kMarkers_px);
+  }
+  append_lines(frame.list.overlay, panel_lines(on_, facts), {kPanelAt_px, kPanelBelow_px, right, bottom},
+               text_size(picture_height));
 }
 
 }  // namespace tactus::visual

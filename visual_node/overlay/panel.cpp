@@ -18,6 +18,36 @@ std::string text(const char* format, auto... values) {
 
 double ms(sync::Nanoseconds t) { return sync::to_seconds(t) * 1e3; }
 
+// As precise as it is worth reading.
+std::string age(sync::Nanoseconds t) { return text(ms(t) < 100 ? "%.1f ms" : "%.0f ms", ms(t)); }
+
+// Cut at blanks where one is in the second half; what goes on is indented.
+std::vector<std::string> wrapped(const std::vector<std::string>& lines, std::size_t letters) {
+  constexpr std::size_t kIndent = 2;
+  std::vector<std::string> out;
+  if (letters <= 2 * kIndent) return out;
+  for (std::string line : lines) {
+    while (line.size() > letters) {
+      const std::size_t blank = line.rfind(' ', letters);
+      const std::size_t cut = blank != std::string::npos && blank > letters / 2 ? blank : letters;
+      out.push_back(line.substr(0, cut));
+      line = std::string(kIndent, ' ') + line.substr(cut + (line[cut] == ' '));
+    }
+    out.push_back(std::move(line));
+  }
+  return out;
+}
+
+float line_step(float size) { return (kGlyphHeight + 3) * size; }
+
+std::size_t letters_in(float width, float size) {
+  return static_cast<std::size_t>(std::max(0.0f, (width - 4 * size) / ((kGlyphWidth + 1) * size)));
+}
+
+std::size_t lines_in(float height, float size) {
+  return static_cast<std::size_t>(std::max(0.0f, (height - 4 * size) / line_step(size)));
+}
+
 void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
   lines.push_back(text("contacts  %zu", f.contacts));
   const auto physics = f.physics.median();
@@ -33,15 +63,15 @@ void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {
   for (const InputLine& i : f.inputs) {
     const std::string how = i.how == sync::How::kNone ? "" : std::string(" ") + sync::to_string(i.how);
     lines.push_back(i.age.age < sync::Nanoseconds(0) ? i.channel + " nothing yet" + how
-                                                     : i.channel + text(" %.1f ms", ms(i.age.age)) + how);
+                                                     : i.channel + " " + age(i.age.age) + how);
   }
 }
 
 void append_degradation(std::vector<std::string>& lines, const PanelFacts& f) {
   lines.push_back("profile   " + (f.profile.empty() ? "none" : f.profile));
-  lines.push_back(text("delay     %.0f ms, of the profile %.0f", ms(f.delay), ms(f.profile_delay)));
-  if (f.output.frame_rate_Hz > 0) lines.push_back(text("pictures  %.3g a second", f.output.frame_rate_Hz));
-  if (f.output.resolution > 0) lines.push_back(text("resolution %.2f", f.output.resolution));
+  lines.push_back(text("delay     %.0f ms, profile %.0f ms", ms(f.delay), ms(f.profile_delay)));
+  if (f.output.frame_rate_Hz > 0) lines.push_back(text("pictures  %.3g Hz", f.output.frame_rate_Hz));
+  if (f.output.resolution > 0) lines.push_back(text("resolution x%.2f", f.output.resolution));
   lines.push_back(text("quality   step %d of 0 to %d", f.quality, std::max(0, f.qualities - 1)));
 }
 
@@ -65,8 +95,10 @@ void TickTimes::push(const node_health_t& m) {
 std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& f) {
   std::vector<std::string> lines;
   if (on.on(Overlay::kReport)) append_report(lines, f);
-  if (on.on(Overlay::kGroups))
-    lines.push_back(text("bodies    %zu haptic (orange), %zu visual (blue)", f.haptic_bodies, f.visual_bodies));
+  if (on.on(Overlay::kGroups)) {
+    lines.push_back(text("orange    %zu haptic bodies", f.haptic_bodies));
+    lines.push_back(text("blue      %zu visual bodies", f.visual_bodies));
+  }
   if (on.on(Overlay::kDegradation)) append_degradation(lines, f);
   if (on.on(Overlay::kAges)) append_ages(lines, f);
   if (on.on(Overlay::kHelp))
@@ -74,21 +106,24 @@ std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& f) 
   return lines;
 }
 
-float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, float x, float y, float size,
-                   float picture_width, float picture_height) {
-  const float advance = (kGlyphWidth + 1) * size, step = (kGlyphHeight + 3) * size;
-  const auto letters = static_cast<std::size_t>(std::max(0.0f, (picture_width - x - 4 * size) / advance));
-  const auto room = static_cast<std::size_t>(std::max(0.0f, (picture_height - y - 4 * size) / step));
-  const std::size_t shown = std::min(lines.size(), room);
+float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextRoom& room,
+                   float largest) {
+  float size = std::max(1.0f, largest);
+  std::vector<std::string> all = wrapped(lines, letters_in(room.right - room.x, size));
+  while (size > 1 && all.size() > lines_in(room.bottom - room.y, size)) {
+    size -= 1;
+    all = wrapped(lines, letters_in(room.right - room.x, size));
+  }
+  all.resize(std::min(all.size(), lines_in(room.bottom - room.y, size)));
   std::size_t longest = 0;
-  for (std::size_t i = 0; i < shown; ++i) longest = std::max(longest, std::min(lines[i].size(), letters));
-  if (longest == 0) return y;
-  const float height = step * static_cast<float>(shown) + 3 * size;
-  overlay.push_back({x, y, text_width(longest, size), height, 0, 0, 0, 0.65f});
-  for (std::size_t i = 0; i < shown; ++i)
-    append_letters(overlay, std::string_view(lines[i]).substr(0, letters), x + 2 * size,
-                   y + 2 * size + step * static_cast<float>(i), size);
-  return y + height + 2 * size;
+  for (const std::string& line : all) longest = std::max(longest, line.size());
+  if (longest == 0) return room.y;
+  const float height = line_step(size) * static_cast<float>(all.size()) + 3 * size;
+  overlay.push_back({room.x, room.y, text_width(longest, size), height, 0, 0, 0, 0.65f});
+  for (std::size_t i = 0; i < all.size(); ++i)
+    append_letters(overlay, all[i], room.x + 2 * size, room.y + 2 * size + line_step(size) * static_cast<float>(i),
+                   size);
+  return room.y + height + 2 * size;
 }
 
 float text_size(int picture_height) { return static_cast<float>(std::max(1, picture_height / 240)); }

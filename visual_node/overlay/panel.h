@@ -49,10 +49,16 @@ struct PanelFacts {
 
 std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& facts);
 
-// From (x, y) downwards on one dark plate; `size` pixels a pixel of a letter. Lines that find no room are left
-// out, and long ones end where the picture does. Returns where the next line would be.
-float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, float x, float y, float size,
-                   float picture_width, float picture_height);
+// What of the picture words may take, pixels from its upper left.
+struct TextRoom {
+  float x, y, right, bottom;
+};
+
+// Lines on one dark plate at the upper left of the room, `largest` pixels a pixel of a letter, fewer when not all
+// of them would find room so. Long lines go on in the next; what still finds no room is left out. Returns where
+// the next plate would be.
+float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextRoom& room,
+                   float largest);
 
 // Of a letter's pixel in a picture of that size: 2 at 640 x 480, more in larger ones.
 float text_size(int picture_height);

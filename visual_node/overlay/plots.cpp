@@ -31,11 +31,13 @@ void fill(std::vector<Rect>& out, float x, float y, float width, float height, c
   out.push_back({x, y, width, height, c.x(), c.y(), c.z(), alpha});
 }
 
+std::size_t letters(const Box& b) {
+  return static_cast<std::size_t>(std::max(0.0f, (b.width - 2 * kPad_px) / ((kGlyphWidth + 1) * b.size)));
+}
+
 // Ends where the box does.
 void words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
-  const auto room =
-      static_cast<std::size_t>(std::max(0.0f, (b.width - 2 * kPad_px) / ((kGlyphWidth + 1) * b.size)));
-  append_letters(out, text.substr(0, room), b.x + kPad_px, y, b.size, colour);
+  append_letters(out, text.substr(0, letters(b)), b.x + kPad_px, y, b.size, colour);
 }
 
 void right_words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
@@ -43,7 +45,14 @@ void right_words(std::vector<Rect>& out, const Box& b, std::string_view text, fl
   append_letters(out, text, b.x + b.width - kPad_px - width, y, b.size, colour);
 }
 
+void middle_words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
+  const float width = (kGlyphWidth + 1) * b.size * static_cast<float>(text.size());
+  append_letters(out, text, b.x + (b.width - width) / 2, y, b.size, colour);
+}
+
 }  // namespace
+
+float plots_left(int picture_width) { return 0.64f * static_cast<float>(picture_width) - kMargin_px; }
 
 std::string label(double value) {
   char buffer[40];
@@ -83,7 +92,7 @@ std::optional<std::pair<double, double>> Course::range(sync::HostTime now) const
 }
 
 Plots::Plots(std::vector<PlotSpec> specs, sync::Nanoseconds span) {
-  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), "", 0, {}});
+  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), std::nullopt, 0, {}});
 }
 
 std::vector<std::string> Plots::channels() const {
@@ -111,7 +120,11 @@ void Plots::push(const std::string& channel, std::span<const std::uint8_t> bytes
 
 namespace {
 
-// The course between its least and its most, which are written beside it.
+std::string span(double least, double most, const std::string& unit) {
+  return label(least) + " to " + label(most) + (unit.empty() ? "" : " " + unit);
+}
+
+// The course between its least and its most, which are written below it.
 void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, const std::string& unit,
                   sync::HostTime now, float height) {
   const auto range = course.range(now);
@@ -119,10 +132,15 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   const float width = b.width - 2 * kPad_px, bottom = top + height;
   fill(out, left, bottom, width, 1, kLabel, 0.6f);
   fill(out, left, top, 1, height, kLabel, 0.6f);
-  const std::string seconds = label(-sync::to_seconds(course.span())) + " s";
-  words(out, b, seconds, bottom + kPad_px, kLabel);
-  right_words(out, b, "now", bottom + kPad_px, kLabel);
+  const std::string ago = label(-sync::to_seconds(course.span())) + " s", newest = "now";
+  const std::string values = range ? span(range->first, range->second, unit) : "";
+  // In a narrow picture what the values were is worth more than when.
+  if (letters(b) >= ago.size() + values.size() + newest.size() + 2) {
+    words(out, b, ago, bottom + kPad_px, kLabel);
+    right_words(out, b, newest, bottom + kPad_px, kLabel);
+  }
   if (!range) return;
+  middle_words(out, b, std::string_view(values).substr(0, letters(b)), bottom + kPad_px, kTitle);
   const double least = range->first, most = range->second;
   // A course that does not change is a line in the middle.
   const auto place = [&](double v) {
@@ -143,8 +161,6 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
     fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, kLine);
   }
   if (least < 0 && most > 0) fill(out, left, place(0), width, 1, kLabel, 0.4f);
-  right_words(out, b, label(most) + (unit.empty() ? "" : " " + unit), top, kLabel);
-  right_words(out, b, label(least), bottom - b.line(), kLabel);
 }
 
 // From zero to what it was at most of late.
@@ -165,30 +181,29 @@ void append_bar(std::vector<Rect>& out, const Box& b, double value, const Course
 
 }  // namespace
 
-void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int picture_width, int picture_height) const {
-  const float size = std::max(1.0f, text_size(picture_height) - 1);
-  Box b{0, kMargin_px, 0.36f * static_cast<float>(picture_width), size};
-  b.x = static_cast<float>(picture_width) - b.width - kMargin_px;
+void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height) const {
+  const float size = std::max(1.0f, text_size(height) - 1);
+  Box b{plots_left(width), kMargin_px, 0, size};
+  b.width = static_cast<float>(width) - kMargin_px - b.x;
   const float graph_height = 46 * size;
   for (const Plot& p : plots_) {
-    const float body = p.spec.kind == PlotSpec::Kind::kGraph ? graph_height + b.line() + 2 * kPad_px : b.line();
-    const float height = b.line() + body + 2 * kPad_px;
-    if (b.y + height > static_cast<float>(picture_height)) return;
-    plate(overlay, b, height);
+    const bool graph = p.spec.kind == PlotSpec::Kind::kGraph, bar = p.spec.kind == PlotSpec::Kind::kBar;
+    const float body = (graph ? graph_height + 2 * kPad_px : bar ? b.line() + kPad_px : 0) + b.line();
+    const float plate_height = b.line() + body + 2 * kPad_px;
+    if (b.y + plate_height > static_cast<float>(height)) return;
+    plate(overlay, b, plate_height);
     words(overlay, b, p.spec.title, b.y + kPad_px, kTitle);
     const std::string unit = p.spec.value.unit();
-    const std::string value = p.newest.empty() ? "nothing yet" : p.newest + (unit.empty() ? "" : " " + unit);
-    const bool old = p.newest.empty() || now - p.at > kOldAfter;
+    const std::string value = !p.newest           ? "nothing yet"
+                              : p.newest->empty() ? "(empty)"
+                              : unit.empty()      ? *p.newest
+                                                  : *p.newest + " " + unit;
+    const bool old = !p.newest || now - p.at > kOldAfter;
     const float y = b.y + b.line() + kPad_px;
-    switch (p.spec.kind) {
-      case PlotSpec::Kind::kGraph: append_graph(overlay, b, p.course, unit, now, graph_height); break;
-      case PlotSpec::Kind::kBar:
-        append_bar(overlay, b, p.value, p.course, now, y);
-        right_words(overlay, b, value, y, old ? kOld : kLabel);
-        break;
-      case PlotSpec::Kind::kText: words(overlay, b, value, y, old ? kOld : kLabel); break;
-    }
-    b.y += height + kMargin_px;
+    if (graph) append_graph(overlay, b, p.course, unit, now, graph_height);
+    if (bar) append_bar(overlay, b, p.value, p.course, now, y);
+    if (!graph) words(overlay, b, value, bar ? y + b.line() + kPad_px : y, old ? kOld : kLabel);
+    b.y += plate_height + kMargin_px;
   }
 }
 

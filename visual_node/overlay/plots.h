@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ class Course {
 // A number as a label: four digits, "12.5", "1.2e-05"; a whole one as it is.
 std::string label(double value);
 
+// Where the column of plots begins in a picture of that width.
+float plots_left(int picture_width);
+
 class Plots {
  public:
   // span: of the graphs, and how long a bar remembers what was most.
@@ -47,14 +51,14 @@ class Plots {
   // Channels that are to be heard, each once.
   std::vector<std::string> channels() const;
   void push(const std::string& channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // One below the other from the upper right corner, as many as find room.
-  void append(std::vector<Rect>& overlay, sync::HostTime now, int picture_width, int picture_height) const;
+  // One below the other from the upper right corner, as many as find room in that width and height.
+  void append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height) const;
 
  private:
   struct Plot {
     PlotSpec spec;
     Course course;
-    std::string newest;  // as text; empty: nothing has come
+    std::optional<std::string> newest;  // as text
     double value = 0;
     sync::HostTime at{};
   };

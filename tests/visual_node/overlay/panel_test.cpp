@@ -5,6 +5,7 @@
 #include "sync/histogram.h"
 #include "visual_node/frame/text.h"
 #include "visual_node/overlay/keys.h"
+#include "visual_node/overlay/plots.h"
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -88,13 +89,11 @@ TEST_CASE("What is off has no line, and what is on has its figures") {
 }
 
 TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
-  for (char c = 'a'; c <= 'z'; ++c) CHECK(glyph(c));
-  for (char c = 'A'; c <= 'Z'; ++c) CHECK(glyph(c));
-  for (const char c : std::string("0123456789.-+:/%_()[]=@,<>?!*")) CHECK(glyph(c));
+  for (char c = '!'; c <= '~'; ++c) CHECK(glyph(c));
   CHECK_FALSE(glyph(' '));
   std::vector<Rect> overlay;
   const std::vector<std::string> lines(500, std::string(500, 'M'));
-  append_lines(overlay, lines, 8, 36, text_size(480), 640, 480);
+  append_lines(overlay, lines, {8, 36, 640, 480}, text_size(480));
   REQUIRE(!overlay.empty());
   for (const Rect& r : overlay) {
     CHECK(r.x + r.width <= 640);
@@ -102,9 +101,53 @@ TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
   }
   CHECK(overlay.size() < 640u * 480u / 4u);
   std::vector<Rect> none;
-  append_lines(none, {}, 8, 36, 2, 640, 480);
-  append_lines(none, {"no room"}, 8, 36, 2, 4, 4);
+  append_lines(none, {}, {8, 36, 640, 480}, 2);
+  append_lines(none, {"no room"}, {8, 36, 4, 4}, 2);
   CHECK(none.empty());
+}
+
+TEST_CASE("A line that is too long goes on in the next, and letters get smaller before lines are left out") {
+  const float wide = (kGlyphWidth + 1) * 2;
+  const TextRoom room{0, 0, 20 * wide + 8, 480};  // 20 letters of size 2
+  const auto lowest = [&](const std::vector<std::string>& lines, float bottom = 480) {
+    std::vector<Rect> overlay;
+    append_lines(overlay, lines, {room.x, room.y, room.right, bottom}, 2);
+    REQUIRE(overlay.size() > 1);
+    for (const Rect& r : overlay) CHECK(r.x + r.width <= room.right);
+    return overlay.front().height;
+  };
+  const float one = lowest({"twenty letters, no 1"}), two = lowest({"one", "two"});
+  CHECK(lowest({"twenty letters, no 1 more"}) == two);
+  CHECK(lowest({std::string(21, 'M')}) == two);
+  CHECK(two - one == (kGlyphHeight + 3) * 2);
+  // Ten lines of size 2 are 200 pixels high, of size 1 half of it.
+  const std::vector<std::string> ten(10, "line");
+  CHECK(lowest(ten, 240) == 206);
+  CHECK(lowest(ten, 120) == 103);
+}
+
+TEST_CASE("All lines of all overlays are read at 640 x 480, beside the plots and above what programs read") {
+  PanelFacts facts;
+  facts.haptic_bodies = 3000, facts.visual_bodies = 3000, facts.contacts = 10000;
+  facts.physics.push(health(0, {}));
+  facts.rendering = facts.period = microseconds(16667);
+  facts.delay = facts.profile_delay = microseconds(250000);
+  facts.output.frame_rate_Hz = 12.5, facts.output.resolution = 0.25;
+  for (const char* channel : {"WORLD_STATE", "CONTACT_EVENTS", "TOOL_STATE", "CONTACTS"})
+    facts.inputs.push_back({channel, {microseconds(1234567), {}}, sync::How::kExtrapolated});
+  OverlaySet on = parse_overlays("all");
+  on.set(Overlay::kHelp);
+  const float left = plots_left(640), bottom = 480 - 64;
+  std::vector<Rect> overlay;
+  append_lines(overlay, panel_lines(on, facts), {8, 36, left, bottom}, text_size(480));
+  REQUIRE(!overlay.empty());
+  // The plate is as high as all lines are: none was left out, nor cut.
+  const std::size_t lines = panel_lines(on, facts).size();
+  CHECK(overlay.front().height >= static_cast<float>(lines) * (kGlyphHeight + 3));
+  for (const Rect& r : overlay) {
+    CHECK(r.x + r.width <= left);
+    CHECK(r.y + r.height <= bottom);
+  }
 }
 
 TEST_CASE("A letter is drawn pixel for pixel as its rows say") {

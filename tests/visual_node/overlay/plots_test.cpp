@@ -127,3 +127,33 @@ TEST_CASE("Plots stay within the picture, and hear each channel once") {
     CHECK(bottom <= static_cast<float>(height));
   }
 }
+
+TEST_CASE("A bar has its value below it, and text that is empty is not taken for text that never came") {
+  std::vector<std::string> trouble;
+  const auto drawn = [&](const char* plot, const char* channel, std::vector<std::uint8_t> bytes) {
+    Plots plots(parse_plots(plot, trouble), kSpan);
+    if (!bytes.empty()) plots.push(channel, bytes, at_ms(10));
+    std::vector<Rect> overlay;
+    plots.append(overlay, at_ms(20), 640, 480);
+    return overlay;
+  };
+  const auto bar = drawn("bar TOOL_STATE.force_N.z", "TOOL_STATE", tool_state(0, 2));
+  // The bar is the one rectangle of its colour that is as wide as the plot: at its most.
+  float bottom = 0, lowest = 0;
+  for (const Rect& r : bar) {
+    if (r.width > 100 && r.alpha == 1) bottom = std::max(bottom, r.y + r.height);
+    if (r.height == 1) lowest = std::max(lowest, r.y);
+  }
+  REQUIRE(bottom > 0);
+  CHECK(lowest > bottom);
+  node_health_t health{};
+  health.node = "sim_node";
+  const auto pixels = [](const std::vector<Rect>& rects) {
+    double sum = 0;
+    for (const Rect& r : rects) sum += r.alpha == 1 ? r.width * r.height : 0;
+    return sum;
+  };
+  REQUIRE(!sync::encode(health).empty());
+  CHECK(pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", sync::encode(health))) !=
+        pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
+}

@@ -1,0 +1,30 @@
+// Nothing to draw on: vision says what it tried and is not there; nobody else notices.
+#include "tests/cluster/seeing.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+TEST_CASE("Where no OpenGL context can be had vision ends with what it tried, and the other senses go on") {
+  Seeing c;
+  const auto no_vendor = c.folder.path() / "vendor.json";
+  std::ofstream(no_vendor) << "{}\n";
+  c.start_with(c.snapshots());
+  const auto before = c.rates(1);
+  c.processes.kill("visual_node");
+  for (const std::string vendor : {"/dev/null", no_vendor.c_str(), "/nowhere/at/all.json"}) {
+    CAPTURE(vendor);
+    c.start_vision(c.snapshots(),
+                   {"__EGL_VENDOR_LIBRARY_FILENAMES=" + vendor, "__EGL_VENDOR_LIBRARY_DIRS=/nowhere"});
+    const int status = c.processes.wait_for_exit("visual_node", kPatience_s);
+    CHECK(status == 1);
+  }
+  const std::string said = c.processes.said("visual_node");
+  const std::string last = said.substr(said.rfind('\n', said.size() - 2) + 1);
+  CHECK_THAT(last, Catch::StartsWith("visual_node: no OpenGL 3.3 context, tried ") &&
+                       Catch::Contains("EGL default display") && Catch::Contains("install libegl-mesa0"));
+  CHECK(c.others_live());
+  c.check_rates_hold(before, 1, "visual_node");
+  // And with one, it is there again.
+  c.start_vision(c.snapshots());
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+}

@@ -1,0 +1,216 @@
+// The window of visual_node on a display server of its own (Xvfb): what is seen in it, keys, mouse, and what
+// becomes of the node when window or server go.
+#include <signal.h>
+
+#include <tactus/device_state_t.hpp>
+#include <tactus/world_state_t.hpp>
+
+#include "tests/cluster/seeing.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+constexpr int kWide = 1024, kHigh = 768;  // of the screen; the window is 640 x 480 at its upper left
+
+struct Desktop : Seeing {
+  std::string display;
+  sync::Bus bus{sync::Identity::fresh("desktop_test", kRunId), {}};
+  sync::Queue<world_state_t>& worlds{bus.queue<world_state_t>(channels::kWorldState, 4096)};
+  sync::Queue<device_state_t>& devices{bus.queue<device_state_t>(channels::kDeviceState, 4096)};
+  double rate = -1;  // of the world, as last told
+  int aimed = 0;     // times that the mouse was told as a device
+
+  void start_server() {
+    processes.spawn("Xvfb", {"Xvfb", "-displayfd", "1", "-screen", "0",
+                             std::to_string(kWide) + "x" + std::to_string(kHigh) + "x24", "-nolisten", "tcp"});
+    ear.wait_until([&] { return processes.said("Xvfb").find('\n') != std::string::npos; }, kPatience_s);
+    const std::string said = processes.said("Xvfb");
+    INFO("Xvfb (Debian package xvfb): " << said);
+    const std::size_t end = said.find_last_of("0123456789");
+    REQUIRE(end != std::string::npos);
+    display = ":" + said.substr(said.find_last_not_of("0123456789", end) + 1);
+    display = display.substr(0, display.find('\n'));
+  }
+  std::vector<std::string> on_display() const { return {"DISPLAY=" + display, "WAYLAND_DISPLAY="}; }
+  void start_window(const std::vector<std::string>& more = {}) {
+    start_server();
+    std::vector<std::string> options = snapshots();
+    options.push_back("--window");
+    options.insert(options.end(), more.begin(), more.end());
+    start_with(options, on_display());
+  }
+  std::string x(const std::vector<std::string>& words) {
+    const std::string name = "xdotool" + std::to_string(++asked);
+    std::vector<std::string> command{"env", "DISPLAY=" + display, "xdotool"};
+    command.insert(command.end(), words.begin(), words.end());
+    processes.spawn(name, command);
+    const int status = processes.wait_for_exit(name, kPatience_s);
+    INFO("xdotool (Debian package xdotool): " << processes.said(name));
+    CHECK(status == 0);
+    return processes.said(name);
+  }
+  std::string window() {
+    const std::string found = x({"search", "--sync", "--name", "^Tactus$"});
+    return found.substr(0, found.find('\n'));
+  }
+  std::string geometry() { return x({"getwindowgeometry", window()}); }
+  Grey screen() {
+    return grey("-f x11grab -draw_mouse 0 -video_size " + std::to_string(kWide) + "x" + std::to_string(kHigh) +
+                " -i " + display);
+  }
+  static int brightest(const Grey& screen, bool in_window) {
+    int most = 0;
+    for (std::size_t i = 0; i < screen.size(); ++i)
+      if ((i % kWide < 640 && i / kWide < 480) == in_window) most = std::max<int>(most, screen[i]);
+    return most;
+  }
+  template <class Condition>
+  bool hear_until(const Condition& condition) {
+    return ear.wait_until(
+        [&] {
+          bus.drain(sync::host_now());
+          while (const auto m = worlds.pop()) rate = m->message.clock.rate;
+          while (const auto m = devices.pop()) aimed += m->message.device == "mouse";
+          return condition();
+        },
+        kPatience_s);
+  }
+  // As a window manager asks a window to close (ICCCM 4.2.8.1).
+  void ask_to_close() {
+    const char* program = R"(
+import ctypes, sys
+X = ctypes.CDLL("libX11.so.6")
+X.XOpenDisplay.restype = ctypes.c_void_p
+X.XInternAtom.restype = ctypes.c_ulong
+class Message(ctypes.Structure):
+    _fields_ = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("send_event", ctypes.c_int), ("display", ctypes.c_void_p),
+                ("window", ctypes.c_ulong), ("message_type", ctypes.c_ulong), ("format", ctypes.c_int), ("data", ctypes.c_long * 5)]
+class Event(ctypes.Union):
+    _fields_ = [("message", Message), ("pad", ctypes.c_long * 24)]
+d = ctypes.c_void_p(X.XOpenDisplay(sys.argv[1].encode()))
+atom = lambda name: X.XInternAtom(d, name, 0)
+window = int(sys.argv[2])
+e = Event()
+e.message = Message(33, 0, 1, d, window, atom(b"WM_PROTOCOLS"), 32, (atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0))
+X.XSendEvent(d, ctypes.c_ulong(window), 0, ctypes.c_long(0), ctypes.byref(e))
+X.XCloseDisplay(d)
+)";
+    processes.spawn("close", {"/usr/bin/python3", "-c", program, display, window()});
+    const int status = processes.wait_for_exit("close", kPatience_s);
+    INFO(processes.said("close"));
+    REQUIRE(status == 0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "A window shows the picture; its keys pause, step and reset the world, lay overlays and fill the screen") {
+  Desktop c;
+  c.start_window();
+  c.ear.listen(1);
+  const Grey shown = c.screen();
+  REQUIRE(shown.size() == kWide * kHigh);
+  CHECK(Desktop::brightest(shown, true) > 40);
+  CHECK(Desktop::brightest(shown, false) == 0);
+
+  c.x({"mousemove", "300", "300"});
+  REQUIRE(c.hear_until([&] { return c.rate > 0; }));
+  c.x({"key", "space"});
+  CHECK(c.hear_until([&] { return c.rate == 0; }));
+  const Grey still = c.later_picture();
+  c.x({"key", "h"});
+  const Grey helped = c.later_picture();
+  CHECK(apart(still, helped) > 3);  // a plate full of words
+  c.x({"key", "h"});
+  CHECK(apart(still, c.later_picture()) < 1);
+  c.x({"key", "period"});
+  c.x({"key", "r"});
+  c.x({"key", "space"});
+  CHECK(c.hear_until([&] { return c.rate > 0; }));
+  const std::string said = c.processes.said("visual_node");
+  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("as at its first instant"));
+
+  c.x({"key", "F11"});
+  c.ear.listen(1);
+  CHECK_THAT(c.geometry(), Catch::Contains("1024x768"));
+  CHECK(Desktop::brightest(c.screen(), false) > 10);
+  c.x({"key", "f"});
+  c.ear.listen(1);
+  CHECK_THAT(c.geometry(), Catch::Contains("640x480"));
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+}
+
+TEST_CASE("The mouse in the window is a device that points at what is seen under it") {
+  Desktop c;
+  c.start_window();
+  c.x({"mousemove", "320", "400"});
+  CHECK_FALSE(c.ear.wait_until([&] { return c.hear_until([&] { return true; }) && c.aimed > 0; }, 0.5));
+  c.x({"mousedown", "1"});
+  CHECK(c.hear_until([&] { return c.aimed > 5; }));
+  c.x({"mouseup", "1"});
+  CHECK(c.goes_on("visual_node"));
+}
+
+TEST_CASE(
+    "A window that is not seen or next to nothing, or larger than its screen, stops nobody; a closed one ends the "
+    "node") {
+  Desktop c;
+  c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
+                  "stereo=quad_buffer"});
+  const auto before = c.rates(1);
+  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("larger than its monitor") &&
+                                                  Catch::Contains("no monitor 7") &&
+                                                  Catch::Contains("no buffer for each eye"));
+  CHECK_THAT(c.geometry(), Catch::Contains("1024x1"));
+  const std::string window = c.window();
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"windowsize", window, "1", "1"},
+                                             {"windowunmap", window},
+                                             {"windowmap", window},
+                                             {"windowsize", window, "700", "500"}}) {
+    CAPTURE(words[0]);
+    c.x(words);
+    CHECK(c.goes_on("visual_node"));
+  }
+  c.check_rates_hold(before, 1);
+  c.ask_to_close();
+  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
+  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
+  CHECK(c.others_live());
+
+  // Destroyed by another program.
+  std::vector<std::string> options = c.snapshots();
+  options.push_back("--window");
+  c.start_vision(options, c.on_display());
+  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  c.x({"windowclose", c.window()});
+  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
+}
+
+TEST_CASE(
+    "A display server that is killed takes the window along and not the node; without one there is a sentence") {
+  Desktop c;
+  c.start_window();
+  const auto before = c.rates(1);
+  c.processes.kill("Xvfb");
+  CHECK(c.goes_on("visual_node"));
+  CHECK_THAT(c.processes.said("visual_node"),
+             Catch::Contains("the display server of the window is gone: draws on, with ") &&
+                 !Catch::Contains("X connection"));
+  CHECK(apart(c.later_picture(), Grey(640 * 480, 0)) > 1);
+  c.check_rates_hold(before, 1);
+
+  c.processes.kill("visual_node");
+  for (const std::vector<std::string>& where :
+       std::vector<std::vector<std::string>>{c.on_display(), {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}}) {
+    c.start_vision({"--window"}, where);
+    CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
+    const std::string said = c.processes.said("visual_node");
+    CHECK_THAT(said.substr(said.rfind('\n', said.size() - 2) + 1),
+               Catch::Contains("--window: no window can be opened") && Catch::Contains("leave --window out"));
+  }
+  CHECK(c.others_live());
+}

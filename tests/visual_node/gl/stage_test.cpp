@@ -1,0 +1,126 @@
+// What becomes of the picture when the device that draws it is lost. The loss is injected: a display whose context
+// works, and which says that it does not.
+#include "visual_node/gl/stage.h"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "tests/visual_node/offscreen.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+using namespace tactus::test;
+
+namespace {
+
+sync::HostTime at_s(double s) { return sync::HostTime{sync::from_seconds(s)}; }
+
+// The shared context of these tests, which stays current.
+struct Borrowed : Display {
+  std::string& trouble;
+  bool window;
+  Borrowed(std::string& t, bool w) : trouble(t), window(w) { description_ = window ? "a window" : "no window"; }
+  void show(unsigned, int, int, bool) override {}
+  bool closed() override { return false; }
+  std::string lost() override { return trouble; }
+  bool server_gone() override { return window && !trouble.empty(); }
+  bool has_screen() const override { return window; }
+};
+
+struct Fragile {
+  std::string trouble;
+  int opened = 0, may_open = 1000;
+  Settings settings;
+  scene_t scene = floor_from_above(2);
+  SceneView view{scene, {}, settings, {}};
+  DrawList list = view.draw(std::vector<Eigen::Isometry3d>{to_eigen(scene.bodies[0].pose)}, {});
+
+  MakeDisplay make() {
+    return [this](const Settings&, bool window) -> std::unique_ptr<Display> {
+      if (opened++ >= may_open) throw std::runtime_error("no OpenGL 3.3 context, tried nothing");
+      display();
+      trouble.clear();
+      return std::make_unique<Borrowed>(trouble, window);
+    };
+  }
+  std::vector<std::uint8_t> picture(Stage& stage) {
+    stage.draw_scene(list, {});
+    stage.draw_over(list);
+    std::vector<std::uint8_t> rgba(
+        static_cast<std::size_t>(stage.picture().width() * stage.picture().height() * 4));
+    stage.picture().read(rgba);
+    return rgba;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A device that was lost is opened again, and draws what was loaded as before") {
+  Fragile f;
+  Stage stage(f.settings, false, f.make());
+  stage.load(f.view, f.list, f.settings);
+  const auto before = f.picture(stage);
+  REQUIRE(*std::max_element(before.begin(), before.end()) > 0);
+  CHECK(stage.recover(at_s(1), &f.view, f.list).empty());
+  CHECK(f.opened == 1);
+
+  f.trouble = "the graphics device was reset";
+  CHECK(stage.recover(at_s(2), &f.view, f.list) == "the graphics device was reset: draws on, with no window");
+  CHECK(f.opened == 2);
+  CHECK(f.picture(stage) == before);
+  CHECK(stage.recover(at_s(3), &f.view, f.list).empty());
+}
+
+TEST_CASE("A device that is lost before there is a scene is opened again too") {
+  Fragile f;
+  Stage stage(f.settings, false, f.make());
+  f.trouble = "the graphics device was reset";
+  CHECK_FALSE(stage.recover(at_s(2), nullptr, {}).empty());
+  CHECK(stage.picture().width() == f.settings.width);
+}
+
+TEST_CASE("A window whose display server is gone is not opened again: its node draws on without it") {
+  Fragile f;
+  Stage stage(f.settings, true, f.make());
+  REQUIRE(stage.display().has_screen());
+  f.trouble = "the display server of the window is gone";
+  CHECK_THAT(stage.recover(at_s(1), nullptr, {}),
+             Catch::Contains("display server") && Catch::Contains("no window"));
+  CHECK_FALSE(stage.display().has_screen());
+}
+
+TEST_CASE(
+    "A device that is lost again and again is given up in one sentence, one that is lost now and then is not") {
+  Fragile f;
+  Stage stage(f.settings, false, f.make());
+  double now_s = 0;
+  for (int i = 0; i < 20; ++i) {
+    f.trouble = "the graphics device was reset";
+    CHECK_FALSE(stage.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
+  }
+  now_s += 1000;
+  for (std::size_t i = 0; i < Stage::kMostLosses; ++i) {
+    f.trouble = "the graphics device was reset";
+    CHECK_FALSE(stage.recover(at_s(now_s += 1), nullptr, {}).empty());
+  }
+  f.trouble = "the graphics device was reset";
+  CHECK_THROWS_WITH(stage.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
+}
+
+TEST_CASE("A device that cannot be opened again ends the node with why, and with what was tried") {
+  Fragile f;
+  f.may_open = 1;
+  Stage stage(f.settings, false, f.make());
+  f.trouble = "the graphics device was reset";
+  CHECK_THROWS_WITH(stage.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
+                                                             Catch::Contains("cannot be opened again") &&
+                                                             Catch::Contains("tried nothing"));
+}
+
+TEST_CASE("A context that draws is not taken for lost, also after an error that is its own") {
+  CHECK(display().lost().empty());
+  Settings settings;
+  Renderer renderer(64, 64, settings.shadow_size);
+  CHECK(renderer.wait());
+  CHECK(display().lost().empty());
+}
