@@ -54,6 +54,7 @@ class Renderer {
   void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
   void draw_sky(const DrawList& list, const Camera& camera);
   void draw_surface(const Batch& batch, bool translucent);
+  void draw_through(const Batch& batch);
   void draw_batch(const Batch& batch);
 
   PictureTarget picture_, small_;  // small_ is drawn into at less than full scale
@@ -75,8 +76,7 @@ class Renderer {
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
   QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2},
-      sky_quad_{1},
-      strokes_{static_cast<int>(sizeof(Stroke) / 16)};
+      sky_quad_{1}, strokes_{static_cast<int>(sizeof(Stroke) / 16)};
 };
 
 }  // namespace tactus::visual
