@@ -4,6 +4,7 @@
 
 #include <array>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -12,20 +13,26 @@
 namespace tactus::visual {
 namespace {
 
+// Lines of piece i are counted from i times this, and the number says which it is: Mesa tells the number of the
+// piece with some of its messages only.
+constexpr std::size_t kLinesOfPiece = 100'000;  // more than what a file of 64 kB has
+
 // Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": number of the piece
-// and line.
+// and line. Each becomes one clause; warnings are left out, since what is given to a shader sets variables before
+// they are used.
 std::string with_files(const std::string& log, const std::vector<std::string>& names) {
-  static const std::regex position(R"((^|\n)(?:ERROR: )?(\d+)[:(](\d+)\)?(?:\(\d+\))?\s*:)");
-  std::string text;
-  auto rest = log.cbegin();
-  for (std::sregex_iterator it(log.begin(), log.end(), position), end; it != end; ++it) {
-    const auto piece = static_cast<std::size_t>(std::stoul((*it)[2].str().substr(0, 6)));
-    text.append(rest, (*it)[0].first);
-    text += (*it)[1].str() + (piece < names.size() ? names[piece] : "?") + ":" + (*it)[3].str() + ":";
-    rest = (*it)[0].second;
+  static const std::regex position(R"(^(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
+  std::string text, line;
+  for (std::istringstream lines(log.c_str()); std::getline(lines, line);) {
+    if (line.empty() || line.find("warning") != std::string::npos) continue;
+    if (std::smatch found; std::regex_search(line, found, position)) {
+      const auto number = static_cast<std::size_t>(std::stoul(found[1].str().substr(0, 9)));
+      const std::size_t piece = number / kLinesOfPiece;
+      line = (piece < names.size() ? names[piece] : "?") + ":" + std::to_string(number % kLinesOfPiece) + ":" +
+             found.suffix().str();
+    }
+    text += (text.empty() ? "" : "; ") + line;
   }
-  text.append(rest, log.cend());
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
   return text;
 }
 
@@ -35,7 +42,7 @@ std::string put_together(const std::vector<ShaderPiece>& pieces, const std::stri
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::string piece = pieces[i].text;
     if (const auto version = piece.find("#version"); version != std::string::npos) piece.replace(version, 2, "//");
-    text += "\n#line 1 " + std::to_string(i) + "\n" + piece + "\n";
+    text += "\n#line " + std::to_string(i * kLinesOfPiece + 1) + " " + std::to_string(i) + "\n" + piece + "\n";
   }
   return text;
 }
