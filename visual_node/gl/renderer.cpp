@@ -343,7 +343,19 @@ void Renderer::draw_surface(const Batch& batch, bool translucent) {
   }
   if (look.colour_map >= 0) bind(kColourUnit, colours_[static_cast<std::size_t>(look.colour_map)]->id());
   if (look.normal_map >= 0) bind(kNormalUnit, normals_[static_cast<std::size_t>(look.normal_map)]->id());
-  draw_batch(batch);
+  translucent ? draw_through(batch) : draw_batch(batch);
+}
+
+// What is seen through is seen from the back too: first its far side, then its near one.
+void Renderer::draw_through(const Batch& batch) {
+  const auto at = static_cast<std::size_t>(batch.geometry);
+  if (at >= geometries_.size() || !geometries_[at]->two_sided()) return draw_batch(batch);
+  glEnable(GL_CULL_FACE);
+  for (int i = 0; i < batch.count; ++i)
+    for (const auto unseen : {GL_FRONT, GL_BACK}) {
+      glCullFace(unseen);
+      geometries_[at]->draw(instances_, batch.first + i, 1);
+    }
 }
 
 void Renderer::draw_batch(const Batch& batch) {
