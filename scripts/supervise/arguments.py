@@ -8,6 +8,7 @@ import time
 import xml.etree.ElementTree
 
 import hands
+import scene
 import walls
 from refusal import Refusal
 
@@ -24,6 +25,7 @@ PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options
 class Plan:
     """What one run does. All paths are absolute."""
     scene: pathlib.Path
+    shaders: pathlib.Path  # folder of the scene's own shaders, or None
     seconds: float
     out: pathlib.Path
     out_is_ours: bool  # nobody named it: another name does as well
@@ -85,8 +87,8 @@ def parse(words, here):
             raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
     a = parser.parse_args(words)
     here = pathlib.Path(here)
-    scene = scene_file(here, a.scene)
-    tools = hands.tools(scene)
+    scene_path = scene_file(here, a.scene)
+    tools = scene.tools(scene_path)
     others = hands.processes(tools)
     room, pictures = of_room(here, a.room)
     several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
@@ -101,7 +103,8 @@ def parse(words, here):
         pictures = {}
     others = {process: tool for process, tool in others.items() if process not in a.without}
     pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
-    plan = Plan(scene=scene, seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
+    plan = Plan(scene=scene_path, shaders=scene.shader_folder(scene_path),
+                seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
                 devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
                 degrade=profile(here, a.degrade), playout=playout(a),

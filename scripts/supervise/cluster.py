@@ -9,6 +9,7 @@ import subprocess
 import time
 
 import services
+import walls
 from arguments import REPOSITORY, SENSES
 from refusal import Interrupted, Refusal
 from terminal import complain, say
@@ -43,6 +44,9 @@ def commands(plan, run_id, git):
         own[name] = ["--name", name, "--tool", tool, *device_words(plan, tool)]
     for name, wall in plan.walls.items():
         own[name] = [*own.get(name, []), *(["--name", name] if name != plan.program(name) else []), "--set", f"room={plan.room}", "--set", f"wall={wall}"]
+    if plan.shaders:
+        for name in {walls.FIRST, *plan.walls}:
+            own[name] = [*own.get(name, []), "--set", f"shader_folder={plan.shaders}"]
     if plan.degrade:
         for name in (*plan.senses(), "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]

@@ -1,29 +1,8 @@
 """The hands of a scene: one haptic_node for each of its tools, so that one can go and come without the others."""
 import re
-import xml.parsers.expat
 
 FIRST = "haptic_node"  # holds the first tool, or none when the scene has none
 LONGEST_NAME = 40      # of a process: its folder and its log bear it too
-
-
-def tools(scene):
-    """Names of the tools of a scene, in its order; none where it cannot be read: sim_node says what is wrong with it."""
-    found, path = [], []
-
-    def begin(name, attributes):
-        path.append(name)
-        if path[1:] == ["world", "tactus:tool"]:
-            found.append(attributes.get("name", ""))
-
-    # Prefixes as they are written: a prefix that nobody declared is none of our business.
-    parser = xml.parsers.expat.ParserCreate()
-    parser.StartElementHandler = begin
-    parser.EndElementHandler = lambda name: path.pop()
-    try:
-        parser.Parse(scene.read_bytes(), True)
-    except (xml.parsers.expat.ExpatError, OSError, LookupError, ValueError):
-        return []
-    return found
 
 
 def processes(names):

@@ -216,6 +216,31 @@ class Walls(Folders):
         self.assertFalse([n for n in plan.nodes() if n.startswith("visual")])
 
 
+class Shaders(Folders):
+    """Shaders that a scene brings are read again when somebody changes them where they lie."""
+
+    def words(self, world, *words):
+        scene = self.folder / "scene.sdf"
+        scene.write_text(f'<sdf version="1.9"><world name="w">{world}</world></sdf>', encoding="utf-8")
+        commands = cluster.commands(arguments.parse([str(scene), *words], os.getcwd()), 1, "")
+        return {name: [w for w in command if w.startswith("shader_folder=")] for name, command in commands.items()}
+
+    def test_every_wall_is_told_where_the_shaders_of_the_scene_lie(self):
+        said = self.words('<tactus:shader name="stripes" fragment="stripes.frag"/>', "--room", "cave4")
+        there = [f"shader_folder={self.folder}"]
+        self.assertEqual(there, said["visual_node"])
+        self.assertEqual(there, said["visual_node_floor"])
+        self.assertEqual([], said["sim_node"])
+
+    def test_a_scene_without_any_or_that_says_where_they_are_has_the_last_word(self):
+        self.assertEqual([], self.words('<model name="m"><tactus:shader name="no"/></model>')["visual_node"])
+        self.assertEqual([], self.words('<tactus:shader name="s"/><tactus:visual_node shader_folder="/x"/>')["visual_node"])
+
+    def test_a_folder_that_is_asked_for_comes_last_and_so_wins(self):
+        said = self.words('<tactus:shader name="s"/>', "--set", "visual_node.shader_folder=/x")["visual_node"]
+        self.assertEqual([f"shader_folder={self.folder}", "shader_folder=/x"], said)
+
+
 class Checks(Folders):
     def check(self, stop=False, **programs):
         cluster.check({name: self.program(name, text) for name, text in programs.items()}, types.SimpleNamespace(asked=stop))

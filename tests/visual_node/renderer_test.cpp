@@ -228,6 +228,27 @@ TEST_CASE("What has no relief looks as it would without any in the scene") {
   }
 }
 
+TEST_CASE(
+    "Of a shader in pieces the one that is wrong is named with its line, whatever is wrong, and no warning is "
+    "said") {
+  display();
+  const std::vector<ShaderPiece> vertex{{"a.vert", "void main() { gl_Position = vec4(0); }"}};
+  const auto with = [&](const std::string& mine) {
+    Program(vertex,
+            {{"first.glsl", "out vec4 colour;\nvec4 shade();\n"},
+             {"mine.frag", mine},
+             {"end.frag", "\nvoid main() { float unset; colour = unset * shade(); }"}},
+            "#define X 1\n");
+  };
+  CHECK_NOTHROW(with("vec4 shade() { return vec4(1); }"));
+  CHECK_THROWS_WITH(with("\nvec4 shade() { return vec4(1) }"),
+                    Catch::Contains("mine.frag:2: error"));  // of syntax
+  CHECK_THROWS_WITH(
+      with("\n\nvec4 shade() { return lamp_of_my_own; }"),  // of meaning
+      Catch::Contains("mine.frag:3: error") && Catch::Contains("lamp_of_my_own") && !Catch::Contains("warning"));
+  CHECK_THROWS_WITH(with("void main() {}"), Catch::Contains("end.frag:2: error"));
+}
+
 TEST_CASE("A shader that does not compile is named with file and line") {
   display();
   const std::string good = "#version 330 core\nvoid main() { gl_Position = vec4(0); }\n";

@@ -273,12 +273,12 @@ void Renderer::draw_surfaces(const DrawList& list, const Camera& camera) {
   glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT);
   glDisable(GL_BLEND);
-  for (const Batch& b : list.opaque) draw_surface(b);
+  for (const Batch& b : list.opaque) draw_surface(b, false);
   if (sky_) draw_sky(list, camera);
   glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  for (const Batch& b : list.translucent) draw_surface(b);
+  for (const Batch& b : list.translucent) draw_surface(b, true);
 }
 
 void Renderer::describe(const Program& surface, const Look& look, const DrawList& list,
@@ -313,11 +313,12 @@ void Renderer::draw_sky(const DrawList& list, const Camera& camera) {
   glDepthFunc(GL_LESS);
 }
 
-void Renderer::draw_surface(const Batch& batch) {
+void Renderer::draw_surface(const Batch& batch, bool translucent) {
   const bool rough = batch.relief >= 0 && batch.relief < static_cast<int>(reliefs_.size());
   const Program& program = surfaces_.program(batch.look, rough, shadow() != nullptr);
   const Look& look = surfaces_.look(batch.look);
   program.use();
+  program.set("see_through", translucent ? 1.0f : 0.0f);
   const auto bind = [](int unit, unsigned texture) {
     glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(unit));
     glBindTexture(GL_TEXTURE_2D, texture);

@@ -53,7 +53,7 @@ class Renderer {
   void scale_up();
   void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
   void draw_sky(const DrawList& list, const Camera& camera);
-  void draw_surface(const Batch& batch);
+  void draw_surface(const Batch& batch, bool translucent);
   void draw_batch(const Batch& batch);
 
   PictureTarget picture_, small_;  // small_ is drawn into at less than full scale

@@ -30,7 +30,7 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
       for (std::size_t k = 0; k < fresh.size(); ++k) made_[4 * i + k] = std::move(fresh[k]);
     } catch (const std::exception& e) {
       const bool before = made_[index(i, false, false)] != nullptr;
-      trouble.push_back((looks_[i].name.empty() ? "" : "look " + looks_[i].name + ": ") + std::string(e.what()) +
+      trouble.push_back((looks_[i].name.empty() ? "" : looks_[i].name + ": ") + std::string(e.what()) +
                         (before ? "; the one before stays" : "; phong is drawn instead"));
     }
 }

@@ -72,3 +72,14 @@ vec3 mirrored() {
   return vec3(0.0);
 #endif
 }
+
+// All of it: what is returned as far as the surface is opaque, and what is mirrored however transparent it is. What is behind
+// is seen through the rest.
+vec4 surface() {
+#if MIRROR
+  float f = fresnel(), opacity = mix(base.a, 1.0, f);
+  return vec4(mix(base.a * lit(), mirrored(), f) / max(opacity, 1e-4), opacity);
+#else
+  return vec4(lit(), base.a);
+#endif
+}

@@ -1,0 +1,148 @@
+// Draws pictures of the shipped scenes for the documents: each into its own file of the folder given.
+//
+//   bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo]... [--samples N]
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <numbers>
+
+#include "tests/visual_node/golden/shipped_scene.h"
+#include "visual_node/video/png.h"
+
+using namespace tactus;
+using test::Picture;
+using test::ShippedScene;
+
+namespace {
+
+visual::Settings sized(int width, int height, int samples) {
+  visual::Settings settings;
+  settings.width = width, settings.height = height, settings.anti_aliasing = samples;
+  settings.shadow_size = 1024;  // pictures are looked at longer than frames
+  return settings;
+}
+
+ShippedScene load(const std::string& name) {
+  return ShippedScene(TACTUS_SOURCE_DIR "/sim_node/scenes/" + name + ".sdf");
+}
+
+// Pictures of one size, from left to right.
+Picture beside(const std::vector<Picture>& parts) {
+  Picture all{0, parts.front().height, {}};
+  for (const Picture& p : parts) all.width += p.width;
+  all.rgba.resize(static_cast<std::size_t>(4 * all.width * all.height));
+  int x = 0;
+  for (const Picture& p : parts) {
+    for (int y = 0; y < p.height; ++y)
+      std::copy_n(&p.rgba[static_cast<std::size_t>(4 * y * p.width)], 4 * p.width,
+                  &all.rgba[static_cast<std::size_t>(4 * (y * all.width + x))]);
+    x += p.width;
+  }
+  return all;
+}
+
+// Two rows become one: their bytes differ by little.
+Picture half_as_high(const Picture& from) {
+  Picture to{from.width, from.height / 2, {}};
+  const auto row = static_cast<std::size_t>(4 * from.width);
+  for (std::size_t i = 0; i < row * static_cast<std::size_t>(to.height); ++i) {
+    const std::size_t upper = i / row * 2 * row + i % row;
+    to.rgba.push_back(static_cast<std::uint8_t>((from.rgba[upper] + from.rgba[upper + row]) / 2));
+  }
+  return to;
+}
+
+// Nothing of a scene may be drawn otherwise than it says.
+Picture checked(const ShippedScene& from, Picture picture) {
+  if (!from.trouble.empty()) throw std::runtime_error(from.trouble.front());
+  return picture;
+}
+
+Picture dark_room(int samples) {
+  ShippedScene s = load("dark_room");
+  Picture picture = s.draw(s.scene, sized(800, 600, samples));
+  return checked(s, std::move(picture));
+}
+
+// The boards from above, the deepest relief at the lower end, in light that comes in low from the left, from
+// above, from the right and from below.
+Picture bump_plane(int samples) {
+  ShippedScene s = load("bump_plane");
+  scene_t scene = s.scene;
+  // Looks down, the picture's up is +y.
+  Eigen::Matrix3d axes;
+  axes << -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY();
+  scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.2) * Eigen::Quaterniond(axes)));
+  scene.camera_fov_rad = 2 * std::atan(0.195 / 1.2);
+  std::vector<Picture> parts;
+  for (const double azimuth_deg : {180.0, 90.0, 0.0, -90.0}) {
+    const double a = azimuth_deg * std::numbers::pi / 180;
+    const Eigen::Vector3d lamp(0.8 * std::cos(a), 0.8 * std::sin(a), 0.35);
+    scene.lights[0].pose.position_m = to_vec3(lamp);
+    scene.lights[0].direction = to_vec3(Eigen::Vector3d(-lamp.normalized()));
+    parts.push_back(s.draw(scene, sized(180, 300, samples)));
+  }
+  return checked(s, beside(parts));
+}
+
+Picture looks(int samples) {
+  ShippedScene s = load("looks_bench");
+  scene_t scene = s.scene;
+  scene.camera = test::look_at({-1.4, 0, 0.4}, {0, 0, 0.04});
+  scene.camera_fov_rad = 0.76;
+  Picture picture = s.draw(scene, sized(1200, 250, samples));
+  return checked(s, std::move(picture));
+}
+
+// The mirror and the glass of looks_bench from near by.
+Picture reflecting(int samples) {
+  ShippedScene s = load("looks_bench");
+  scene_t scene = s.scene;
+  scene.camera = test::look_at({-0.26, -0.13, 0.13}, {0, -0.13, 0.05});
+  scene.camera_fov_rad = 1;
+  Picture picture = s.draw(scene, sized(640, 360, samples));
+  return checked(s, std::move(picture));
+}
+
+// The left eye's picture on the left, for who lets the eyes look straight ahead. Both are squeezed for a display
+// that stretches them, and made as narrow here in height.
+Picture stereo(int samples) {
+  ShippedScene s = load("dark_room");
+  visual::Settings settings = sized(1000, 800, samples);
+  settings.stereo = std::string("side_by_side");
+  settings.stereo_distance_m = 1.2;
+  Picture picture = s.draw(s.scene, settings);
+  return checked(s, half_as_high(picture));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::vector<std::pair<std::string, Picture (*)(int)>> all{{"dark_room", dark_room},
+                                                                  {"bump_plane", bump_plane},
+                                                                  {"looks", looks},
+                                                                  {"reflecting", reflecting},
+                                                                  {"stereo", stereo}};
+  std::string folder;
+  std::vector<std::string> wanted;
+  int samples = 4;
+  CLI::App app("Draws pictures of the shipped scenes for the documents.");
+  app.add_option("FOLDER", folder, "where the PNG files go")->required()->check(CLI::ExistingDirectory);
+  app.add_option("PICTURE", wanted, "which; none: all")
+      ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo"}));
+  app.add_option("--samples", samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  for (const auto& [name, draw] : all) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
+    const Picture picture = draw(samples);
+    const std::string file = folder + "/" + name + ".png";
+    if (!visual::write_png(file, picture.rgba, picture.width, picture.height))
+      throw std::runtime_error("cannot write " + file);
+    std::printf("%s, %d x %d\n", file.c_str(), picture.width, picture.height);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  std::cerr << "draw_looks: " << e.what() << "\n";
+  return 1;
+}
