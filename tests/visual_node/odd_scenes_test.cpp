@@ -86,7 +86,7 @@ TEST_CASE("A body whose pose is none of a room is not seen, and changes nothing 
   CHECK(render_at(with, poses).rgba != clean.rgba);
   for (const double odd : {kNan, kInfinite, 1e30}) {
     CAPTURE(odd);
-    poses.back().translation() = {odd, odd, odd};
+    poses.back().translation() = Eigen::Vector3d::Constant(odd);
     CHECK(render_at(with, poses).rgba == clean.rgba);
   }
 }
