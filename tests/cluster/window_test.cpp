@@ -154,6 +154,43 @@ TEST_CASE("The mouse in the window is a device that points at what is seen under
   CHECK(c.goes_on("visual_node"));
 }
 
+TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go") {
+  Desktop c;
+  c.start_server();
+  const std::string run = std::to_string(Running::kRunId);
+  c.processes.start("sync_node");
+  c.processes.start("haptic_node");
+  c.processes.spawn("haptic_node_wand",
+                    {programs() / "haptic_node", "--run-id", run, "--out", c.folder.path(), "--name",
+                     "haptic_node_wand", "--tool", "wand", "--device", "external:mouse"});
+  std::vector<std::string> options = c.snapshots();
+  options.insert(options.end(), {"--window", "--set", "width=640", "--set", "height=480"});
+  c.start_vision(options, c.on_display());
+  c.processes.start("sim_node", {repository() / "tests/cluster/head.sdf"});
+  REQUIRE(c.ear.wait_until([&] { return c.all_live({"sim_node", "haptic_node", "visual_node"}); }, kPatience_s));
+  const auto brightness = [](const Grey& p, bool left) {
+    double sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if ((i % 640 < 320) == left) sum += p[i];
+    return sum;
+  };
+  const auto held_at = [&](const char* x_px) {
+    c.x({"mousemove", x_px, "300"});
+    c.x({"mousedown", "1"});
+    CHECK(c.ear.wait_until([&] { return c.lives("haptic_node_wand"); }, kPatience_s));
+    c.ear.listen(0.5);
+    const Grey held = c.later_picture();
+    c.x({"mouseup", "1"});
+    return held;
+  };
+  const Grey left = held_at("120"), right = held_at("520");
+  CHECK(apart(left, right) > 1);
+  CHECK(brightness(left, true) > brightness(right, true));
+  CHECK(brightness(right, false) > brightness(left, false));
+  c.x({"mousemove", "120", "300"});  // not held: it only passes
+  CHECK(apart(right, c.later_picture()) < 0.5);
+}
+
 TEST_CASE(
     "A window that is not seen or next to nothing, or larger than its screen, stops nobody; a closed one ends the "
     "node") {
