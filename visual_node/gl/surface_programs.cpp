@@ -2,6 +2,9 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
+
+#include "visual_node/gl/uniforms.h"
 
 namespace tactus::visual {
 
@@ -27,6 +30,8 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
           if ((!relief || reliefs_) && (!shadows || lighting_.shadow_light >= 0))
             fresh[index(0, relief, shadows)] =
                 surface_program(library, looks_[i], relief, shadows ? lighting_ : plain);
+      for (std::string& said : misfits(library, looks_[i].shader, *fresh.front(), looks_[i].uniforms))
+        trouble.push_back("look " + looks_[i].name + ": " + std::move(said));
       for (std::size_t k = 0; k < fresh.size(); ++k) made_[4 * i + k] = std::move(fresh[k]);
     } catch (const std::exception& e) {
       const bool before = made_[index(i, false, false)] != nullptr;
