@@ -31,8 +31,8 @@ void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& 
       programs_[i] = std::make_unique<Program>(
           std::vector{library.own("pass.vert")},
           std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
-      for (std::string& said : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
-        trouble.push_back("pass " + std::move(said));
+      for (const std::string& said : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
+        trouble.push_back("pass " + passes_[i].shader + ": " + said);
     } catch (const std::exception& e) {
       trouble.push_back("pass " + passes_[i].shader + ": " + e.what() +
                         (programs_[i] ? "; the one before stays" : "; it is left out"));
