@@ -79,6 +79,11 @@ class Node {
   // Ticks done and missed so far: their sum numbers the periods of the loop.
   const Deadlines& deadlines() const { return loop_.deadlines(); }
 
+  // Between the parts of work that takes many ticks: reports health when that is due, and nothing else.
+  void still_here() {
+    if (const HostTime now = host_now(); now >= next_report_) report(now);
+  }
+
   // What the next health report says.
   void set_state(std::int8_t state, std::string note = "");
   void set_tool(int tool) { health_.tool = tool; }

@@ -144,7 +144,8 @@ int main(int argc, char** argv) try {
     for (const std::string& sentence : overlays.configure(own = settings)) trouble.push_back(sentence);
     for (const std::string& sentence : trouble) say(sentence);
     lock.load(*scenes.scene(), settings);
-    stage.load(view, composer.frame(now, 0).list, settings);
+    node.set_state(node_health_t::WAITING, "prepares the pictures of the scene");
+    stage.load(view, composer.frame(now, 0).list, settings, [&] { if (!offline) node.still_here(); });
     if (offline) offline->begin(view.width(), view.height(), settings);
     else recording.begin(view.width(), view.height(), settings);
     stream.begin(view.width(), view.height(), settings);

@@ -1,5 +1,6 @@
 #include "visual_node/scene_view/scene_view.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -114,11 +115,45 @@ TEST_CASE("A tool is drawn solid at its proxy and as a ghost at its device") {
   }
 }
 
-TEST_CASE("A shape whose mesh is missing is left out and counted") {
+TEST_CASE("A shape whose mesh is missing is a magenta box where it is, counted and said once") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::MESH, {1, 1, 1});
   scene.visuals[0].shape.mesh_hash = 42;
-  CHECK(SceneView(scene, {}, Settings{}).missing_meshes() == 1);
+  scene.visuals[0].shape.name = "kettle";
+  const SceneView view(scene, {}, Settings{});
+  CHECK(view.missing_meshes() == 1);
+  REQUIRE(view.trouble().size() == 1);
+  CHECK_THAT(view.trouble()[0], Catch::Contains("kettle") && Catch::Contains("magenta"));
+  const std::vector<Eigen::Isometry3d> pose{Eigen::Isometry3d(Eigen::Translation3d(2, 1, 0))};
+  const DrawList list = view.draw(pose, {});
+  REQUIRE(list.instances.size() == 1);
+  CHECK(list.opaque[0].geometry == 1);  // the box
+  CHECK(list.instances[0].position.head<3>().isApprox(Eigen::Vector3f(2, 1, 0)));
+  // It glows, so that it is seen in the dark.
+  CHECK(list.instances[0].emissive.head<3>() == Eigen::Vector3f(1, 0, 1));
+}
+
+TEST_CASE("geometry=physics draws what touches, each body in a colour of its own") {
+  scene_t scene = test::empty_scene();
+  for (int i = 0; i < 3; ++i) {
+    const int body = test::add_body(scene, {2, 0.3 * i, 0});
+    test::add_visual(scene, body, shape_def_t::BOX, {0.1, 0.1, 0.1});
+    for (int k = 0; k < 2; ++k) {
+      shape_def_t shape = scene.visuals.back().shape;
+      shape.kind = shape_def_t::SPHERE;
+      scene.shapes.push_back(shape);
+    }
+  }
+  const std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+  Settings settings;
+  CHECK(SceneView(scene, {}, settings).draw(poses, {}).instances.size() == 3);
+  settings.geometry = std::string("physics");
+  const DrawList list = SceneView(scene, {}, settings).draw(poses, {});
+  REQUIRE(list.instances.size() == 6);
+  for (const Batch& b : list.opaque) CHECK(b.geometry >= 2);  // balls, no boxes
+  std::set<std::array<float, 3>> colours;
+  for (const Instance& i : list.instances) colours.insert({i.diffuse.x(), i.diffuse.y(), i.diffuse.z()});
+  CHECK(colours.size() == 3);
 }
 
 TEST_CASE(
@@ -131,7 +166,9 @@ TEST_CASE(
   CHECK(inside(std::acos((std::cos(0.3) + std::cos(0.5)) / 2)) == Approx(0.5).margin(1e-4));
 }
 
-TEST_CASE("A spot of the name of a tool shines at where the tool is, with its shadow; while nobody holds it as the scene says") {
+TEST_CASE(
+    "A spot of the name of a tool shines at where the tool is, with its shadow; while nobody holds it as the "
+    "scene says") {
   scene_t scene = test::empty_scene();
   scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};
   scene.lights[0].casts_shadow = 0;

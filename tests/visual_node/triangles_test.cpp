@@ -73,3 +73,42 @@ TEST_CASE("A plane faces +z and is seen from below too") {
   CHECK(t.normals[0].isApprox(Vector3f::UnitZ()));
   CHECK(t.two_sided);
 }
+
+TEST_CASE("Tangents lie in the surface along growing u, and binormals along growing v, on every shape") {
+  // Around a ring of n segments what is between two corners turns by up to a turn / n away from the tangent at
+  // either, and by half of it from the one in the middle.
+  for (const auto& [t, turn] :
+       std::vector<std::pair<Triangles, double>>{{unit_box(), 0},
+                                                 {unit_plane(), 0},
+                                                 {unit_cylinder(40), 2 * std::numbers::pi / 40},
+                                                 {unit_sphere(40), 2 * std::numbers::pi / 40},
+                                                 {capsule(0.2, 0.6, 40), 2 * std::numbers::pi / 40}}) {
+    REQUIRE(t.texcoords.size() == t.positions.size());
+    REQUIRE(t.tangents.size() == t.positions.size());
+    for (std::size_t i = 0; i < t.positions.size(); ++i) {
+      const Vector3f along = t.tangents[i].head<3>();
+      REQUIRE(along.norm() == Approx(1).margin(1e-5));
+      REQUIRE(along.dot(t.normals[i]) == Approx(0).margin(1e-5));
+      REQUIRE(std::abs(t.tangents[i].w()) == 1);
+      REQUIRE(t.texcoords[i].minCoeff() >= 0);
+      REQUIRE(t.texcoords[i].maxCoeff() <= 1);
+    }
+    for (std::size_t i = 0; i < t.indices.size(); i += 3) {
+      // The position as a function of u and v on this triangle: dP = P_u du + P_v dv along two of its edges.
+      const auto uv = [&](std::size_t k) { return t.texcoords[t.indices[i + k]]; };
+      Eigen::Matrix2f d;
+      d << uv(1) - uv(0), uv(2) - uv(0);
+      Eigen::Matrix<float, 3, 2> p;
+      p << corner(t, i + 1) - corner(t, i), corner(t, i + 2) - corner(t, i);
+      REQUIRE(std::abs(d.determinant()) > 1e-7f);
+      const Eigen::Matrix<float, 3, 2> by_uv = p * d.inverse();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector4f tangent = t.tangents[t.indices[i + k]];
+        const Vector3f binormal = tangent.w() * t.normals[t.indices[i + k]].cross(tangent.head<3>());
+        REQUIRE(tangent.head<3>().dot(by_uv.col(0).normalized()) >= std::cos(turn) - 1e-4);
+        // At a pole the binormals of a ring are those of all longitudes.
+        if (p.col(0).norm() > 0) REQUIRE(binormal.dot(by_uv.col(1).normalized()) >= std::cos(1.5 * turn) - 1e-4);
+      }
+    }
+  }
+}

@@ -13,34 +13,26 @@
 namespace tactus::visual {
 namespace {
 
-// Lines of the first piece are numbered from 1 on, those of the second from here, and so on: more than a piece
-// has. The number of the piece itself, #line's second argument, does not survive in all messages of Mesa 22.
-constexpr std::size_t kLinesOfAPiece = 100'000;
+// Lines of piece i are counted from i times this, and the number says which it is: Mesa tells the number of the
+// piece with some of its messages only.
+constexpr std::size_t kLinesOfPiece = 100'000;  // more than what a file of 64 kB has
 
-// Of a shader that does not compile only the errors say why; of messages of another form all stay.
-std::string without_warnings(const std::string& log) {
-  std::string errors;
-  std::istringstream lines(log);
-  for (std::string line; std::getline(lines, line);)
-    if (line.find(": warning:") == std::string::npos) errors += line + "\n";
-  return errors.empty() ? log : errors;
-}
-
-// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": 0 and the line.
+// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": number of the piece
+// and line. Each becomes one clause; warnings are left out, since what is given to a shader sets variables before
+// they are used.
 std::string with_files(const std::string& log, const std::vector<std::string>& names) {
-  static const std::regex position(R"((^|\n)(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
-  std::string text;
-  auto rest = log.cbegin();
-  for (std::sregex_iterator it(log.begin(), log.end(), position), end; it != end; ++it) {
-    const std::size_t line = std::stoul((*it)[2].str().substr(0, 9)), piece = line / kLinesOfAPiece;
-    text.append(rest, (*it)[0].first);
-    text += (*it)[1].str() + (piece < names.size() ? names[piece] : "?") + ":" +
-            std::to_string(line % kLinesOfAPiece) + ":";
-    rest = (*it)[0].second;
+  static const std::regex position(R"(^(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
+  std::string text, line;
+  for (std::istringstream lines(log.c_str()); std::getline(lines, line);) {
+    if (line.empty() || line.find(": warning") != std::string::npos) continue;
+    if (std::smatch found; std::regex_search(line, found, position)) {
+      const auto number = static_cast<std::size_t>(std::stoul(found[1].str().substr(0, 9)));
+      const std::size_t piece = number / kLinesOfPiece;
+      line = (piece < names.size() ? names[piece] : "?") + ":" + std::to_string(number % kLinesOfPiece) + ":" +
+             found.suffix().str();
+    }
+    text += (text.empty() ? "" : "; ") + line;
   }
-  text.append(rest, log.cend());
-  text = without_warnings(text);
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
   return text;
 }
 
@@ -50,7 +42,7 @@ std::string put_together(const std::vector<ShaderPiece>& pieces, const std::stri
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::string piece = pieces[i].text;
     if (const auto version = piece.find("#version"); version != std::string::npos) piece.replace(version, 2, "//");
-    text += "\n#line " + std::to_string(i * kLinesOfAPiece + 1) + "\n" + piece + "\n";
+    text += "\n#line " + std::to_string(i * kLinesOfPiece + 1) + " " + std::to_string(i) + "\n" + piece + "\n";
   }
   return text;
 }

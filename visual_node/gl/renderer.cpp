@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace tactus::visual {
 namespace {
@@ -95,29 +96,40 @@ void Renderer::set_shader_folder(ShaderFolder folder) {
 
 // Drivers compile a program when it first draws, and again for what they first meet in a picture or in the one
 // after it: a software renderer took 0.2 s for the first flash and 0.1 s for the second picture.
-void Renderer::warm_up(DrawList list) {
+void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
   const auto first = static_cast<int>(list.instances.size());
   list.instances.emplace_back();
+  // All kinds of surfaces of the scene are in the list, but those of tools, which nobody holds yet.
   for (auto* batches : {&list.opaque, &list.translucent})
-    for (const int relief : {-1, 0})
-      for (int look = 0; look < surfaces_.looks(); ++look)
-        batches->push_back(
-            {.geometry = 0, .first = first, .count = 1, .casts_shadow = true, .relief = relief, .look = look});
+    batches->push_back({.geometry = 0, .first = first, .count = 1, .casts_shadow = true});
   list.glows.push_back(
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.strokes.push_back({Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
   const Quality before = quality_;
-  // With and without shadows twice; then what is left, which has no programs of its own.
+  const auto draw = [&](const DrawList& picture, const Quality& q) {
+    quality_ = q;
+    draw_scene(picture);
+    draw_over(picture);
+    wait();
+    meanwhile();
+  };
   const Quality &best = kQualities.front(), &last = kQualities.back();
+  // One kind of surface after the other: that of all together takes seconds.
+  for (const bool through : {false, true}) {
+    std::set<std::pair<bool, int>> drawn;
+    for (const Batch& batch : through ? list.translucent : list.opaque) {
+      if (!drawn.emplace(batch.relief >= 0, batch.look).second) continue;
+      DrawList one = list;
+      one.opaque.clear(), one.translucent.clear();
+      (through ? one.translucent : one.opaque).push_back(batch);
+      for (const Quality& q : {best, last}) draw(one, q);
+    }
+  }
+  // With and without shadows twice; then what is left, which has no programs of its own.
   std::vector<Quality> kinds{best, last, best, last, degraded(best, 0.5)};
   kinds.insert(kinds.end(), kQualities.begin() + 1, kQualities.end() - 1);
-  for (const Quality& q : kinds) {
-    quality_ = q;
-    draw_scene(list);
-    draw_over(list);
-    wait();
-  }
+  for (const Quality& q : kinds) draw(list, q);
   quality_ = before;
 }
 
@@ -180,7 +192,8 @@ void Renderer::draw_strokes(const DrawList& list) {
   for (const View& view : views_in(list)) {
     set(view, size);
     stroke_.set("clip_from_world", view.camera.clip_from_world());
-    stroke_.set("size", Eigen::Vector2f(view.width * static_cast<float>(size.first), view.height * static_cast<float>(size.second)));
+    stroke_.set("size", Eigen::Vector2f(view.width * static_cast<float>(size.first),
+                                        view.height * static_cast<float>(size.second)));
     strokes_.draw(list.strokes.data(), list.strokes.size());
   }
   unset(size);
@@ -330,7 +343,19 @@ void Renderer::draw_surface(const Batch& batch, bool translucent) {
   }
   if (look.colour_map >= 0) bind(kColourUnit, colours_[static_cast<std::size_t>(look.colour_map)]->id());
   if (look.normal_map >= 0) bind(kNormalUnit, normals_[static_cast<std::size_t>(look.normal_map)]->id());
-  draw_batch(batch);
+  translucent ? draw_through(batch) : draw_batch(batch);
+}
+
+// What is seen through is seen from the back too: first its far side, then its near one.
+void Renderer::draw_through(const Batch& batch) {
+  const auto at = static_cast<std::size_t>(batch.geometry);
+  if (at >= geometries_.size() || !geometries_[at]->two_sided()) return draw_batch(batch);
+  glEnable(GL_CULL_FACE);
+  for (int i = 0; i < batch.count; ++i)
+    for (const auto unseen : {GL_FRONT, GL_BACK}) {
+      glCullFace(unseen);
+      geometries_[at]->draw(instances_, batch.first + i, 1);
+    }
 }
 
 void Renderer::draw_batch(const Batch& batch) {

@@ -1,6 +1,7 @@
 // Draws a draw list into a picture with OpenGL 3.3. A context must be current in the calling thread.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -30,8 +31,10 @@ class Renderer {
   // One sentence for each thing of the last load or change of shaders that could not be done; asking takes them.
   std::vector<std::string> take_trouble() { return std::exchange(trouble_, {}); }
   // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than
-  // others, whatever the quality. Takes half a second on a software renderer.
-  void warm_up(DrawList list);
+  // others, whatever the quality. A software renderer takes a quarter of a second for each kind of surface that it
+  // meets for the first time; meanwhile: is called every now and then.
+  void warm_up(
+      DrawList list, const std::function<void()>& meanwhile = [] {});
   // How the next pictures are drawn.
   void set_quality(const Quality& quality) { quality_ = quality; }
   // A picture is drawn in two parts, so that what has just become known can still be in it: the surfaces, which
@@ -54,6 +57,7 @@ class Renderer {
   void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
   void draw_sky(const DrawList& list, const Camera& camera);
   void draw_surface(const Batch& batch, bool translucent);
+  void draw_through(const Batch& batch);
   void draw_batch(const Batch& batch);
 
   PictureTarget picture_, small_;  // small_ is drawn into at less than full scale
@@ -75,8 +79,7 @@ class Renderer {
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;
   QuadArray glows_{static_cast<int>(sizeof(Glow) / 16)}, rects_{static_cast<int>(sizeof(Rect) / 16)}, scaled_{2},
-      sky_quad_{1},
-      strokes_{static_cast<int>(sizeof(Stroke) / 16)};
+      sky_quad_{1}, strokes_{static_cast<int>(sizeof(Stroke) / 16)};
 };
 
 }  // namespace tactus::visual

@@ -51,12 +51,14 @@ std::string Stage::recover(sync::HostTime now, const SceneView* view, const Draw
   return why + ": draws on, with " + description();
 }
 
-void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s) {
+void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s,
+                 const std::function<void()>& meanwhile) {
   settings_ = s;
   shaders_ = std::make_unique<ShaderWatch>(s.shader_folder);
   renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size, s.anti_aliasing);
   renderer_->load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-  renderer_->warm_up(sample);
+  meanwhile();
+  renderer_->warm_up(sample, meanwhile);
   quality_ = QualityControl(s);
   rate_.restart();
   loop_rate_Hz_ = s.rate_Hz;

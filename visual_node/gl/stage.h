@@ -37,8 +37,11 @@ class Stage {
   const PictureTarget& picture() const { return renderer_->picture(); }
   QualityControl& quality() { return quality_; }
 
-  // A new scene; sample: a picture of it. Takes several ticks, so that no later picture takes longer than others.
-  void load(const SceneView& view, const DrawList& sample, const Settings& settings);
+  // A new scene; sample: a picture of it. Takes many ticks, so that no later picture takes longer than others;
+  // meanwhile: is called every now and then.
+  void load(
+      const SceneView& view, const DrawList& sample, const Settings& settings,
+      const std::function<void()>& meanwhile = [] {});
   // Whether the tick at `now` shows a new picture, when the output is degraded so.
   bool due(sync::HostTime now, const sync::OutputDef& output) {
     return rate_.due(now, output.frame_rate_Hz, loop_rate_Hz_);

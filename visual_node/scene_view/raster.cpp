@@ -58,7 +58,10 @@ void on_error(j_common_ptr jpeg) {
   std::longjmp(errors->back, 1);
 }
 
-void on_warning(j_common_ptr, int) {}
+// Below 0: bytes that are missing or make no sense, which libjpeg would fill with grey.
+void on_message(j_common_ptr jpeg, int level) {
+  if (level < 0) on_error(jpeg);
+}
 
 Raster read_jpeg(std::span<const std::uint8_t> bytes) {
   Raster r;
@@ -66,7 +69,7 @@ Raster read_jpeg(std::span<const std::uint8_t> bytes) {
   jpeg_decompress_struct jpeg{};
   jpeg.err = jpeg_std_error(&errors);
   errors.error_exit = on_error;
-  errors.emit_message = on_warning;
+  errors.emit_message = on_message;
   // libjpeg reports by a jump over its own frames of C; nothing with a destructor is made in between.
   if (setjmp(errors.back)) {
     jpeg_destroy_decompress(&jpeg);

@@ -94,7 +94,7 @@ void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   part.look.specular = with(v.specular, 0);
   part.look.ambient = with(v.ambient, 0);
   part.look.emissive = with(v.emissive, 0);
-  if (v.look >= 0 && v.look + 1 < static_cast<int>(appearance_.looks.size())) part.style = v.look + 1;
+  if (v.look >= 0 && v.look < static_cast<int>(appearance_.looks.size()) - 1) part.style = v.look + 1;
   known ? check_look(v, part) : mark_missing(v.shape, part);
   parts_.push_back(part);
 }

@@ -95,7 +95,7 @@ Triangles unit_sphere(int segments) { return capsule(1, 0, segments); }
 
 Triangles unit_cylinder(int segments) {
   Triangles t;
-  add_revolution(t, {{0.5f, 0, 1, 0, 0}, {0.5f, 1, 1, 0, 1}}, segments);
+  add_revolution(t, {{0.5f, 0, 1, 0, 1}, {0.5f, 1, 1, 0, 0}}, segments);
   add_revolution(t, {{0.5f, 1, 0, 1, 1}, {-0.5f, 1, 0, 1, 0}}, segments);
   add_revolution(t, {{-0.5f, 1, -1, 0, 1}, {-0.5f, 0, -1, 0, 0}}, segments);
   return t;

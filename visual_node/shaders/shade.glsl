@@ -57,7 +57,8 @@ vec3 lit() {
 // Share of the light that is mirrored (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15).
 float fresnel() {
 #if MIRROR
-  float c = 1.0 - clamp(nv, 0.0, 1.0), cc = c * c;
+  // At the rim of what is made of triangles normals between their corners may look away from the eye: there it is as smooth so.
+  float c = 1.0 - min(abs(nv), 1.0), cc = c * c;
   return reflectance + (1.0 - reflectance) * cc * cc * c;
 #else
   return 0.0;

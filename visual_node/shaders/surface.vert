@@ -20,6 +20,7 @@ layout(location = 12) in vec4 tangent_in;  // w: sign of the binormal
 uniform mat4 clip_from_world;
 uniform mat4 shadow_from_world;  // to texture coordinates of the shadow map, before the division
 uniform vec3 eye;
+uniform float see_through;  // 1: what is behind shows through, 0: it is opaque
 
 out vec3 at;  // m, world
 out vec3 facing;

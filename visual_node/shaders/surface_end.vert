@@ -23,7 +23,9 @@ void main() {
 #ifdef MOVES
   at = moved(at);
 #endif
-  // A little along the normal, so that a surface does not shadow itself.
-  shadow_at = shadow_from_world * vec4(at + 0.008 * facing, 1.0);
+  // A little along the normal, so that a surface does not shadow itself; inside what is seen through, to the inside, or what
+  // it stands on would shadow its bottom.
+  float side = dot(facing, eye - at) < 0.0 ? 1.0 - 2.0 * see_through : 1.0;
+  shadow_at = shadow_from_world * vec4(at + 0.008 * side * facing, 1.0);
   gl_Position = clip_from_world * vec4(at, 1.0);
 }

@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/visual_node/offscreen.h"
+
+using namespace tactus;
+using namespace tactus::test;
+using namespace tactus::visual;
+
+namespace {
+
+// The slanting edge of something that glows white, before black; brightnesses that its pixels have, and what was
+// said.
+std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Quality& quality = {}) {
+  display();
+  scene_t scene = empty_scene();
+  add_visual(scene, add_body(scene, {2, 0, 0}), shape_def_t::BOX, {0.5, 0.5, 0.5});
+  scene.visuals[0].emissive = grey(1);
+  scene.visuals[0].shape.pose = to_pose(Eigen::Isometry3d(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())));
+  const SceneView view(scene, {}, Settings{});
+  Renderer renderer(kWidth, kHeight, 64, samples);
+  renderer.load(view.geometries(), view.lighting());
+  const std::vector<Eigen::Isometry3d> poses{to_eigen(scene.bodies[0].pose)};
+  const Image image = draw(renderer, view.draw(poses, {}), quality);
+  std::set<int> seen;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) seen.insert(static_cast<int>(image.at(x, y).x()));
+  return {seen, renderer.take_trouble()};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "With one sample a pixel an edge is black or white, with four it has the greys between, in linear light") {
+  CHECK(levels(1).first == std::set<int>{0, 255});
+  const auto [seen, said] = levels(4);
+  if (!said.empty()) return;  // a device that has not so many says so
+  CHECK(seen.size() == 5);
+  // Each sample is a quarter of the light.
+  for (const int level : seen) {
+    double nearest = 255;
+    for (int quarter = 0; quarter <= 4; ++quarter)
+      nearest = std::min(nearest, std::abs(level - srgb(quarter / 4.0)));
+    CHECK(nearest <= kTolerance);
+  }
+}
+
+TEST_CASE("More samples than the device has are said, and as many as there are are drawn") {
+  const auto [seen, said] = levels(64);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("anti_aliasing=64"));
+  CHECK(seen.size() > 2);
+}
+
+TEST_CASE("Smooth edges stay when the picture is drawn smaller and scaled up") {
+  for (const Quality& q : kQualities) {
+    const auto [seen, said] = levels(4, q);
+    CHECK(*seen.rbegin() == 255);
+    CHECK(*seen.begin() == 0);
+    CHECK(seen.size() > 2);
+  }
+}

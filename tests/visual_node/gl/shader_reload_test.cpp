@@ -1,0 +1,201 @@
+// Shaders of a scene and of a folder, in pictures: what does not compile never takes a picture away.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "tests/visual_node/offscreen.h"
+#include "visual_node/gl/shader_watch.h"
+
+using namespace tactus;
+using namespace tactus::test;
+using namespace tactus::visual;
+using Eigen::Vector3d;
+
+namespace {
+
+// A floor that the shader `name` draws, and whatever passes there are.
+struct Stand {
+  scene_t scene = floor_from_above(4);
+  SceneView view;
+  Renderer renderer{kWidth, kHeight, 64};
+  explicit Stand(const std::string& shader, const ShaderText& own = {},
+                 const std::vector<std::string>& passes = {})
+      : view(with(shader), {}, Settings{}) {
+    Appearance appearance = view.appearance();
+    if (!own.name.empty()) appearance.shaders.push_back(own);
+    for (const std::string& p : passes) appearance.passes.emplace_back().shader = p;
+    renderer.load(view.geometries(), view.lighting(), {}, appearance);
+  }
+  const scene_t& with(const std::string& shader) {
+    display();
+    scene.lights = {spot({0, 0, 2}, 1.4, 1.5)};
+    scene.visuals[0].diffuse = to_vec3f({0.8, 0.4, 0.2});
+    look_t look{};
+    look.name = "worn", look.shader = shader;
+    scene.looks = {look};
+    scene.visuals[0].look = 0;
+    return scene;
+  }
+  Image draw() {
+    const std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
+    return test::draw(renderer, view.draw(poses, {}));
+  }
+  Vector3d middle() { return draw().at(kWidth / 2, kHeight / 2); }
+};
+
+std::string plain(const std::string& colour) {
+  return "// A colour.\nvec4 shade() {\n  return vec4(" + colour + ", 1.0);\n}\n";
+}
+const Vector3d kRed(255, 0, 0), kGreen(0, 255, 0), kBlue(0, 0, 255);
+ShaderText own(const std::string& fragment, const std::string& vertex = "") {
+  return {.name = "mine",
+          .fragment = fragment,
+          .vertex = vertex,
+          .fragment_file = "shaders/mine.frag",
+          .vertex_file = vertex.empty() ? "" : "shaders/mine.vert"};
+}
+const std::string kBroken = "// A colour.\nvec4 shade() {\n  return nothing;\n}\n";
+
+}  // namespace
+
+TEST_CASE("A shader of the scene draws its surface, and what is edited is seen in the next picture") {
+  Stand stand("mine", own(plain("1, 0, 0")));
+  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.middle() == kRed);
+  stand.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
+  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.middle() == kGreen);
+
+  SECTION("one that does not compile is said with file and line, and the last good one stays") {
+    stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
+    const auto said = stand.renderer.take_trouble();
+    REQUIRE(said.size() == 1);
+    CHECK_THAT(said[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
+                            Catch::Contains("the one before stays"));
+    CHECK(stand.middle() == kGreen);
+    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK(stand.renderer.take_trouble().empty());
+    CHECK(stand.middle() == kBlue);
+  }
+  SECTION("without its file the scene's is there again") {
+    stand.renderer.set_shader_folder({});
+    CHECK(stand.middle() == kRed);
+  }
+}
+
+TEST_CASE("A text of each kind of nonsense is said in one sentence and takes no picture away") {
+  const std::string nonsense = GENERATE(as<std::string>{}, "", "\0\xff\xfe", "#error no", "void main() {}",
+                                        "vec4 shade() { return vec4(1) }", "vec4 other() { return vec4(1); }",
+                                        "#version 450 core\nvec4 shade() { return vec4(1) + x; }",
+                                        "#extension GL_nowhere : require\nvec4 shade() { return vec4(1); }");
+  Stand stand("mine", own(plain("1, 0, 0")));
+  stand.renderer.set_shader_folder({{"mine.frag", nonsense}});
+  CHECK(stand.renderer.take_trouble().size() == 1);
+  CHECK(stand.middle() == kRed);
+}
+
+TEST_CASE("A shader that nobody has and one that never compiled are drawn as Phong's, and said once") {
+  Stand phong("phong");
+  const Image expected = phong.draw();
+  Stand unknown("nowhere");
+  auto said = unknown.renderer.take_trouble();
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
+                          Catch::Contains("phong is drawn instead"));
+  CHECK(unknown.draw().rgba == expected.rgba);
+  Stand broken("mine", own(kBroken));
+  said = broken.renderer.take_trouble();
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
+  CHECK(broken.draw().rgba == expected.rgba);
+  // Of which no clause is about another file, and none over two lines.
+  CHECK_THAT(said[0], !Catch::Contains("surface.glsl") && !Catch::Contains("warning") && !Catch::Contains("\n"));
+  // It may be mended while it is drawn.
+  broken.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+  CHECK(broken.renderer.take_trouble().empty());
+  CHECK(broken.middle() == kBlue);
+}
+
+TEST_CASE("A shader of the node can be edited too, down to its lamps") {
+  Stand stand("phong");
+  const Vector3d before = stand.middle();
+  stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
+  CHECK(stand.middle() == kGreen);
+  stand.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
+  CHECK_THAT(stand.renderer.take_trouble().front(), Catch::Contains("lamps.glsl:1"));
+  CHECK(stand.middle() == kGreen);
+  stand.renderer.set_shader_folder({});
+  CHECK(stand.middle() == before);
+}
+
+TEST_CASE("A shader moves the surface that it is worn by") {
+  // Up by 2 m: seen from 4 m, the floor is twice as large.
+  Stand raised("mine", own(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
+  CHECK(raised.renderer.take_trouble().empty());
+  // The floor ended 5 m to the left, at +y; what is seen is 2.2 m to each side. Moved by 3 m its right edge is 2 m
+  // to the right.
+  const Image image = raised.draw();
+  CHECK(image.at(kWidth / 2, kHeight / 2) == kGreen);
+  CHECK(image.at(kWidth / 2 + static_cast<int>(1.95 * scale_px(4)), kHeight / 2) == kGreen);
+  CHECK(image.at(kWidth / 2 + static_cast<int>(2.05 * scale_px(4)), kHeight / 2) == Vector3d::Zero());
+  raised.renderer.set_shader_folder({{"mine.vert", "vec3 moved(vec3 at) { return at }"}});
+  CHECK_THAT(raised.renderer.take_trouble().front(), Catch::Contains("mine.vert:1"));
+}
+
+TEST_CASE("A pass that does not compile stays as it was, and one that nobody has is left out") {
+  Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
+  const auto said = stand.renderer.take_trouble();
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
+  CHECK(stand.middle() == kBlue);
+  stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
+  CHECK_THAT(stand.renderer.take_trouble().front(),
+             Catch::Contains("mine.frag:3") && Catch::Contains("the one before stays"));
+  CHECK(stand.middle() == kBlue);
+  stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
+  CHECK(stand.middle() == kRed);
+}
+
+TEST_CASE("Of a folder shaders alone are read, and not what is too long; one that is not there is empty") {
+  const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_folder_test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "folder.frag");
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("a.frag", "a"), write("b.vert", "b"), write("c.glsl", "c"), write("d.txt", "d"),
+      write("e.frag", std::string(65537, 'e'));
+  const ShaderFolder files = read_shader_folder(folder);
+  CHECK(files == ShaderFolder{{"a.frag", "a"}, {"b.vert", "b"}, {"c.glsl", "c"}});
+  for (int i = 0; i < 100; ++i) write("n" + std::to_string(i) + ".frag", "n");
+  CHECK(read_shader_folder(folder).size() <= 64);
+  CHECK(read_shader_folder(folder / "nowhere").empty());
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("A folder is watched: what is in it is told once, and again when it changes") {
+  const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_watch_test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.frag") << "one";
+  ShaderWatch watch(folder);
+  const auto next = [&] {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // nothing here is about time
+    while (std::chrono::steady_clock::now() < until) {
+      if (auto files = watch.take()) return *files;
+      std::this_thread::yield();
+    }
+    return ShaderFolder{};
+  };
+  CHECK(next() == ShaderFolder{{"a.frag", "one"}});
+  CHECK_FALSE(watch.take());
+  std::ofstream(folder / "a.frag") << "two";
+  // An editor may write in two steps.
+  ShaderFolder seen = next();
+  while (!seen.empty() && seen.begin()->second != "two") seen = next();
+  CHECK(seen == ShaderFolder{{"a.frag", "two"}});
+  CHECK_FALSE(ShaderWatch("").take());
+  std::filesystem::remove_all(folder);
+}
