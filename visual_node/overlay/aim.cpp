@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "lcmtypes/vectors.h"
 
@@ -28,6 +29,17 @@ float distance(const Ray& ray, const Eigen::Vector3f& a, const Eigen::Vector3f& 
   if (v < 0 || u + v > 1) return kNever;
   const float t = ac.dot(q);
   return t > 0 ? t : kNever;
+}
+
+// Around the origin of its frame.
+float radius_of(const Triangles& t) {
+  float squared = 0;
+  for (const Eigen::Vector3f& p : t.positions) squared = std::max(squared, p.squaredNorm());
+  return std::sqrt(squared);
+}
+
+bool misses(const Ray& ray, float radius) {
+  return ray.from.cross(ray.along).squaredNorm() > radius * radius * ray.along.squaredNorm();
 }
 
 // In the frame of the shape, where distances along the ray are the same number of times `along`.
@@ -61,11 +73,15 @@ std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Tria
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;
   float nearest = std::numeric_limits<float>::infinity();
+  std::map<int, float> radii;  // of geometries that were met: of thousands of balls most are passed by
   for (const Batch& batch : list.opaque) {
     if (batch.geometry < 0 || static_cast<std::size_t>(batch.geometry) >= geometries.size()) continue;
     const Triangles& t = geometries[static_cast<std::size_t>(batch.geometry)];
+    const auto [radius, fresh] = radii.try_emplace(batch.geometry, 0.0f);
+    if (fresh) radius->second = radius_of(t);
     for (int i = batch.first; i < batch.first + batch.count; ++i) {
       const Ray own = in_shape(*ray, list.instances[static_cast<std::size_t>(i)]);
+      if (misses(own, radius->second)) continue;
       for (std::size_t k = 0; k + 2 < t.indices.size(); k += 3)
         nearest = std::min(nearest, distance(own, t.positions[t.indices[k]], t.positions[t.indices[k + 1]],
                                              t.positions[t.indices[k + 2]]));

@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kMostHeard = 256;
 // The first line is below the word that says how good the frame is.
 constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
-constexpr int kMarkers_px = (kMarkerRows + kMotionRows) * kMarkerCell_px;
 
 }  // namespace
 
@@ -34,6 +33,10 @@ std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
   } catch (const std::invalid_argument& e) {
     trouble.emplace_back(e.what());
   }
+  const int rows = settings.motion_marker == "strip"  ? kMarkerRows + kMotionRows
+                   : settings.event_marker == "strip" ? kMarkerRows
+                                                      : 0;
+  markers_px_ = rows * kMarkerCell_px;
   force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
   plots_ = Plots(parse_plots(settings.plots, trouble), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);
@@ -120,11 +123,11 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   facts.visual_bodies = groups_.visual();
   if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.how, now);
   // What a program reads at the lower edge is drawn over by nothing.
-  const float bottom = static_cast<float>(picture_height - kMarkers_px);
+  const float bottom = static_cast<float>(picture_height - markers_px_);
   float right = static_cast<float>(picture_width);
   if (on_.on(Overlay::kPlots) && !plots_.empty()) {
     right = plots_left(picture_width);
-    plots_.append(frame.list.overlay, now, picture_width, picture_height - kMarkers_px);
+    plots_.append(frame.list.overlay, now, picture_width, picture_height - markers_px_);
   }
   append_lines(frame.list.overlay, panel_lines(on_, facts), {kPanelAt_px, kPanelBelow_px, right, bottom},
                text_size(picture_height));

@@ -58,8 +58,8 @@ class LiveOverlays {
   sync::Bus& bus_;
   OverlaySet on_;
   float force_scale_m_N_ = 0;
+  int markers_px_ = 0;  // of the lower edge, where programs read
   Plots plots_{{}, sync::Nanoseconds(1)};
-  std::string plots_text_;
   std::map<std::string, sync::RawQueue*>
       heard_;  // by channel; once heard, a queue stays with the bus, wanted or not
   sync::ContactStream contacts_;

@@ -56,7 +56,10 @@ void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
                          f.physics.realtime_factor()));
   else
     lines.push_back("physics   not heard of");
-  lines.push_back(text("rendering %.1f of %.1f ms", ms(f.rendering), ms(f.period)));
+  // From a log a frame takes no time.
+  lines.push_back(f.rendering > sync::Nanoseconds(0)
+                      ? text("rendering %.1f of %.1f ms", ms(f.rendering), ms(f.period))
+                      : "rendering not measured");
 }
 
 void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {

@@ -144,7 +144,8 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   const double least = range->first, most = range->second;
   // A course that does not change is a line in the middle.
   const auto place = [&](double v) {
-    const double share = most > least ? (v - least) / (most - least) : 0.5;
+    // Halves: the whole difference of two of the largest numbers is none.
+    const double share = most > least ? (v / 2 - least / 2) / (most / 2 - least / 2) : 0.5;
     return bottom - static_cast<float>(share) * (height - 1);
   };
   const std::int64_t last = course.number(now);
@@ -156,7 +157,7 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
     const double low = first ? s.lowest : std::min(s.lowest, before),
                  high = first ? s.highest : std::max(s.highest, before);
     first = false;
-    before = (s.lowest + s.highest) / 2;
+    before = s.lowest / 2 + s.highest / 2;
     const float x = left + column * static_cast<float>(Course::kColumns - 1 - (last - s.number));
     fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, kLine);
   }
@@ -167,12 +168,13 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
 void append_bar(std::vector<Rect>& out, const Box& b, double value, const Course& course, sync::HostTime now,
                 float y) {
   const auto range = course.range(now);
-  if (!range) return;
+  if (!range || !std::isfinite(value)) return;
   const double least = std::min(0.0, range->first), most = std::max(0.0, range->second);
   const float left = b.x + kPad_px, width = b.width - 2 * kPad_px, height = b.line() * 0.8f;
   const auto place = [&](double v) {
-    return left +
-           static_cast<float>(most > least ? (std::clamp(v, least, most) - least) / (most - least) : 0) * width;
+    return left + static_cast<float>(
+                      most > least ? (std::clamp(v, least, most) / 2 - least / 2) / (most / 2 - least / 2) : 0) *
+                      width;
   };
   fill(out, left, y, width, height, kLabel, 0.25f);
   const float from = std::min(place(0), place(value)), to = std::max(place(0), place(value));

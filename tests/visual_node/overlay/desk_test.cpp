@@ -60,6 +60,30 @@ TEST_CASE("The mouse points at what is seen under it") {
   CHECK_FALSE(room.hit(std::nanf(""), 0.5f));
 }
 
+TEST_CASE("A ball of any size anywhere is hit up to its edge, and the floor beside it") {
+  for (const double radius_m : {0.01, 0.03, 0.08})
+    for (const double y_m : {-0.6, 0.0, 0.3}) {
+      CAPTURE(radius_m, y_m);
+      SmallRoom room;
+      const int kind = shape_def_t::SPHERE;
+      add_visual(room.scene, add_body(room.scene, {0.5, y_m, radius_m}), kind, {radius_m, 0, 0});
+      // Straight above it, m from its middle along the picture's vertical: at distance d of the plane through its
+      // middle a pixel row is where the tangent of the field of view says; the picture is 640 x 480.
+      const auto hit_beside = [&](double up_m) {
+        const double depth_m = 2 - radius_m, scale = 1 / (2 * depth_m * std::tan(0.5));
+        return room.hit(static_cast<float>(0.5 - y_m * scale),
+                        static_cast<float>(0.5 - (0.5 + up_m) * scale * 640 / 480));
+      };
+      const Eigen::Vector3f middle(0.5f, static_cast<float>(y_m), static_cast<float>(radius_m));
+      const auto on = hit_beside(0.9 * radius_m), beside = hit_beside(1.5 * radius_m);
+      REQUIRE(on);
+      REQUIRE(beside);
+      // Twelve segments around and from pole to pole: within 1 - cos(pi / 12)^2 = 6.7 % of its radius.
+      CHECK((*on - middle).norm() == Approx(radius_m).epsilon(0.067));
+      CHECK(std::abs(beside->z()) < 1e-3f);
+    }
+}
+
 TEST_CASE("In a picture for two eyes it points within the half that it is in") {
   const SmallRoom room;
   for (const float x : {0.25f, 0.75f}) {

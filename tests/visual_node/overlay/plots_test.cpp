@@ -157,3 +157,33 @@ TEST_CASE("A bar has its value below it, and text that is empty is not taken for
   CHECK(pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", sync::encode(health))) !=
         pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
 }
+
+TEST_CASE("Values that are none, and those at the ends of what a number holds, are drawn within their plot") {
+  std::vector<std::string> trouble;
+  const double values[] = {1,
+                           -1e308,
+                           1e308,
+                           std::numeric_limits<double>::infinity(),
+                           2,
+                           -1e-308,
+                           std::numeric_limits<double>::quiet_NaN()};
+  for (const char* kind : {"graph", "bar", "text"})
+    for (std::size_t count = 1; count <= std::size(values); ++count) {
+      CAPTURE(kind, count);
+      Plots plots(parse_plots(std::string(kind) + " NODE_HEALTH.rate_Hz", trouble), kSpan);
+      for (std::size_t i = 0; i < count; ++i) {
+        node_health_t m{};
+        m.node = "sim_node";
+        m.rate_Hz = values[i];
+        plots.push("NODE_HEALTH", sync::encode(m), at_ms(1000 + 20 * static_cast<std::int64_t>(i)));
+      }
+      std::vector<Rect> overlay;
+      plots.append(overlay, at_ms(1200), 640, 480);
+      REQUIRE(!overlay.empty());
+      const Rect& plate = overlay.front();
+      for (const Rect& r : overlay) {
+        CHECK((r.x >= plate.x && r.x + r.width <= plate.x + plate.width));
+        CHECK((r.y >= plate.y - 1 && r.y + r.height <= plate.y + plate.height));
+      }
+    }
+}

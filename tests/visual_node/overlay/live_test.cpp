@@ -1,0 +1,102 @@
+// All overlays together, on a bus within this process.
+#include "visual_node/overlay/live.h"
+
+#include <catch2/catch.hpp>
+
+#include "visual_node/frame/marker.h"
+
+using namespace tactus;
+using namespace tactus::visual;
+
+namespace {
+
+sync::BusOptions memory() {
+  sync::BusOptions options;
+  options.memory = true;
+  return options;
+}
+
+sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
+
+struct Laid {
+  sync::Bus bus{sync::Identity::fresh("visual_node", 7), memory()};
+  LiveOverlays overlays{bus};
+
+  std::vector<std::string> configure(const std::string& overlay, const std::string& plots = "") {
+    Settings s;
+    s.overlay = overlay, s.plots = plots;
+    return overlays.configure(s);
+  }
+  // A force on the hand is told, then a frame is drawn over.
+  std::vector<Rect> drawn(int width, int height) {
+    tool_state_t m{};
+    m.device.orientation.w = m.proxy.orientation.w = 1;
+    m.force_N.z = 3;
+    bus.publish(channels::kToolState, m);
+    bus.drain(at_ms(1000));
+    Frame frame;
+    overlays.append(frame, {}, at_ms(1001), width, height);
+    return frame.list.overlay;
+  }
+};
+
+bool meet(const Rect& a, const Rect& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+}  // namespace
+
+TEST_CASE("Whatever is laid over a picture, plates lie beside one another and the marker stays free") {
+  Laid c;
+  REQUIRE(c.configure("all,help",
+                      "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
+                      "graph TOOL_STATE.energy_J; graph TOOL_STATE.coupling; graph TOOL_STATE.seq_no")
+              .size() == 1);
+  for (const auto& [width, height] : {std::pair(320, 240), std::pair(640, 480), std::pair(960, 540),
+                                      std::pair(1920, 1080), std::pair(4096, 240)}) {
+    CAPTURE(width, height);
+    const auto rects = c.drawn(width, height);
+    std::vector<Rect> plates;
+    for (const Rect& r : rects)
+      if (r.red + r.green + r.blue == 0) plates.push_back(r);
+    CHECK(plates.size() >= 2);
+    for (std::size_t i = 0; i < plates.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(meet(plates[i], plates[k]));
+    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+    const Rect marker{0, h - kMarkerRows * kMarkerCell_px, w, kMarkerRows * kMarkerCell_px};
+    for (const Rect& r : rects) {
+      // Of what is written no pixel leaves the picture, or what it is written on.
+      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !meet(r, marker)));
+      CHECK(std::any_of(plates.begin(), plates.end(), [&](const Rect& p) {
+        return r.x >= p.x && r.y >= p.y && r.x + r.width <= p.x + p.width && r.y + r.height <= p.y + p.height;
+      }));
+    }
+  }
+}
+
+TEST_CASE("What is off is not heard, and what is switched on by a key is") {
+  Laid c;
+  CHECK(c.configure("none").empty());
+  CHECK(c.bus.inboxes().empty());
+  CHECK(c.drawn(640, 480).empty());
+  c.overlays.toggle(Overlay::kReport);
+  CHECK(c.bus.inboxes().size() == 2);  // CONTACTS, NODE_HEALTH
+  CHECK_FALSE(c.drawn(640, 480).empty());
+  c.overlays.toggle(Overlay::kReport);
+  CHECK(c.drawn(640, 480).empty());
+  // A plot that is asked for is shown, whatever the overlays are.
+  CHECK(c.configure("none", "text TOOL_STATE.force_N.z").empty());
+  CHECK(c.overlays.on().on(Overlay::kPlots));
+  CHECK_FALSE(c.drawn(640, 480).empty());
+}
+
+TEST_CASE("A change that cannot be is refused before anything has changed") {
+  Settings s;
+  s.overlay = "report,plot";
+  CHECK_THROWS_WITH(LiveOverlays::check(s), Catch::Contains("\"plot\"") && Catch::Contains("plots"));
+  s.overlay = "report";
+  s.plots = "graph TOOL_STATE.force_N.z; graph TOOL_STATE.force_M.z";
+  CHECK_THROWS_WITH(LiveOverlays::check(s), Catch::Contains("force_N"));
+  s.plots = "graph TOOL_STATE.force_N.z";
+  CHECK_NOTHROW(LiveOverlays::check(s));
+}
