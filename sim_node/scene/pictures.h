@@ -9,8 +9,8 @@ namespace tactus::sim {
 
 enum class PictureUse { kColour, kDirections };
 
-// Of each side; a GPU of today holds twice that, and a picture of that size is 256 MiB there (design).
-constexpr int kMaxPictureSide = 8192;
+// Of each side, as visual_node takes them: 64 MiB there (design).
+constexpr int kMaxPictureSide = 4096;
 
 // Throws std::runtime_error with one clause when the bytes are no whole PNG, or where colour is meant JPEG, of 1
 // to kMaxPictureSide pixels a side. The pixels themselves are for the renderer to read.
