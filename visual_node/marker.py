@@ -71,18 +71,20 @@ def decode_motion(frame):
     return samples
 
 
-def main():
-    path = sys.argv[1]
+def frames_of(path):
+    """Its frames one after the other, luma (rows from the top), as ffmpeg decodes them."""
     size = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v", "-show_entries", "stream=width,height",
                            "-of", "csv=p=0", path], check=True, capture_output=True, text=True).stdout
     width, height = (int(x) for x in size.strip().split(",")[:2])
     stream = subprocess.Popen(["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "gray", "-"],
                               stdout=subprocess.PIPE)
-    index = 0
     while len(raw := stream.stdout.read(width * height)) == width * height:
-        frame = np.frombuffer(raw, np.uint8).reshape(height, width)
+        yield np.frombuffer(raw, np.uint8).reshape(height, width)
+
+
+def main():
+    for index, frame in enumerate(frames_of(sys.argv[1])):
         print(index, frame_number(frame), *(f"{event:08x}" for event in decode_frame(frame)))
-        index += 1
 
 
 if __name__ == "__main__":
