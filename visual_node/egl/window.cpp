@@ -1,4 +1,6 @@
 #include <dlfcn.h>
+#include <poll.h>
+
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -58,7 +60,7 @@ class Window : public Display {
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
-    if (lost_) return;
+    if (lost_ || (lost_ = server_hung_up())) return;
     int window_width = 0, window_height = 0;
     glfwGetFramebufferSize(window_, &window_width, &window_height);
     // What is iconified or has no size shows nothing; a desktop may let its swap wait until it is seen again.
@@ -179,6 +181,9 @@ class Window : public Display {
     void* display = set_error && set_exit ? glfwGetX11Display() : nullptr;
     if (!display) return;
     x11_window_ = glfwGetX11Window(window_);
+    using Number = int (*)(void*);
+    if (const auto number = reinterpret_cast<Number>(dlsym(library, "XConnectionNumber")))
+      connection_ = number(display);
     set_error([](void*) { return 0; });
     // Likewise an error of a window that another program has destroyed.
     const auto set_protocol = reinterpret_cast<SetProtocol>(dlsym(library, "XSetErrorHandler"));
@@ -189,6 +194,13 @@ class Window : public Display {
       });
     set_exit(
         display, [](void*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
+  }
+
+  // Asked before every swap: Mesa's never ends once the connection is known to be broken.
+  bool server_hung_up() const {
+    if (connection_ < 0) return false;
+    pollfd fd{connection_, 0, 0};
+    return ::poll(&fd, 1, 0) > 0 && (fd.revents & (POLLHUP | POLLERR | POLLNVAL));
   }
 
   [[noreturn]] static void refuse() {
@@ -203,6 +215,7 @@ class Window : public Display {
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;
   bool quad_ = false, lost_ = false;
+  int connection_ = -1;                        // to the X server
   unsigned long x11_window_ = 0;               // 0: another desktop
   static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
