@@ -103,7 +103,8 @@ int main(int argc, char** argv) try {
     for (const std::string& wrong : sync::apply_settings(settings, visual::setting_fields(), "visual_node", scene.settings, set))
       throw std::runtime_error(wrong);
     const visual::SceneView view(scene, visual::meshes_of(scenes), settings,
-                                 visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said));
+                                 visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said),
+                                 visual::look_files_of(scenes, said));
     if (!view.lens().trouble().empty()) throw std::runtime_error(view.lens().trouble());
     visual::Renderer renderer(edge, edge, settings.shadow_size);
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "visual_node/gl/uniforms.h"
+
 namespace tactus::visual {
 
 ScreenPasses::ScreenPasses(const ShaderLibrary& library, const std::vector<pass_t>& passes, int width, int height,
@@ -29,6 +31,8 @@ void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& 
       programs_[i] = std::make_unique<Program>(
           std::vector{library.own("pass.vert")},
           std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
+      for (const std::string& said : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
+        trouble.push_back("pass " + passes_[i].shader + ": " + said);
     } catch (const std::exception& e) {
       trouble.push_back("pass " + passes_[i].shader + ": " + e.what() +
                         (programs_[i] ? "; the one before stays" : "; it is left out"));

@@ -2,8 +2,20 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
+
+#include "visual_node/gl/uniforms.h"
 
 namespace tactus::visual {
+namespace {
+
+// Scenes call those that have no name "look 6".
+std::string called(const Look& look) {
+  if (look.name.empty()) return "";
+  return (look.name.starts_with("look ") ? "" : "look ") + look.name + ": ";
+}
+
+}  // namespace
 
 SurfacePrograms::SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks,
                                  const Lighting& lighting, bool reliefs, std::vector<std::string>& trouble)
@@ -27,10 +39,12 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
           if ((!relief || reliefs_) && (!shadows || lighting_.shadow_light >= 0))
             fresh[index(0, relief, shadows)] =
                 surface_program(library, looks_[i], relief, shadows ? lighting_ : plain);
+      for (const std::string& said : misfits(library, looks_[i].shader, *fresh.front(), looks_[i].uniforms))
+        trouble.push_back(called(looks_[i]) + said);
       for (std::size_t k = 0; k < fresh.size(); ++k) made_[4 * i + k] = std::move(fresh[k]);
     } catch (const std::exception& e) {
       const bool before = made_[index(i, false, false)] != nullptr;
-      trouble.push_back((looks_[i].name.empty() ? "" : looks_[i].name + ": ") + std::string(e.what()) +
+      trouble.push_back(called(looks_[i]) + e.what() +
                         (before ? "; the one before stays" : "; phong is drawn instead"));
     }
 }

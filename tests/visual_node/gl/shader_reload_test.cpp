@@ -21,9 +21,10 @@ struct Stand {
   SceneView view;
   Renderer renderer{kWidth, kHeight, 64};
   explicit Stand(const std::string& shader, const ShaderText& own = {},
-                 const std::vector<std::string>& passes = {})
+                 const std::vector<std::string>& passes = {}, const std::vector<uniform_t>& uniforms = {})
       : view(with(shader), {}, Settings{}) {
     Appearance appearance = view.appearance();
+    appearance.looks[1].uniforms = uniforms;
     if (!own.name.empty()) appearance.shaders.push_back(own);
     for (const std::string& p : passes) appearance.passes.emplace_back().shader = p;
     renderer.load(view.geometries(), view.lighting(), {}, appearance);
@@ -156,6 +157,31 @@ TEST_CASE("A pass that does not compile stays as it was, and one that nobody has
   CHECK(stand.middle() == kBlue);
   stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
   CHECK(stand.middle() == kRed);
+}
+
+TEST_CASE("Numbers that a shader is given by name are seen; one that it does not take is said") {
+  uniform_t tint{};
+  tint.name = "tint", tint.count = 3, tint.values[1] = 1;
+  const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
+  Stand stand("mine", own(tinted), {}, {tint});
+  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.middle() == kGreen);
+  SECTION("because it has another form") {
+    stand.renderer.set_shader_folder(
+        {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
+    CHECK_THAT(stand.renderer.take_trouble().at(0),
+               Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
+    CHECK(stand.middle() == kBlue);
+  }
+  SECTION("because it has another name") {
+    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK_THAT(stand.renderer.take_trouble().at(0), Catch::Contains("has no uniform tint"));
+    CHECK(stand.middle() == kBlue);
+  }
+  SECTION("but not when it merely makes no difference") {
+    stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
+    CHECK(stand.renderer.take_trouble().empty());
+  }
 }
 
 TEST_CASE("Of a folder shaders alone are read, and not what is too long; one that is not there is empty") {

@@ -182,7 +182,8 @@ TEST_CASE("Whatever is drawn wrongly differs from them visibly") {
                         for (visual_def_t& v : s.visuals) v.shininess *= 0.7f;
                       }});
   mistakes.push_back({"gouraud", "shaded by Phong", [](scene_t& s) {
-                        for (look_t& l : s.looks) l.shader = "phong";
+                        for (look_t& l : s.looks)
+                          if (l.shader == "gouraud") l.shader = "phong";
                       }});
   mistakes.push_back({"blur", "no pass", [](scene_t& s) { s.passes.clear(); }});
   for (const Mistake& m : mistakes) {

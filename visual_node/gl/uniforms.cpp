@@ -1,0 +1,43 @@
+#include "visual_node/gl/uniforms.h"
+
+#include <epoxy/gl.h>
+
+#include <array>
+
+namespace tactus::visual {
+namespace {
+
+constexpr std::array<unsigned, 4> kTypes{GL_FLOAT, GL_FLOAT_VEC2, GL_FLOAT_VEC3, GL_FLOAT_VEC4};
+constexpr std::array<const char*, 4> kNames{"a float", "a vec2", "a vec3", "a vec4"};
+
+}  // namespace
+
+std::vector<std::string> misfits(const ShaderLibrary& library, const std::string& shader, const Program& program,
+                                 const std::vector<uniform_t>& uniforms) {
+  std::vector<std::string> said;
+  const auto fragment = library.fragment(shader), vertex = library.vertex(shader);
+  for (const uniform_t& u : uniforms) {
+    if (u.count < 1 || u.count > 4) continue;  // refused where messages come in
+    const char* name = u.name.c_str();
+    unsigned index = GL_INVALID_INDEX;
+    glGetUniformIndices(program.id(), 1, &name, &index);
+    if (index == GL_INVALID_INDEX) {
+      // The compiler removes what has no effect.
+      if ((fragment && fragment->text.find(u.name) != std::string::npos) ||
+          (vertex && vertex->text.find(u.name) != std::string::npos))
+        continue;
+      said.push_back("shader " + shader + " has no uniform " + u.name + "; it is left aside");
+      continue;
+    }
+    int type = 0;
+    glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_TYPE, &type);
+    const auto given = static_cast<std::size_t>(u.count - 1);
+    if (static_cast<unsigned>(type) != kTypes[given])
+      said.push_back("uniform " + u.name + " of shader " + shader + " is not " + kNames[given] + ", and " +
+                     std::to_string(u.count) + (u.count == 1 ? " number is" : " numbers are") +
+                     " given; it is left aside");
+  }
+  return said;
+}
+
+}  // namespace tactus::visual
