@@ -251,3 +251,15 @@ TEST_CASE(
   }
   CHECK(c.others_live());
 }
+
+TEST_CASE("A display server that stands still ends the node in a sentence, and nobody else notices") {
+  Desktop c;
+  c.start_window();
+  const auto before = c.rates(1);
+  c.processes.signal("Xvfb", SIGSTOP);
+  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
+  CHECK_THAT(c.processes.said("visual_node"),
+             Catch::Contains("the display server does not answer: the node ends"));
+  CHECK(c.others_live());
+  c.check_rates_hold(before, 1, "visual_node");
+}

@@ -1,4 +1,6 @@
 #include <dlfcn.h>
+#include <poll.h>
+
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -6,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "visual_node/egl/call_guard.h"
 #include "visual_node/egl/context_loss.h"
 #include "visual_node/egl/display.h"
 
@@ -58,7 +61,43 @@ class Window : public Display {
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
+    if (!lost_ && !(lost_ = server_hung_up())) guard_.during([&] { put(framebuffer, width, height, halves); });
+  }
+  bool closed() override {
+    return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
+  }
+  std::string lost() override {
+    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
+  }
+  bool server_gone() override { return lost_; }
+  bool has_screen() const override { return true; }
+
+  Inputs take_inputs() override {
+    Inputs inputs;
+    guard_.during([&] { inputs = inputs_now(); });
+    return inputs;
+  }
+
+  void toggle_full_screen() override {
     if (lost_) return;
+    if (glfwGetWindowMonitor(window_)) {
+      glfwSetWindowMonitor(window_, nullptr, windowed_x_, windowed_y_, windowed_width_, windowed_height_,
+                           GLFW_DONT_CARE);
+      return;
+    }
+    const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
+    if (!mode) {
+      trouble_ = "no monitor is known: the window stays as it is";
+      return;
+    }
+    glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
+    glfwGetWindowSize(window_, &windowed_width_, &windowed_height_);
+    glfwSetWindowMonitor(window_, monitor_, 0, 0, mode->width, mode->height, mode->refreshRate);
+    glfwSwapInterval(0);
+  }
+
+ private:
+  void put(unsigned framebuffer, int width, int height, bool halves) {
     int window_width = 0, window_height = 0;
     glfwGetFramebufferSize(window_, &window_width, &window_height);
     // What is iconified or has no size shows nothing; a desktop may let its swap wait until it is seen again.
@@ -83,16 +122,8 @@ class Window : public Display {
     }
     glfwPollEvents();
   }
-  bool closed() override {
-    return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
-  }
-  std::string lost() override {
-    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
-  }
-  bool server_gone() override { return lost_; }
-  bool has_screen() const override { return true; }
 
-  Inputs take_inputs() override {
+  Inputs inputs_now() {
     Inputs inputs{std::exchange(keys_, {}), std::nullopt};
     if (lost_ || glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) != GLFW_PRESS) return inputs;
     int width = 0, height = 0;
@@ -104,25 +135,6 @@ class Window : public Display {
     return inputs;
   }
 
-  void toggle_full_screen() override {
-    if (lost_) return;
-    if (glfwGetWindowMonitor(window_)) {
-      glfwSetWindowMonitor(window_, nullptr, windowed_x_, windowed_y_, windowed_width_, windowed_height_,
-                           GLFW_DONT_CARE);
-      return;
-    }
-    const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
-    if (!mode) {
-      trouble_ = "no monitor is known: the window stays as it is";
-      return;
-    }
-    glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
-    glfwGetWindowSize(window_, &windowed_width_, &windowed_height_);
-    glfwSetWindowMonitor(window_, monitor_, 0, 0, mode->width, mode->height, mode->refreshRate);
-    glfwSwapInterval(0);
-  }
-
- private:
   void choose_monitor(int number) {
     int count = 0;
     GLFWmonitor** monitors = glfwGetMonitors(&count);
@@ -179,6 +191,9 @@ class Window : public Display {
     void* display = set_error && set_exit ? glfwGetX11Display() : nullptr;
     if (!display) return;
     x11_window_ = glfwGetX11Window(window_);
+    using Number = int (*)(void*);
+    if (const auto number = reinterpret_cast<Number>(dlsym(library, "XConnectionNumber")))
+      connection_ = number(display);
     set_error([](void*) { return 0; });
     // Likewise an error of a window that another program has destroyed.
     const auto set_protocol = reinterpret_cast<SetProtocol>(dlsym(library, "XSetErrorHandler"));
@@ -189,6 +204,13 @@ class Window : public Display {
       });
     set_exit(
         display, [](void*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
+  }
+
+  // Asked before every swap: Mesa's never ends once the connection is known to be broken.
+  bool server_hung_up() const {
+    if (connection_ < 0) return false;
+    pollfd fd{connection_, 0, 0};
+    return ::poll(&fd, 1, 0) > 0 && (fd.revents & (POLLHUP | POLLERR | POLLNVAL));
   }
 
   [[noreturn]] static void refuse() {
@@ -203,6 +225,8 @@ class Window : public Display {
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;
   bool quad_ = false, lost_ = false;
+  CallGuard guard_;
+  int connection_ = -1;                        // to the X server
   unsigned long x11_window_ = 0;               // 0: another desktop
   static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
