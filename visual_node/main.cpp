@@ -210,7 +210,7 @@ int main(int argc, char** argv) try {
     }
     if (const std::string lost = stage.recover(now, composer.view(), frame.list); !lost.empty()) say(lost);
     for (const std::string& sentence : stage.take_trouble()) say(sentence);
-    if (lock.on() && !offline) receive(node.poll());  // a wall that is slow hears of its head all the same
+    if (lock.on() && !offline) walls.catch_up(receive);  // a wall that is slow hears of its head all the same
     const auto agreed = lock.begin(clock(), sense.profile_delay());
     const std::int64_t periods_before = std::exchange(periods, node.deadlines().ticks() + node.deadlines().missed());
     tick += offline ? 1 : agreed ? 1 + agreed->skipped : periods - periods_before;

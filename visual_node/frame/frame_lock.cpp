@@ -44,6 +44,13 @@ void FrameLock::push(const playout_t& m, sync::HostTime arrival) {
     if (e.modality == modality_) delay_.ask(clock_.sent(m.header, arrival), sync::Nanoseconds(e.delay_ns));
 }
 
+bool FrameLock::heard_enough(sync::HostTime now) const {
+  if (!on()) return true;
+  const RoomTime by = clock_.room(now + likely(), now) - lag_;
+  const auto head = heads_.newest();
+  return clock_.newest() >= by && (!head || *head >= by);
+}
+
 std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanoseconds profile_delay) {
   if (!on()) return std::nullopt;
   AgreedFrame frame;

@@ -55,6 +55,9 @@ class FrameLock {
   void push(const playout_t& m, sync::HostTime arrival);
   void push(const frame_shown_t& m, sync::HostTime arrival) { peers_.hear(m, incarnation_, arrival); }
 
+  // Whether all that a frame begun at `now` depends on has been heard: somebody has spoken since. False too when
+  // nobody speaks any more.
+  bool heard_enough(sync::HostTime now) const;
   // The frame that is drawn from now on; nothing without a room, or before sim_node was heard. profile_delay: of
   // what a profile adds to this sense.
   std::optional<AgreedFrame> begin(sync::HostTime now, sync::Nanoseconds profile_delay = sync::Nanoseconds(0));

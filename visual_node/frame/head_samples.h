@@ -27,6 +27,10 @@ class HeadSamples {
 
   void push(const tool_state_t& m, RoomTime sent);
   void forget() { samples_.clear(); }
+  // When the newest was told; nothing: there is none.
+  std::optional<RoomTime> newest() const {
+    return samples_.empty() ? std::nullopt : std::optional(samples_.back().sent);
+  }
   // The newest that had been told by t.
   std::optional<HeadSample> told_by(RoomTime t) const;
 

@@ -26,6 +26,8 @@ class RoomClockReader {
   bool known() const { return !told_.empty(); }
   // Counts the clocks that it has gone by: numbers of frames of another one mean nothing now.
   std::int64_t clocks() const { return clocks_; }
+  // When what was heard last was sent. Only when known.
+  RoomTime newest() const { return room_time(last_.publish_time_ns); }
   // False: neither ours nor mapped, it is read by arrival, good to the smallest latency.
   bool mapped(sync::HostTime now) const;
   // Only when known.

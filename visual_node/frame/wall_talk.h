@@ -18,6 +18,8 @@ class WallTalk {
   // What has arrived: the clock of the simulation, the head, the delay that is asked for, and what other walls
   // have drawn.
   void receive();
+  // Before a frame is begun, `meanwhile` takes in what arrives: also what a loop that was held up has missed.
+  void catch_up(const std::function<void(sync::HostTime)>& meanwhile);
   // A picture's surfaces are drawn: its flashes come late, so that they show what has just happened.
   void wait_for_latch(const AgreedFrame& frame) const;
   // A picture is ready: holds it until it is due, with frame_lock=wait until the others have it too. meanwhile:
@@ -35,6 +37,7 @@ class WallTalk {
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<playout_t>& playouts_;
   sync::Queue<frame_shown_t>& walls_;
+  sync::HostTime last_{};  // caught up
 };
 
 }  // namespace tactus::visual

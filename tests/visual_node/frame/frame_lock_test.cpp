@@ -301,3 +301,17 @@ TEST_CASE("What is told of a frame is its number, when it is due, its instant an
   CHECK(frame.head.how == sync::How::kExtrapolated);
   CHECK(m.stage == frame_shown_t::SHOWN);
 }
+
+TEST_CASE("A wall that stood still knows that it has not yet heard what its next frame depends on") {
+  Room room;
+  Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
+  CHECK(wall.lock.heard_enough(wall.here(room.t)));  // there is no lock before anybody has spoken
+  room.run(1);
+  CHECK(wall.lock.heard_enough(wall.here(room.t)));
+  // Head and clock are those told frame_lag before a frame is due, which is as long as drawing takes after it is
+  // begun.
+  CHECK(wall.lock.heard_enough(wall.here(room.t) + milliseconds(5)));
+  CHECK_FALSE(wall.lock.heard_enough(wall.here(room.t) + milliseconds(200)));
+  room.run(0.205);  // the world tells each 17 ms, the last time 5 ms ago
+  CHECK(wall.lock.heard_enough(wall.here(room.t)));
+}
