@@ -247,6 +247,9 @@ TEST_CASE(
       with("\n\nvec4 shade() { return lamp_of_my_own; }"),  // of meaning
       Catch::Contains("mine.frag:3: error") && Catch::Contains("lamp_of_my_own") && !Catch::Contains("warning"));
   CHECK_THROWS_WITH(with("void main() {}"), Catch::Contains("end.frag:2: error"));
+  CHECK_THROWS_WITH(with("vec4 shade() {\n a = 1;\n b = 1;\n c = 1;\n d = 1;\n return vec4(1); }"),
+                    Catch::Contains("mine.frag:2") && Catch::Contains("mine.frag:4") &&
+                        !Catch::Contains("mine.frag:5") && Catch::EndsWith("; and 1 more"));
 }
 
 TEST_CASE("A shader that does not compile is named with file and line") {

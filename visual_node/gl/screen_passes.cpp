@@ -49,15 +49,21 @@ void ScreenPasses::draw(const PictureTarget& picture) {
   const std::array<float, 4> none{};
   for (std::size_t i = 0; i < programs_.size(); ++i) {
     if (!programs_[i]) continue;
-    to->bind();
-    glBindTexture(GL_TEXTURE_2D, from->texture());
-    programs_[i]->use();
-    programs_[i]->set("picture", 0);
-    programs_[i]->set("texel", Eigen::Vector2f(1 / static_cast<float>(picture.width()),
-                                               1 / static_cast<float>(picture.height())));
-    for (const uniform_t& u : passes_[i].uniforms) programs_[i]->set(u);
-    quad_->draw(none.data(), 1);
-    std::swap(from, to);
+    const Program& program = *programs_[i];
+    // One that has `along` works along one side of the picture at a time.
+    const bool twice = glGetUniformLocation(program.id(), "along") >= 0;
+    for (int turn = 0; turn < (twice ? 2 : 1); ++turn) {
+      to->bind();
+      glBindTexture(GL_TEXTURE_2D, from->texture());
+      program.use();
+      program.set("picture", 0);
+      program.set("texel", Eigen::Vector2f(1 / static_cast<float>(picture.width()),
+                                           1 / static_cast<float>(picture.height())));
+      for (const uniform_t& u : passes_[i].uniforms) program.set(u);
+      if (twice) program.set("along", turn == 0 ? Eigen::Vector2f(1, 0) : Eigen::Vector2f(0, 1));
+      quad_->draw(none.data(), 1);
+      std::swap(from, to);
+    }
   }
   if (from == &picture) return;
   glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
