@@ -49,7 +49,12 @@ ShaderWatch::ShaderWatch(const std::string& folder) {
   });
 }
 
-ShaderWatch::~ShaderWatch() = default;
+// It is not waited for: it may be reading a folder that has gone away.
+ShaderWatch::~ShaderWatch() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.detach();
+}
 
 std::optional<ShaderFolder> ShaderWatch::take() {
   if (!shared_) return {};
