@@ -53,8 +53,11 @@ void main() {
 }
 )";
 constexpr const char* kDefines =
-    "#define LIGHTS 1\n#define LAMPS sum = n;\n#define SHADOWS 0\n#define RELIEF 1\n#define MAPPED 0\n#define COLOUR_MAP 0\n"
-    "#define NORMAL_MAP 0\n#define MIRROR 0\n#define GOURAUD 0\n";
+    "#define LIGHTS 1\n#define LAMPS sum = n;\n#define SHADOWS 0\n#define RELIEF 1\n#define MAPPED 0\n#define "
+    "COLOUR_MAP 0\n"
+    "#define NORMAL_MAP 0\n#define MIRROR 0\n#define GOURAUD 0\n#define LAMP_DIFFUSE vec4[](vec4(0))\n"
+    "#define LAMP_SPECULAR vec4[](vec4(0))\n#define LAMP_ATTENUATION vec4[](vec4(0))\n#define LAMP_CONE "
+    "vec4[](vec4(0))\n";
 
 // A picture of floats.
 class FloatTarget {

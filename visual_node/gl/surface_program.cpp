@@ -3,10 +3,26 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 
 namespace tactus::visual {
 namespace {
+
+// One property of all lamps as a constant of the shader; of none, one that is black.
+std::string constant(const char* name, const Lighting& lighting, Eigen::Vector4f Light::*property) {
+  std::string list;
+  const auto add = [&](const Eigen::Vector4f& v) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%svec4(%.9g, %.9g, %.9g, %.9g)", list.empty() ? "" : ", ",
+                  static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z()),
+                  static_cast<double>(v.w()));
+    list += text;
+  };
+  for (const Light& l : lighting.lights) add(l.*property);
+  if (lighting.lights.empty()) add(Eigen::Vector4f::Zero());
+  return "#define " + std::string(name) + " vec4[](" + list + ")\n";
+}
 
 // The kinds of the lamps and what the surface has are known to the shader's compiler: a software renderer pays for
 // every branch of every pixel.
@@ -27,7 +43,10 @@ std::string defines(const Look& look, bool relief, bool moves, const Lighting& l
     return "#define " + std::string(name) + (on ? " 1\n" : " 0\n");
   };
   return "#define LIGHTS " + std::to_string(std::max<std::size_t>(1, lighting.lights.size())) +
-         "\n#define LAMPS " + lamps + "\n" + define("SHADOWS", lighting.shadow_light >= 0) +
+         "\n#define LAMPS " + lamps + "\n" + constant("LAMP_DIFFUSE", lighting, &Light::diffuse) +
+         constant("LAMP_SPECULAR", lighting, &Light::specular) +
+         constant("LAMP_ATTENUATION", lighting, &Light::attenuation) +
+         constant("LAMP_CONE", lighting, &Light::cone) + define("SHADOWS", lighting.shadow_light >= 0) +
          define("RELIEF", relief) + define("MAPPED", look.mapped()) + define("COLOUR_MAP", look.colour_map >= 0) +
          define("NORMAL_MAP", look.normal_map >= 0) + define("MIRROR", look.reflectance > 0) +
          define("GOURAUD", look.shader == "gouraud") + (moves ? "#define MOVES 1\n" : "");

@@ -10,6 +10,12 @@ struct Light {       // struct Light in scene_view/draw_list.h
   vec4 cone;         // factor and offset on the cosine to the axis, exponent of the falloff
 };
 layout(std140) uniform Lights { Light lights[LIGHTS]; };
+// What of a lamp never changes while a scene is shown, known to the compiler: a software renderer pays for every number that it
+// reads for every pixel.
+const vec4 lamp_diffuse[LIGHTS] = LAMP_DIFFUSE;
+const vec4 lamp_specular[LIGHTS] = LAMP_SPECULAR;
+const vec4 lamp_attenuation[LIGHTS] = LAMP_ATTENUATION;
+const vec4 lamp_cone[LIGHTS] = LAMP_CONE;
 uniform vec3 ambient_light;
 #if SHADOWS
 uniform sampler2DShadow shadow_map;
@@ -31,10 +37,10 @@ vec3 shaded;   // of that, what a shadow may take away
 // power.
 void add(int i, vec3 l, float strength, bool shiny) {
   float nl = dot(n, l);
-  sum += (strength * max(nl, 0.0)) * base.rgb * lights[i].diffuse.rgb;
+  sum += (strength * max(nl, 0.0)) * base.rgb * lamp_diffuse[i].rgb;
   if (shiny) {
     float t = max(2.0 * nl * nv - dot(l, v), 0.0) * step(0.0, nl);
-    sum += (strength * t / (shine.w - shine.w * t + t)) * shine.rgb * lights[i].specular.rgb;
+    sum += (strength * t / (shine.w - shine.w * t + t)) * shine.rgb * lamp_specular[i].rgb;
   }
 }
 
@@ -45,11 +51,11 @@ void lamp(int i, bool shiny, bool coned, bool falls, bool shadowed) {
   vec3 to = lights[i].position.xyz - at;
   float dd = dot(to, to), inverse = inversesqrt(dd), d = dd * inverse;
   vec3 l = to * inverse;
-  float strength = step(d, lights[i].diffuse.w) /
-                   max(lights[i].attenuation.x + lights[i].attenuation.y * d + lights[i].attenuation.z * dd, 1e-4);
+  float strength = step(d, lamp_diffuse[i].w) /
+                   max(lamp_attenuation[i].x + lamp_attenuation[i].y * d + lamp_attenuation[i].z * dd, 1e-4);
   if (coned) {
-    float inside = clamp(lights[i].cone.y - dot(l, lights[i].direction.xyz) * lights[i].cone.x, 0.0, 1.0);
-    strength *= falls ? pow(inside, lights[i].cone.z) : inside;
+    float inside = clamp(lamp_cone[i].y - dot(l, lights[i].direction.xyz) * lamp_cone[i].x, 0.0, 1.0);
+    strength *= falls ? pow(inside, lamp_cone[i].z) : inside;
   }
 #if GOURAUD
   vec3 others = sum;
