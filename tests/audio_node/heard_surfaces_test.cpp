@@ -9,7 +9,7 @@ using namespace tactus;
 using namespace tactus::audio;
 
 TEST_CASE(
-    "Surfaces are read from the pictures of the scene; what cannot be read is smooth, and leaves the others") {
+    "Surfaces are read from the pictures of the scene. What cannot be read is smooth, and leaves the others") {
   scene_t scene{};
   const sync::Bytes good = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   constexpr std::int64_t kGood = 1, kBad = 2, kNotSent = 3;

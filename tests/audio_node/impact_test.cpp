@@ -257,7 +257,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their lowest modes; soft ones do not") {
+TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their lowest modes. Soft ones do not") {
   const Impacts all = impacts();
   const auto humps = [](const Strike& s) {
     return std::count_if(s.pulse.begin(), s.pulse.end(), [](const Hump& h) { return h.samples > 0; });

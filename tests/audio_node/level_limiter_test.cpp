@@ -105,7 +105,7 @@ TEST_CASE("One strike at -12 dBFS that rings for a second is played to the bit")
   CHECK(same);
 }
 
-TEST_CASE("The louder ear counts; loudspeakers add up") {
+TEST_CASE("The louder ear counts. Loudspeakers add up") {
   const auto settled = [](bool ears, bool both) {
     HearingDef def = kDef;
     def.ears = ears;

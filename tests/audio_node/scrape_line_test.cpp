@@ -210,7 +210,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "An end for which there was no room is told when there is, unless its contact goes on; lost states are "
+    "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
     "counted") {
   auto crossing = std::make_unique<Crossing>();
   ScrapeLine line(*crossing);

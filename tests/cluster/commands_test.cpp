@@ -115,7 +115,7 @@ TEST_CASE(
   CHECK_THAT(c.ask({"restore", "never"}, 1), Catch::Contains("no file"));
 }
 
-TEST_CASE("What is set and pushed moves the world of a running cluster; what cannot be is one sentence") {
+TEST_CASE("What is set and pushed moves the world of a running cluster. What cannot be is one sentence") {
   Commanded c;
   auto& states = c.ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
   c.start();

@@ -6,21 +6,42 @@
 using namespace tactus::cluster;
 using nlohmann::json;
 
+namespace {
+
+// The hand follows the clock with closed eyes: where the machine held the world still, longer than this, it went
+// on without it and has passed the ball. Such a run says nothing of the scene and is played again.
+constexpr double kStandstillUs = 20000;
+
+double longest_standstill_us(const json& summary) {
+  const json& sim = summary["nodes"]["sim_node"];
+  return std::max(sim["wake_us"]["max"].get<double>(), sim["tick_us"]["max"].get<double>());
+}
+
+}  // namespace
+
 TEST_CASE("The hand of the dark room, and a string device in its place, push every ball into its hole") {
   // What drives a simulated string device is the same hand, whose pose comes from the lengths of strings, whose
   // force from tensions.
   const std::string device = GENERATE("virtual_hand", "spidar:cave,offset=-0.1/0/0.2");
-  RunScript run;
-  run.start({"--seconds", "20", "--device", device, "--without", "visual_node", "--without", "audio_node",
-             "--without", "thermal_node", "--out", run.out()});
-  const int status = run.finish(150);
-  INFO(device << ": " << run.processes.said("run"));
-  CHECK(status == 0);
-  const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
-  REQUIRE_FALSE(summary.is_discarded());
-  CHECK(summary["game"]["filled"] == 3);
-  REQUIRE(summary["game"]["won_at_s"].is_number());
-  // The path is over its last hole 17.5 s after its begin.
-  CHECK(summary["game"]["won_at_s"].get<double>() < 19);
-  CHECK(summary["contacts"]["by_modality"]["haptic"]["lost"] == 0);
+  for (int attempt = 1;; ++attempt) {
+    RunScript run;
+    run.start({"--seconds", "20", "--device", device, "--without", "visual_node", "--without", "audio_node",
+               "--without", "thermal_node", "--out", run.out()});
+    const int status = run.finish(150);
+    INFO(device << ", attempt " << attempt << ": " << run.processes.said("run"));
+    CHECK(status == 0);
+    const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
+    REQUIRE_FALSE(summary.is_discarded());
+    if (attempt < 3 && summary["game"]["filled"] != 3 && longest_standstill_us(summary) > kStandstillUs) {
+      WARN("the machine held the world still for " << longest_standstill_us(summary) / 1000 << " ms; once more");
+      continue;
+    }
+    INFO("the world stood still for at most " << longest_standstill_us(summary) / 1000 << " ms");
+    CHECK(summary["game"]["filled"] == 3);
+    REQUIRE(summary["game"]["won_at_s"].is_number());
+    // The path is over its last hole 17.5 s after its begin.
+    CHECK(summary["game"]["won_at_s"].get<double>() < 19);
+    CHECK(summary["contacts"]["by_modality"]["haptic"]["lost"] == 0);
+    break;
+  }
 }

@@ -107,7 +107,7 @@ X.XCloseDisplay(d)
 }  // namespace
 
 TEST_CASE(
-    "A window shows the picture; its keys pause, step and reset the world, lay overlays and fill the screen") {
+    "A window shows the picture. Its keys pause, step and reset the world, lay overlays and fill the screen") {
   Desktop c;
   c.start_window();
   c.ear.listen(1);
@@ -192,7 +192,7 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
 }
 
 TEST_CASE(
-    "A window that is not seen or next to nothing, or larger than its screen, stops nobody; a closed one ends the "
+    "A window that is not seen or next to nothing, or larger than its screen, stops nobody. A closed one ends the "
     "node") {
   Desktop c;
   c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
@@ -228,7 +228,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "A display server that is killed takes the window along and not the node; without one there is a sentence") {
+    "A display server that is killed takes the window along and not the node. Without one there is a sentence") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);

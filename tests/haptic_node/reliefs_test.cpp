@@ -368,7 +368,7 @@ TEST_CASE("A plane that names no axis, an absurd one or no material is smooth") 
   CHECK((force_at(bench, {0.004, 0, 0}, {p}, ms) - Vector3d(0, 0, 2)).norm() < 1e-6);
 }
 
-TEST_CASE("Maps are read from the pictures of the scene; what cannot be is said, and smooth") {
+TEST_CASE("Maps are read from the pictures of the scene. What cannot be is said, and smooth") {
   scene_t s{};
   const std::vector<std::uint8_t> good = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   for (const auto& [bump, friction] : {std::pair<std::int64_t, std::int64_t>{1, 0}, {0, 1}, {1, 2}, {3, 0}}) {

@@ -64,7 +64,7 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   CHECK_THAT(limits_sentence(choose(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
-TEST_CASE("A scene cannot loosen what protects the hand; the command line can") {
+TEST_CASE("A scene cannot loosen what protects the hand. The command line can") {
   scene_t s = scene();
   const Settings safe;
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{{"force_limit", "30"},

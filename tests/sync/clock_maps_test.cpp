@@ -55,7 +55,7 @@ TEST_CASE("Maps of another run are ignored and counted") {
   CHECK_FALSE(maps.read(host_time(5), 1, 2));
 }
 
-TEST_CASE("Of two publishers of one map the first is heeded until it falls silent; an overtaken map changes nothing") {
+TEST_CASE("Of two publishers of one map the first is heeded until it falls silent. An overtaken map changes nothing") {
   ClockMaps maps(7);
   const auto offset = [&] { return maps.read(host_time(0), 2, 1)->time; };
   maps.observe(line(1, 2, 0, 100, 0, 5, 1), host_time(0));

@@ -49,7 +49,7 @@ TEST_CASE("A short message of LCM is its channel and its payload") {
   }
 }
 
-TEST_CASE("The first fragment of a long message names its channel and does not fit; the others are nothing") {
+TEST_CASE("The first fragment of a long message names its channel and does not fit. The others are nothing") {
   const Bytes first = fragment(0, std::string("BIG\0abc", 7));
   const auto m = parse_datagram(first);
   REQUIRE(m);

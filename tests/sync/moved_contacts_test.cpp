@@ -136,7 +136,7 @@ TEST_CASE("A contact that moves between groups is there once, as it was told las
   CHECK(compared > 50'000);
 }
 
-TEST_CASE("What was foreseen and did not come true is no contact; what comes true is one from its begin on") {
+TEST_CASE("What was foreseen and did not come true is no contact. What comes true is one from its begin on") {
   ContactStream stream(1);
   std::int64_t seq = 0;
   const auto say = [&](std::int64_t now, std::int64_t time, std::set<std::int64_t> ids) {

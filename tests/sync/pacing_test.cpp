@@ -33,7 +33,7 @@ TEST_CASE("A loop that wakes a little late keeps its deadlines") {
   }
 }
 
-TEST_CASE("A loop that fell behind skips whole periods and counts them; it never catches up in a burst") {
+TEST_CASE("A loop that fell behind skips whole periods and counts them. It never catches up in a burst") {
   std::mt19937_64 random(2);
   for (const double rate : {60.0, 1000.0, 333.0}) {
     Deadlines d(rate, kStart);

@@ -48,7 +48,7 @@ TEST_CASE("A sender of our own run and clock is read as it is") {
   CHECK(f.clock.read(1234, host_time(5'000'000)).uncertainty == Nanoseconds(0));
 }
 
-TEST_CASE("A sender of another clock is read through the map of it, with its uncertainty; without one by arrival") {
+TEST_CASE("A sender of another clock is read through the map of it, with its uncertainty. Without one by arrival") {
   Fixture f;
   const HostTime now = host_time(100 * kSecond);
   f.clock.observe(stamped(to_ns(now) + kAhead - 3 * kMs, kTheirs), now);

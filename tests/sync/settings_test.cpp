@@ -111,7 +111,7 @@ TEST_CASE("A value that does not fit is refused with a sentence that names setti
 }
 
 TEST_CASE(
-    "The command line overrides the scene; entries of other nodes are not ours; the refused leave the rest") {
+    "The command line overrides the scene. Entries of other nodes are not ours. The refused leave the rest") {
   Example e;
   const std::vector<Entry> scene{
       {"me", "delay", "50ms"}, {"other", "voices", "3"}, {"me", "voices", "900"}, {"me", "mode", "slow"}};

@@ -41,7 +41,7 @@ TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
   CHECK(other.problem.find("hand, foot") != std::string::npos);
 }
 
-TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element; the command line can") {
+TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element. The command line can") {
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
            {"temperature_min", "10"}, {"temperature_max", "43"}, {"slew_max", "300"}}) {
     INFO(name);

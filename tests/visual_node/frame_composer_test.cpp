@@ -110,7 +110,7 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "Before the scene a frame is dark and says that it waits; a late joiner needs no one's restart") {
+                 "Before the scene a frame is dark and says that it waits. A late joiner needs no one's restart") {
   Frame f = frame(0);
   CHECK(f.state == node_health_t::WAITING);
   CHECK(f.list.instances.empty());

@@ -167,7 +167,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "A spot of the name of a tool shines at where the tool is, with its shadow; while nobody holds it as the "
+    "A spot of the name of a tool shines at where the tool is, with its shadow. While nobody holds it as the "
     "scene says") {
   scene_t scene = test::empty_scene();
   scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};

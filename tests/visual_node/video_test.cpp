@@ -123,7 +123,7 @@ TEST_CASE("An encoder gets every byte and has finished when its owner is done wi
   }
 }
 
-TEST_CASE("A video is written and ends with its owner; a snapshot too") {
+TEST_CASE("A video is written and ends with its owner. A snapshot too") {
   const Folder folder;
   Settings settings;
   int reads = 0, pairs = 0;

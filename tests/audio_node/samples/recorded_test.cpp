@@ -43,7 +43,7 @@ TEST_CASE("A database is kept while a strike of it waits or sounds, and let go o
 }
 
 TEST_CASE(
-    "A database is kept while a contact scrapes with it; one that is told later of the old one is not heard") {
+    "A database is kept while a contact scrapes with it. One that is told later of the old one is not heard") {
   Layers l;
   l.by_speed.push_back({1, 1, {{tone(400, 0.5), 0.5f, 0.35f}}});
   auto bench = std::make_unique<Bench>();

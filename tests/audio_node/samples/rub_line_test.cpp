@@ -5,7 +5,7 @@
 using namespace tactus;
 using namespace tactus::audio;
 
-TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on; lost states are counted") {
+TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on. Lost states are counted") {
   Spsc<Rub> queue(4);
   RubLine line(queue);
   const auto tell = [&](std::int64_t contact, std::int32_t part, bool ends) {

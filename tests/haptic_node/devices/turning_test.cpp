@@ -82,7 +82,7 @@ TEST_CASE("Turns are put together and taken apart without loss") {
   }
 }
 
-TEST_CASE("Eight strings turn the hand that holds their grip, and tell its spin; four leave torque out") {
+TEST_CASE("Eight strings turn the hand that holds their grip, and tell its spin. Four leave torque out") {
   for (const std::string name : {"desktop8", "desktop"}) {
     const StringFrame frame = *known_frame(name);
     auto hand = std::make_unique<VirtualHand>(MonotoneCubic({0}, {Vector3d::Zero()}, MonotoneCubic::Ends::kRest),

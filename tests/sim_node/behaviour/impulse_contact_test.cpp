@@ -188,7 +188,7 @@ TEST_CASE("A ball rests in a corner of three planes, pushed into it") {
 }
 
 TEST_CASE(
-    "A free body lies on the parabola; an asymmetric one keeps its spin momentum exactly and its energy well") {
+    "A free body lies on the parabola. An asymmetric one keeps its spin momentum exactly and its energy well") {
   Toys toys;
   const int box = toys.box(2, {0.1, 0.2, 0.4}, at(0, 0, 50));
   auto& b = toys.world.free_body(box);

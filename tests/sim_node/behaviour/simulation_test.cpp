@@ -56,7 +56,7 @@ TEST_CASE("A tool that presses on the floor begins and hits at the instant when 
   CHECK(*std::max_element(forces.begin(), forces.end()) == Approx(1000 * (0.3 * speed - 0.04)).epsilon(0.05));
 }
 
-TEST_CASE("Pushing a free ball gives it what the hand feels; momentum balances") {
+TEST_CASE("Pushing a free ball gives it what the hand feels. Momentum balances") {
   WorldDef w = empty_world(0);
   const int ball = add_ball(w, 0.3, 0.05, {0, 0, 0});
   add_tool(w, {-0.1, 0, 0});

@@ -125,7 +125,7 @@ TEST_CASE("What rests, rolls or slides for ten seconds begins once") {
   CHECK(t.tracker.live().size() == 4);
 }
 
-TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart it ends; a gap is none") {
+TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart it ends. A gap is none") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});

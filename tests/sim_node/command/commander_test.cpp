@@ -272,7 +272,7 @@ TEST_CASE("A kept state is put back under its name, from memory and, by another 
   CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("no state"));
 }
 
-TEST_CASE("So many states are kept and no more; a name that is used again takes the place of the old one") {
+TEST_CASE("So many states are kept and no more. A name that is used again takes the place of the old one") {
   Bench b;
   for (std::size_t i = 0; i < StateStore::kMost; ++i)
     CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s" + std::to_string(i))).done == 1);

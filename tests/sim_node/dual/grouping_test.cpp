@@ -59,7 +59,7 @@ TEST_CASE("A body joins the group when the tool may reach it before the next vis
   CHECK(g.haptic().empty());
 }
 
-TEST_CASE("Ways that cross at different times do not group; capsules do") {
+TEST_CASE("Ways that cross at different times do not group. Capsules do") {
   Row r(1);
   r.limits.tool_acceleration_m_s2 = 0;
   r.limits.gravity_m_s2 = 0;
@@ -73,7 +73,7 @@ TEST_CASE("Ways that cross at different times do not group; capsules do") {
   CHECK(Row::list(kim.haptic()) == Ints{0});
 }
 
-TEST_CASE("A system of joints enters whole, and what touches it enters too; what never moves does not") {
+TEST_CASE("A system of joints enters whole, and what touches it enters too. What never moves does not") {
   Row r(6);
   r.bodies[0].system = r.bodies[2].system = r.bodies[3].system = 0;
   r.touching = {{3, 4}, {0, 5}};

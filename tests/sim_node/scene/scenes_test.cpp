@@ -79,7 +79,7 @@ TEST_CASE("Every corner of the floor of the dark room is in the picture") {
     }
 }
 
-TEST_CASE("Worlds as users of Gazebo write them load; what is not supported is said") {
+TEST_CASE("Worlds as users of Gazebo write them load. What is not supported is said") {
   std::vector<std::string> warnings;
   const WorldDef shapes = load_sdf(kData + "shapes.sdf", warnings);
   CHECK(shapes.bodies.size() == 6);

@@ -195,7 +195,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
   CHECK(fingerprint(once) == fingerprint(often));
 }
 
-TEST_CASE("Frozen at the last a touch goes on until it is stale; frozen to nothing it ends at once") {
+TEST_CASE("Frozen at the last a touch goes on until it is stale. Frozen to nothing it ends at once") {
   const bool zero = GENERATE(true, false);
   Stack stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
   DegradedSnapshots<contact_frame_t> frames;

@@ -43,7 +43,7 @@ TEST_CASE("A rule for another sense changes nothing") {
   CHECK(v.release == i.arrival);
 }
 
-TEST_CASE("A network delay holds news back; a presentation delay moves the whole sense") {
+TEST_CASE("A network delay holds news back. A presentation delay moves the whole sense") {
   Stack network = stack_of("delay=\"40ms network\"");
   const Item i = snapshot(1);
   CHECK(held_s(network.decide(i), i) == Approx(0.040));
@@ -122,7 +122,7 @@ TEST_CASE("Two rules and two senses draw different numbers") {
   CHECK(std::abs(same - 500) < 5 * std::sqrt(250));
 }
 
-TEST_CASE("Jitter that keeps the order lets nothing overtake; reordering does") {
+TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") {
   Stack kept = stack_of("jitter=\"20ms uniform\"");
   HostTime last{};
   for (int i = 0; i < 1000; ++i) {

@@ -108,7 +108,7 @@ TEST_CASE("A newer request is put in force and an older one is not") {
 }
 
 TEST_CASE(
-    "Of two hosts the one with the lower clock speaks; the other knows all it said and goes on when it falls "
+    "Of two hosts the one with the lower clock speaks. The other knows all it said and goes on when it falls "
     "silent") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);

@@ -48,7 +48,7 @@ TEST_CASE("A sample is carried on with its velocity and its spin, for a bounded 
   CHECK(carried(s, kBegin + milliseconds(201)).how == sync::How::kStale);
 }
 
-TEST_CASE("Another process that holds the head, or a clock put back, ends what was known; memory is bounded") {
+TEST_CASE("Another process that holds the head, or a clock put back, ends what was known. Memory is bounded") {
   HeadSamples samples;
   for (int i = 0; i < 10'000; ++i) samples.push(head(i, 0), kBegin + sync::Nanoseconds(i * 1000));
   CHECK_FALSE(

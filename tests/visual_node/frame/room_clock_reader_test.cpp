@@ -115,7 +115,7 @@ TEST_CASE("A stamp of a third host is read on the room's clock through its map, 
         3);
 }
 
-TEST_CASE("Another simulation on the same host keeps the clock; one on another host brings its own") {
+TEST_CASE("Another simulation on the same host keeps the clock. One on another host brings its own") {
   RoomClockReader reader({kRun, kSim});
   reader.hear(stamp(1'000'000'000), map_of(1, 1'000'000'000), sync::host_time(1'000'000'000));
   CHECK(reader.clocks() == 1);

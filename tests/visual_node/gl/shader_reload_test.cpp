@@ -159,7 +159,7 @@ TEST_CASE("A pass that does not compile stays as it was, and one that nobody has
   CHECK(stand.middle() == kRed);
 }
 
-TEST_CASE("Numbers that a shader is given by name are seen; one that it does not take is said") {
+TEST_CASE("Numbers that a shader is given by name are seen. One that it does not take is said") {
   uniform_t tint{};
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
@@ -184,7 +184,7 @@ TEST_CASE("Numbers that a shader is given by name are seen; one that it does not
   }
 }
 
-TEST_CASE("Of a folder shaders alone are read, and not what is too long; one that is not there is empty") {
+TEST_CASE("Of a folder shaders alone are read, and not what is too long. One that is not there is empty") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_folder_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder / "folder.frag");

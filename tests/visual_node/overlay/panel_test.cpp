@@ -24,7 +24,7 @@ node_health_t health(std::int64_t seq, const sync::Histogram& ticks, std::int64_
 
 }  // namespace
 
-TEST_CASE("The setting names overlays; a word that is none is refused with those that are near") {
+TEST_CASE("The setting names overlays. A word that is none is refused with those that are near") {
   CHECK_FALSE(parse_overlays("none").any());
   CHECK_FALSE(parse_overlays("").any());
   const OverlaySet set = parse_overlays(" contacts,report tools ");

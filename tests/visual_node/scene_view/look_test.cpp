@@ -68,7 +68,7 @@ TEST_CASE("A surface with a translucent picture is drawn after what is opaque") 
   CHECK(list.opaque[0].look == 2);
 }
 
-TEST_CASE("Shaders and passes of a scene bring their texts and names; one whose text did not come has none") {
+TEST_CASE("Shaders and passes of a scene bring their texts and names. One whose text did not come has none") {
   scene_t scene = test::empty_scene();
   shader_t shader{};
   shader.name = "stripes", shader.fragment_asset = 8, shader.vertex_asset = 9, shader.fragment_file = "s.frag";
