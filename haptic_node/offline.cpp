@@ -19,7 +19,8 @@ void Offline::follow(int tool) {
   track_.follow(tool);
   if (!follows_) return;
   coming_ = track_.next(run_.now());
-  if (!coming_) run_.end_at(run_.now());
+  if (!coming_) return run_.end_at(run_.now());
+  tick_.device = coming_->device;
 }
 
 sync::HostTime Offline::next(sync::Bus& bus) {
@@ -32,6 +33,7 @@ sync::HostTime Offline::next(sync::Bus& bus) {
 }
 
 void Offline::add(const tool_state_t& state) {
+  if (tick_.at == sync::HostTime{}) return;  // the tick in which the scene came is none of the run
   if (!first_) first_ = run_.now();
   tool_state_t row = state;
   row.header.publish_time_ns = tick_.published_ns;
@@ -43,8 +45,9 @@ void Offline::add(const tool_state_t& state) {
 std::string Offline::result(const std::string& problem, sync::HostTime clock) {
   if (rows_ == 0)
     throw std::runtime_error(!problem.empty() ? problem
-                             : follows_       ? "the log tells nowhere of this tool: nobody held it; choose another --tool"
-                                              : "the log has no scene; give one that scripts/run wrote from its beginning");
+                             : follows_
+                                 ? "the log tells nowhere of this tool: nobody held it; choose another --tool"
+                                 : "the log has no scene; give one that scripts/run wrote from its beginning");
   const double felt_s = sync::to_seconds(run_.now() - *first_);
   const std::string rest = run_.finish(felt_s, clock);
   trace_.finish();

@@ -40,7 +40,8 @@ std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
     const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
     if (!m || m->tool != tool_) continue;
     constexpr std::int64_t kMost_us = 4'000'000'000'000'000;  // as LogFeed: in ns it is still a number
-    const auto arrival = sync::host_time(std::clamp(e.timestamp_us, -kMost_us, kMost_us) * 1000 - realtime_offset_ns_);
+    const auto arrival =
+        sync::host_time(std::clamp(e.timestamp_us, -kMost_us, kMost_us) * 1000 - realtime_offset_ns_);
     if (const auto tick = tick_of(*m, arrival); tick && tick->at > after) return tick;
   }
   return std::nullopt;
@@ -53,7 +54,8 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   tick.seq = m.header.seq;
   tick.at = m.header.clock == clock_ ? sync::host_time(tick.published_ns) : arrival;
   if (tick.at < arrival - kMostUnderWay || tick.at > arrival + kMostUnderWay) return std::nullopt;
-  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence) return std::nullopt;
+  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
+    return std::nullopt;
   incarnation_ = m.header.incarnation;
   heard_ = arrival;
   tick.device = device_of(m);

@@ -13,8 +13,9 @@
 namespace tactus::sync {
 
 void OfflineOptions::add_to(CLI::App& app, const std::string& does, const std::string& output) {
-  app.add_option("--log", log, does + " instead of what is on the bus, as fast as it can; needs " + output +
-                                   "; --degrade logged takes the profiles of the run");
+  app.add_option("--log", log,
+                 does + " instead of what is on the bus, as fast as it can; needs " + output +
+                     "; --degrade logged takes the profiles of the run");
   app.add_option("--presented", presented, "file for a table of what became of each event of the log, CSV")
       ->needs("--log");
 }

@@ -28,7 +28,8 @@ struct OfflineOptions {
   std::string presented;     // table of what became of each event; empty: none
   bool as_recorded = false;  // the profiles of the run hold; else only what --degrade names
 
-  // does: what becomes of the log, e.g. "draws this log of a run"; output: the option that names the file it goes to.
+  // does: what becomes of the log, e.g. "draws this log of a run"; output: the option that names the file it goes
+  // to.
   void add_to(CLI::App& app, const std::string& does, const std::string& output);
 };
 

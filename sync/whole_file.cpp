@@ -27,7 +27,8 @@ WholeFile::WholeFile(std::string path, std::string option)
     : path_(std::move(path)), part_(part_of(path_)), option_(std::move(option)) {
   file_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0)
-    throw std::runtime_error("cannot write " + path_ + " (" + std::strerror(errno) + "); choose another " + option_);
+    throw std::runtime_error("cannot write " + path_ + " (" + std::strerror(errno) + "); choose another " +
+                             option_);
   if (part_ == path_) return;
   // Of two that write one file the second is refused; who dies lets go.
   if (flock(file_, LOCK_EX | LOCK_NB) != 0 || ftruncate(file_, 0) != 0) {
