@@ -61,6 +61,7 @@ int main(int argc, char** argv) try {
   visual::OfflineOptions of_log;
   of_log.add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", of_log.video, "file for the pictures of the log, MP4")->needs("--log");
+  app.add_option("--frames", of_log.frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
   app.add_flag("--as-recorded", of_log.as_recorded, "the same as --degrade logged")->needs("--log");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const std::vector<setting_t> no_scene;

@@ -11,10 +11,12 @@ namespace tactus::visual {
 
 namespace {
 
-// A snapshot is written anew and anew.
+// What may be there already.
 std::vector<sync::Offline::Written> written_anew(const OfflineOptions& options) {
-  if (options.snapshot.empty()) return {};
-  return {{options.snapshot, "--snapshot"}};
+  std::vector<sync::Offline::Written> files;
+  if (!options.snapshot.empty()) files.push_back({options.snapshot, "--snapshot"});
+  if (!options.frames.empty()) files.push_back({options.frames, "--frames"});
+  return files;
 }
 
 }  // namespace
@@ -25,6 +27,9 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
   for (const std::string& there : {options_.video, part_of(options_.video)})
     if (std::filesystem::exists(there, none))
       throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
+  if (options_.frames.empty()) return;
+  frames_ = std::make_unique<sync::WholeFile>(options_.frames, "--frames");
+  frames_->write("frame,host_ns,pixels\n");
 }
 
 void Offline::begin(int width, int height, const Settings& s) {
@@ -43,6 +48,12 @@ void Offline::add(const std::function<void(std::span<std::uint8_t>)>& read) {
   if (!video_) return;
   read(rgba_);
   video_->write(rgba_);
+  if (frames_) {
+    std::ostringstream row;
+    row << video_->frames() - 1 << ',' << sync::to_ns(now()) << ',' << std::hex << video_->pixels_of_newest()
+        << '\n';
+    frames_->write(row.str());
+  }
   if (options_.snapshot.empty() || now() < next_snapshot_) return;
   next_snapshot_ = now() + sync::from_seconds(options_.snapshot_every_s);
   if (!write_png(options_.snapshot, rgba_, video_->width(), video_->height()))
@@ -55,6 +66,7 @@ std::string Offline::result(std::int64_t flashed, std::int64_t dropped, sync::Ho
   const double film_s = static_cast<double>(video_->frames()) / rate_Hz_;
   const std::string rest = run_.finish(film_s, clock);
   video_->finish();
+  if (frames_) frames_->finish();
   std::ostringstream text;
   text << options_.video << ": " << video_->frames() << " frames, " << film_s << " s, " << flashed << " flashes";
   if (dropped > 0) text << " (and " << dropped << " events not shown: too late)";

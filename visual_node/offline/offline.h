@@ -17,6 +17,7 @@ namespace tactus::visual {
 
 struct OfflineOptions : sync::OfflineOptions {
   std::string video;
+  std::string frames;    // table of when each frame is and what it shows, CSV; empty: none
   std::string snapshot;  // PNG file; empty: none
   double snapshot_every_s = 1;
 };
@@ -44,6 +45,7 @@ class Offline {
   double rate_Hz_;
   sync::Offline run_;
   std::unique_ptr<VideoFile> video_;
+  std::unique_ptr<sync::WholeFile> frames_;
   std::vector<std::uint8_t> rgba_;
   sync::HostTime next_snapshot_{};
 };
