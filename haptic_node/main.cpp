@@ -170,7 +170,7 @@ int main(int argc, char** argv) try {
     // One a tick: whoever moves a slider takes no more of a tick than that.
     if (const auto m = setting_changes.pop()) changes.take(m->message, change);
     for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
-    if (!session) continue;
+    if (!session || (offline && !offline->in_tick())) continue;
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
                                              .touch_delay = sense.profile_delay(),

@@ -16,11 +16,11 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
 
 void Offline::follow(int tool) {
   follows_ = tool >= 0;
+  tick_ = {};
   track_.follow(tool);
   if (!follows_) return;
   coming_ = track_.next(run_.now());
-  if (!coming_) return run_.end_at(run_.now());
-  tick_.device = coming_->device;
+  if (!coming_) run_.end_at(run_.now());
 }
 
 sync::HostTime Offline::next(sync::Bus& bus) {
@@ -33,7 +33,6 @@ sync::HostTime Offline::next(sync::Bus& bus) {
 }
 
 void Offline::add(const tool_state_t& state) {
-  if (tick_.at == sync::HostTime{}) return;  // the tick in which the scene came is none of the run
   if (!first_) first_ = run_.now();
   tool_state_t row = state;
   row.header.publish_time_ns = tick_.published_ns;

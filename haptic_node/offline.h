@@ -31,6 +31,8 @@ class Offline {
   std::unique_ptr<Device> device() const { return std::make_unique<RecordedHand>(tick_.device); }
   // The next tick: of the run, once a tool is followed.
   sync::HostTime next(sync::Bus& bus);
+  // It was one of the run: the tick in which a scene comes is none.
+  bool in_tick() const { return tick_.at != sync::HostTime{}; }
   bool over() const { return run_.over(); }
   // What the hand feels in this tick.
   void add(const tool_state_t& state);

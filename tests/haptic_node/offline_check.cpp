@@ -40,10 +40,13 @@ scene_t floor_and_stylus() {
 DeviceState hand_at(double t_s) {
   DeviceState d;
   d.position = {0.02 * std::sin(3 * t_s), 0.01 * std::cos(2 * t_s), 0.0095 + 0.004 * std::cos(20 * t_s)};
-  // A message holds single precision.
-  d.velocity = Eigen::Vector3d(0.06 * std::cos(3 * t_s), -0.02 * std::sin(2 * t_s), -0.08 * std::sin(20 * t_s))
-                   .cast<float>()
-                   .cast<double>();
+  // A message holds single precision. Volatile: GCC 12 vectorises the rounding of two of them away.
+  const auto rounded = [](double v) {
+    const volatile float single = static_cast<float>(v);
+    return static_cast<double>(single);
+  };
+  d.velocity = {rounded(0.06 * std::cos(3 * t_s)), rounded(-0.02 * std::sin(2 * t_s)),
+                rounded(-0.08 * std::sin(20 * t_s))};
   return d;
 }
 
@@ -78,6 +81,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
   Safety safety(safety_limits(choice.settings));
   sync::ClockMaps maps(kRun);
   Session session(scene, choice, std::make_unique<RecordedHand>(hand), {kRun, kClock, &maps}, safety);
+  session.set_maps(std::make_shared<SurfaceMaps>(read_maps(scene, {})));
   std::string table = sync::haptic_csv_names();
   std::mt19937 random(5);
   std::uniform_int_distribution<int> after_us(200, 700);
