@@ -1,4 +1,5 @@
 """Two renderings of one sense, in two folders, held against each other."""
+import filecmp
 import itertools
 import os
 
@@ -61,6 +62,5 @@ def same_bytes(sense, one, other):
     """Whether two renderings of one sense are equal to the bit, and what was compared."""
     files = {"audio": ["audio.wav"], "haptic": ["haptic.csv"], "thermal": ["thermal.csv"], "visual": ["frames.csv", "video.mp4"]}[sense]
     files.append(f"presented_{sense}.csv")
-    contents = lambda folder, name: open(os.path.join(folder, name), "rb").read()
-    differ = [name for name in files if contents(one, name) != contents(other, name)]
-    return {"compared": files, "differ": differ, "bytes": sum(len(contents(one, name)) for name in files)}
+    differ = [name for name in files if not filecmp.cmp(os.path.join(one, name), os.path.join(other, name), shallow=False)]
+    return {"compared": files, "differ": differ, "bytes": sum(os.path.getsize(os.path.join(one, name)) for name in files)}
