@@ -69,18 +69,19 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaP
 
 int main(int argc, char** argv) try {
   sync::NodeOptions options;
-  std::string device, log, wav;
+  std::string device;
+  audio::OfflineOptions of_log;
   CLI::App app;
   options.add_to(app, kAudio);
   app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
-  app.add_option("--log", log, "renders this log of a run instead of what is on the bus, as fast as it can; needs --wav");
-  app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
+  of_log.add_to(app, "renders this log of a run", "--wav");
+  app.add_option("--wav", of_log.wav, "file for the sound of the log")->needs("--log");
   sync::parse_or_exit(app, kAudio.node, argc, argv);
-  if (!log.empty() && wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  if (!of_log.log.empty() && of_log.wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
   std::optional<audio::Offline> offline;
-  if (!log.empty()) {
-    offline.emplace(log, wav, kAudio.rate_Hz, sync::host_now());
-    options.bus = offline->feed().bus(), options.run_id = offline->feed().run_id(), options.realtime = "off";
+  if (!of_log.log.empty()) {
+    offline.emplace(of_log, kAudio.rate_Hz, sync::host_now());
+    offline->run().adapt(options);
   }
 
   audio::Settings checked;
@@ -138,7 +139,8 @@ int main(int argc, char** argv) try {
     return m ? audio::extent_of(*m) : std::nullopt;
   };
   configure({});
-  const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
+  if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(kAudio.modality, report); });
+  const sync::HostTime started = offline ? offline->run().feed().begin() : sync::host_now();
   std::int64_t hits = 0, dropped = 0;
   audio::DueHits due;
   const auto drop = [&](const contact_event_t& event, sync::HostTime scheduled) { output.drop(event.event_id, scheduled); };
@@ -149,8 +151,8 @@ int main(int argc, char** argv) try {
   node.tags().add("underflows", "1", [&] { return static_cast<double>(output.underflows()); }, 100);
   node.tags().add("latency", "s", [&] { return sync::to_seconds(output.latency()); }, 100);
 
-  while (node.running() && !(offline && offline->over())) {
-    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
+  while (node.running() && !(offline && offline->run().over())) {
+    const sync::HostTime now = offline ? offline->run().next(node.bus()) : node.wait();
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
@@ -263,7 +265,7 @@ int main(int argc, char** argv) try {
     if (sampler)
       for (const std::string& news : sampler->news()) std::cerr << kAudio.node << ": " << news << std::endl;
     if (offline)
-      if (const auto line = offline->progress(now, sync::host_now())) std::cerr << kAudio.node << ": " << *line << std::endl;
+      if (const auto line = offline->run().progress(sync::host_now())) std::cerr << kAudio.node << ": " << *line << std::endl;
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
     const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);

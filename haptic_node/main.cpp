@@ -13,13 +13,17 @@
 //        PRESENTED                     every begin and hit of its tool
 //
 // Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
-// hit transients. The loop never waits for another node.
+// hit transients. The loop never waits for another node. With --log it hears a recorded run instead of the bus, its hand
+// is where TOOL_STATE says that it was, and what it feels goes into --trace, as fast as it can; the same log gives the
+// same bytes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <thread>
 
+#include "haptic_node/offline.h"
 #include "haptic_node/quality.h"
 #include "haptic_node/session.h"
 #include "haptic_node/tagged.h"
@@ -54,12 +58,23 @@ int main(int argc, char** argv) try {
       "--device", device_spec,
       "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
       "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  haptic::OfflineOptions of_log;
+  of_log.add_to(app, "feels this log of a run", "--trace");
+  app.add_option("--trace", of_log.trace, "file for what the hand feels in the log, CSV with the columns of haptic.csv")
+      ->needs("--log")->excludes("--device");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
   std::shared_ptr<const haptic::DeviceSpec> device_given;
   if (!device_spec.empty())
     device_given = std::make_shared<haptic::DeviceSpec>(haptic::parse_device_spec(device_spec));
+
+  std::optional<haptic::Offline> offline;
+  if (!of_log.log.empty()) {
+    if (of_log.trace.empty()) throw std::runtime_error("--log needs --trace FILE, which what the hand feels is written to");
+    offline.emplace(of_log, declaration.rate_Hz, sync::host_now());
+    offline->run().adapt(options);
+  }
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
@@ -88,10 +103,11 @@ int main(int argc, char** argv) try {
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
   auto& events = sense.events();
+  if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
-  while (node.running()) {
-    const sync::HostTime now = node.wait();
+  while (node.running() && !(offline && offline->over())) {
+    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     sense.step(now);
     if (scenes.poll(now)) {
       choice = haptic::choose(*scenes.scene(), tool_name, options.set);
@@ -106,10 +122,11 @@ int main(int argc, char** argv) try {
         return std::make_unique<haptic::SurfaceMaps>(haptic::read_maps(scene, pictures));
       });
       if (choice.tool >= 0)  // its file is read in a thread of its own, at no priority
-        device.emplace([scene = *scenes.scene(), choice, given = device_given] {
+        device.emplace([scene = *scenes.scene(), choice, given = device_given, &offline] {
           sync::leave_realtime();
-          return haptic::device_of(scene, choice, given.get());
+          return offline ? offline->device() : haptic::device_of(scene, choice, given.get());
         });
+      if (offline) offline->follow(choice.tool);
       std::cerr << options.name << ": "
                 << (choice.tool >= 0 ? haptic::limits_sentence(choice.settings) : choice.problem) << "\n";
       node.set_tool(choice.tool);
@@ -123,6 +140,8 @@ int main(int argc, char** argv) try {
       quality = haptic::Quality(choice.settings);
       node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for its device" : choice.problem);
     }
+    while (offline && ((opening_maps && !opening_maps->done()) || (device && !device->done())))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (opening_maps && opening_maps->done()) {
       maps = opening_maps->take();
       opening_maps.reset();
@@ -152,7 +171,7 @@ int main(int argc, char** argv) try {
       if (session && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
         session->push(m->message, m->arrival);
     for (const std::string& news : live.step(now, change)) std::cerr << options.name << ": " << news << "\n";
-    if (!session) continue;
+    if (!session || (offline && !offline->in_tick())) continue;
     std::optional<sync::InPhase> rendering(sync::Phase::kRender);
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
@@ -162,12 +181,13 @@ int main(int argc, char** argv) try {
                                             quality.planes());
     rendering.reset();
     if (session->over()) continue;
+    if (offline) offline->add(out.state);
     node.bus().publish(channels::kToolState, out.state);
     if (node.tags().wanted()) told = out.state;
     if (device_force_t* force = session->tell()) node.bus().publish(channels::kDeviceForce, *force);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);
-    quality.add(sync::host_now() - now);
+    if (!offline) quality.add(sync::host_now() - now);
     node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->device_lost())
@@ -180,7 +200,10 @@ int main(int argc, char** argv) try {
       node.set_state(node_health_t::RUNNING, maps ? maps->trouble : "reads the maps of its surfaces");
     else
       node.set_state(node_health_t::READY, "waits for a touch model");
+    if (offline)
+      if (const auto line = offline->run().progress(sync::host_now())) std::cerr << options.name << ": " << *line << std::endl;
   }
+  if (offline) std::cerr << options.name << ": " << offline->result(choice.problem, sync::host_now()) << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("haptic_node", e);

@@ -69,8 +69,8 @@ HostTime LogFeed::arrival(const LogEvent& event) {
   return arrived_ = clock_.observe(t);
 }
 
-HostTime LogFeed::next(Bus& bus) {
-  now_ += period_;
+HostTime LogFeed::next_at(Bus& bus, HostTime tick) {
+  now_ = std::max(now_, tick);
   for (;;) {
     if (!has_pending_ && !scanner_.next(pending_)) break;
     has_pending_ = true;

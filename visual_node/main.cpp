@@ -60,9 +60,10 @@ int main(int argc, char** argv) try {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   visual::OfflineOptions of_log;
-  app.add_option("--log", of_log.log, "draws this log of a run instead of what is on the bus, as fast as it can; needs --video");
+  of_log.add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", of_log.video, "file for the pictures of the log, MP4")->needs("--log");
-  app.add_flag("--as-recorded", of_log.as_recorded, "the degradation profiles of the log hold too")->needs("--log");
+  app.add_option("--frames", of_log.frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
+  app.add_flag("--as-recorded", of_log.as_recorded, "the same as --degrade logged")->needs("--log");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const std::vector<setting_t> no_scene;
   for (const std::string& wrong :
@@ -78,7 +79,7 @@ int main(int argc, char** argv) try {
     if (of_log.video.empty()) throw std::runtime_error("--log needs --video FILE, which the pictures are written to");
     of_log.snapshot = keep.snapshot, of_log.snapshot_every_s = keep.snapshot_every_s;
     offline.emplace(of_log, settings.rate_Hz, sync::host_now());
-    offline->adapt(options);
+    offline->run().adapt(options);
   }
   const auto clock = [&] { return offline ? offline->now() : sync::host_now(); };
   visual::Stage stage(settings, window);
@@ -95,7 +96,10 @@ int main(int argc, char** argv) try {
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::FrameLock lock(node.bus().clocks(), declaration.modality, node.bus().identity().incarnation);
   visual::WallTalk walls(node, lock);
-  if (offline) composer.foresee({}, {});
+  if (offline) {
+    composer.foresee({}, {});
+    sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });
+  }
   visual::Recording recording(keep);
   visual::PictureStream stream;
   visual::LiveOverlays overlays(node.bus());
@@ -206,8 +210,8 @@ int main(int argc, char** argv) try {
     flashed += rendered;
   };
 
-  while (node.running() && !stage.closed() && !desk.closing() && !(offline && offline->over())) {
-    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
+  while (node.running() && !stage.closed() && !desk.closing() && !(offline && offline->run().over())) {
+    const sync::HostTime now = offline ? offline->run().next(node.bus()) : node.wait();
     receive(now);
     if (scenes.poll(now)) {
       load(now);
@@ -228,7 +232,7 @@ int main(int argc, char** argv) try {
     const auto read = [&](std::span<std::uint8_t> rgba) { stage.picture().read(rgba); };
     if (offline) {
       offline->add(read);
-      if (const auto line = offline->progress(sync::host_now())) say(*line);
+      if (const auto line = offline->run().progress(sync::host_now())) say(*line);
       continue;
     }
     if (auto pair = recording.add(tick, fresh ? fence : now + took, read)) {
