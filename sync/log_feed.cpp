@@ -7,7 +7,10 @@ namespace tactus::sync {
 
 // Three times through the log: to know its run and its damage, to know its end, and to hand it over.
 LogFeed::LogFeed(const std::string& path, double rate_Hz)
-    : file_(path), whole_(file_.bytes()), scanner_(file_.bytes()), period_(from_seconds(1 / rate_Hz)) {
+    : file_(path),
+      whole_(file_.bytes()),
+      events_(file_.bytes(), origin_, &ages_),
+      period_(from_seconds(1 / rate_Hz)) {
   OriginFinder finder;
   for (LogEvent event; whole_.next(event);) {
     finder.observe(event);
@@ -18,16 +21,16 @@ LogFeed::LogFeed(const std::string& path, double rate_Hz)
   origin_ = finder.find();
   if (!origin_.known)
     throw std::runtime_error(path + " holds no message of Tactus; give a run.lcmlog that scripts/run wrote");
-  LogScanner again(file_.bytes());
+  DatedEvents again(file_.bytes(), origin_, &ages_);
   bool begun = false;
-  for (LogEvent event; again.next(event);) {
+  HostTime at{};
+  for (LogEvent event; again.next(event, at);) {
     if (!begun && !ages_.of_the_run(bounded_us(event.timestamp_us))) continue;
-    if (!begun) begin_ = origin_.time(event.timestamp_us);
+    if (!begun) begin_ = end_ = at;
     begun = true;
-    end_ = std::max(begin_, arrival(event));
+    end_ = std::max(end_, at);
   }
-  clock_ = {};
-  arrived_ = begin_;
+  events_.start_at(0, begin_);
   now_ = begin_ - period_;
 }
 
@@ -38,19 +41,13 @@ BusOptions LogFeed::bus() const {
   return options;
 }
 
-HostTime LogFeed::arrival(const LogEvent& event) {
-  if (!ages_.of_the_run(bounded_us(event.timestamp_us))) return arrived_;
-  return arrived_ = clock_.observe(origin_.time(event.timestamp_us));
-}
-
 HostTime LogFeed::next(Bus& bus) {
   now_ += period_;
   for (;;) {
-    if (!has_pending_ && !scanner_.next(pending_)) break;
+    if (!has_pending_ && !events_.next(pending_, pending_at_)) break;
     has_pending_ = true;
-    const HostTime at = arrival(pending_);
-    if (at > now_) break;
-    if (!left_out_.contains(pending_.channel)) bus.hear(pending_.channel, pending_.data, at);
+    if (pending_at_ > now_) break;
+    if (!left_out_.contains(pending_.channel)) bus.hear(pending_.channel, pending_.data, pending_at_);
     has_pending_ = false;
   }
   return now_;

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "sync/bus.h"
+#include "sync/dated_events.h"
 #include "sync/log_ages.h"
 #include "sync/log_origin.h"
 #include "sync/log_reader.h"
-#include "sync/summary_clock.h"
 
 namespace tactus::sync {
 
@@ -43,24 +43,22 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events whose stamps are damaged: further than SummaryClock::kLargestStep from those of the run, and too few to
+  // Events whose stamps are damaged: further than LogAges::kApart_us from those of the run, and too few to
   // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
   std::int64_t misdated() const { return ages_.misdated(); }
   // One sentence when the log itself does not say, or not rightly, which run it is; empty: it does.
   const std::string& recovered() const { return origin_.recovered; }
 
  private:
-  HostTime arrival(const LogEvent& event);
-
   MappedFile file_;
   std::set<std::string, std::less<>> left_out_;
-  LogScanner whole_, scanner_;
-  SummaryClock clock_;
+  LogScanner whole_;
   LogAges ages_;
-  HostTime arrived_{};  // the event before
-  LogEvent pending_;
-  bool has_pending_ = false;
   LogOrigin origin_;
+  DatedEvents events_;
+  LogEvent pending_;
+  HostTime pending_at_{};
+  bool has_pending_ = false;
   HostTime begin_{}, end_{}, now_{};
   Nanoseconds period_;
 };

@@ -53,6 +53,7 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
   const TemporaryFile file;
   const DamagedLog sound(120);
   int refused = 0;
+  std::size_t missed_in_all = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
     std::mt19937 random(seed);
     DamagedLog log = sound;
@@ -72,13 +73,16 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
         while (const auto m = healths.pop()) missing.erase(m->message.header.seq);
       }
       CHECK(feed.over(Nanoseconds(20'000'000)));
-      // A message whose copy came before it with a damaged header may have taken its place; none is lost but so.
-      CHECK(missing.size() <= 1);
+      // Numbers and times of senders are damaged, too: so many messages contradict a wrong one before it is let go
+      // (sync/sequence.h). A log is damaged in up to eight places.
+      CHECK(missing.size() <= 8 * SequenceTracker::kContradictions);
+      missed_in_all += missing.size();
     } catch (const std::runtime_error&) {
       ++refused;
     }
   }
   CHECK(refused == 0);
+  CHECK(missed_in_all < 1000);  // of some 110,000
 }
 
 TEST_CASE("A log without its LOG_INFO says what it is by its messages, to a latency") {
