@@ -46,6 +46,12 @@ void OriginFinder::observe(const LogEvent& event) {
     pair.differences_ns.push_back(stamp_ns - header->publish_time_ns);
 }
 
+std::int64_t OriginFinder::witnesses() const {
+  std::int64_t sum = 0;
+  for (const auto& [key, pair] : pairs_) sum += pair.events;
+  return sum;
+}
+
 OriginFinder::Pairs::const_iterator OriginFinder::likeliest() const {
   const auto more = [](const auto& a, const auto& b) {
     const bool of_a = a.second.of_recorder >= kFewestOfRecorder, of_b = b.second.of_recorder >= kFewestOfRecorder;
@@ -92,6 +98,17 @@ LogOrigin OriginFinder::find() const {
                      "; run and clock are taken from the headers of " + std::to_string(found->second.events) +
                      " messages, its times are good to a latency";
   return origin;
+}
+
+LogOrigin origin_of(std::span<const std::uint8_t> log) {
+  // A second of a run; the largest scene at its head and then some.
+  constexpr std::int64_t kWitnesses = 4096;
+  constexpr std::size_t kMostBytes = 320 << 20;
+  LogScanner scanner(log);
+  OriginFinder finder;
+  for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMostBytes && scanner.next(e);)
+    finder.observe(e);
+  return finder.find();
 }
 
 }  // namespace tactus::sync

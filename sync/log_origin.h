@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <tactus/log_info_t.hpp>
 #include <utility>
@@ -28,6 +29,9 @@ struct LogOrigin {
 // A stamp that any arithmetic in ns can bear: within some 127 years of 1970.
 std::int64_t bounded_us(std::int64_t timestamp_us);
 
+// By the beginning of a log, without reading all of it.
+LogOrigin origin_of(std::span<const std::uint8_t> log);
+
 class OriginFinder {
  public:
   // So many pairs of a run and a clock are told apart: a cluster has few hosts; damage makes up more.
@@ -41,6 +45,8 @@ class OriginFinder {
 
   void observe(const LogEvent& event);
   LogOrigin find() const;
+  // Messages that have said which run they are of.
+  std::int64_t witnesses() const;
 
  private:
   struct Pair {
