@@ -106,7 +106,7 @@ void Replay::poll(HostTime now, const Take& take) {
   }
   // More is due than may be sent, or looked at.
   if (speed_ == 0) return;
-  const Nanoseconds behind = scaled(due(now) - position_, 1 / speed_);
+  const Nanoseconds behind = now - anchor_live_ - scaled(position_ - anchor_recorded_, 1 / speed_);
   if (behind <= kMostBehind) return;
   behind_ += behind;
   anchor(now);

@@ -24,13 +24,13 @@
 namespace tactus::sync {
 
 struct ReplayWishes {
-  bool verbatim = false;            // everything goes out, as it is
-  bool as_recorded = false;         // the profiles that were in force too
-  std::string channels;             // regular expression that the whole name matches; empty: all
-  std::string leave_out;            // likewise; empty: none
-  std::string also;                 // likewise: goes out although it would not
-  std::vector<std::string> rename;  // "FROM=TO"
-  std::vector<std::string> live;    // processes that run: what they said then does not go out
+  bool verbatim = false;                 // everything goes out, as it is
+  bool as_recorded = false;              // the profiles that were in force too
+  std::string channels = {};             // regular expression that the whole name matches; empty: all
+  std::string leave_out = {};            // likewise; empty: none
+  std::string also = {};                 // likewise: goes out although it would not
+  std::vector<std::string> rename = {};  // "FROM=TO"
+  std::vector<std::string> live = {};    // processes that run: what they said then does not go out
 };
 
 class ReplayChoice {
