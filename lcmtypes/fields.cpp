@@ -113,6 +113,42 @@ void skip_fields(const MessageType& type, std::size_t end, Walk& walk, Counts& c
   }
 }
 
+struct Visit {
+  Walk& walk;
+  const std::function<void(const std::string&, const Field&, const Leaf&)>& leaf;
+
+  // prefix: with the dot behind it.
+  void fields(const MessageType& type, const std::string& prefix) {
+    Counts counts;
+    for (const Field& field : type.fields) {
+      const std::int64_t n = length(field, counts, walk);
+      for (std::int64_t i = 0; i < n && walk.good(); ++i) {
+        const std::string path =
+            prefix + std::string(field.name) + (field.count.empty() ? "" : "[" + std::to_string(i) + "]");
+        one(field, path, counts);
+      }
+      if (!walk.good()) return;
+    }
+  }
+  void one(const Field& field, const std::string& path, Counts& counts) {
+    const std::size_t bytes = width(field.type);
+    if (field.type == "string") {
+      const std::string text = walk.text(true);
+      if (walk.good()) leaf(path, field, text);
+    } else if (field.type == "float" || field.type == "double") {
+      const double value = walk.number(field.type);
+      if (walk.good()) leaf(path, field, value);
+    } else if (bytes > 0) {
+      const std::int64_t value = walk.take_whole(bytes);
+      if (!walk.good()) return;
+      if (field.count.empty()) counts[field.name] = value;
+      leaf(path, field, value);
+    } else {
+      fields(*message_type(field.type), path + ".");
+    }
+  }
+};
+
 [[noreturn]] void unknown(const MessageType& type, std::string_view name) {
   std::vector<std::string> names;
   for (const Field& f : type.fields) names.emplace_back(f.name);
@@ -135,10 +171,22 @@ const MessageType* message_type(std::int64_t fingerprint) {
   return it == all.end() ? nullptr : &*it;
 }
 
+const MessageType* type_of(std::span<const std::uint8_t> bytes) {
+  return bytes.size() < 8 ? nullptr : message_type(Walk(bytes).take_whole(8));
+}
+
 const MessageType* type_on(std::string_view channel) {
   for (const Channel& c : channel_types())
     if (c.name == channel) return message_type(c.type);
   return nullptr;
+}
+
+bool for_each_leaf(const MessageType& type, std::span<const std::uint8_t> bytes,
+                   const std::function<void(const std::string&, const Field&, const Leaf&)>& visit) {
+  Walk walk(bytes);
+  if (walk.take_whole(8) != type.fingerprint) return false;
+  Visit{walk, visit}.fields(type, "");
+  return walk.good() && walk.left() == 0;
 }
 
 FieldPath::FieldPath(const MessageType& type, std::string_view path) : type_(&type), path_(path) {
@@ -221,8 +269,10 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
-std::string FieldPath::unit() const {
-  std::string rest = path_;
+std::string FieldPath::unit() const { return unit_of_path(path_); }
+
+std::string unit_of_path(std::string_view path) {
+  std::string rest(path);
   while (!rest.empty()) {
     const std::size_t dot = rest.rfind('.');
     std::string name = dot == std::string::npos ? rest : rest.substr(dot + 1);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,8 @@ std::span<const Channel> channel_types();
 const MessageType* message_type(std::string_view name);
 const MessageType* message_type(std::int64_t fingerprint);
 const MessageType* type_on(std::string_view channel);
+// Of a message, by its first bytes.
+const MessageType* type_of(std::span<const std::uint8_t> bytes);
 
 // A number or text of a message type: where it lies is found in each message, since lists and strings vary in
 // length.
@@ -64,7 +67,15 @@ class FieldPath {
   std::string path_;
 };
 
+// Calls visit(path, field, value) for every number and text of a message, in the order of its fields; the path as FieldPath
+// takes it. False when the bytes are no whole message of the type: what was visited until then is what they hold.
+using Leaf = std::variant<std::int64_t, double, std::string>;
+bool for_each_leaf(const MessageType& type, std::span<const std::uint8_t> bytes,
+                   const std::function<void(const std::string& path, const Field& field, const Leaf& value)>& visit);
+
 // The unit that ends a name: "force_N" N, "heat_flux_W_m2" W/m2, "age_ns" ns; empty: none.
 std::string unit_of(std::string_view name);
+// As the names of a path tell it, from the last to the first: that of "force_N.z" is N.
+std::string unit_of_path(std::string_view path);
 
 }  // namespace tactus

@@ -37,8 +37,12 @@ std::vector<std::string> LiveSettings::step(HostTime now, const SettingChanges::
   const auto push = [&](const auto& m) {
     if (m && m->header.run_id == node_.options().run_id) maps_.push(*m);
   };
-  lists_.read([&](std::span<const std::uint8_t> bytes, HostTime) { push(decode<tag_list_t>(bytes.data(), bytes.size())); });
-  values_.read([&](std::span<const std::uint8_t> bytes, HostTime) { push(decode<tag_values_t>(bytes.data(), bytes.size())); });
+  lists_.read([&](std::span<const std::uint8_t> bytes, HostTime) {
+    push(decode<tag_list_t>(bytes.data(), bytes.size()));
+  });
+  values_.read([&](std::span<const std::uint8_t> bytes, HostTime) {
+    push(decode<tag_values_t>(bytes.data(), bytes.size()));
+  });
   for (const SettingMaps::Change& change : maps_.take(now)) try {
       apply(change.name, change.value);
     } catch (const std::invalid_argument& e) {

@@ -22,9 +22,8 @@ bool matches(std::string_view pattern, std::string_view text) {
 
 bool TagRequests::take(const tag_request_t& request, HostTime now) {
   if (request.header.run_id != run_id_) return false;
-  const auto known = std::find_if(requests_.begin(), requests_.end(), [&](const Request& r) {
-    return r.incarnation == request.header.incarnation;
-  });
+  const auto known = std::find_if(requests_.begin(), requests_.end(),
+                                  [&](const Request& r) { return r.incarnation == request.header.incarnation; });
   if (known == requests_.end()) {
     if (requests_.size() >= kMost) return false;
     requests_.push_back({request.header.incarnation, request.patterns, now + kHolds});

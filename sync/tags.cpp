@@ -16,7 +16,8 @@ constexpr std::size_t kMostRows = 128;
 
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 48 &&
-         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") == std::string::npos;
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==
+             std::string::npos;
 }
 
 std::size_t size_of(const tag_def_t& def) { return static_cast<std::size_t>(def.getEncodedSize()); }

@@ -36,19 +36,22 @@ struct Tagged : Running {
       while (const auto m = lists.pop()) table.push(m->message);
       while (const auto m = values.pop()) {
         ++messages;
-        table.read(m->message, [&](const sync::TagTable::List& list, const tag_def_t& tag, std::int64_t t, double value) {
-          Series& s = heard[list.node + "." + tag.name];
-          s.unit = tag.unit;
-          if (s.values.empty()) s.first_ns = t;
-          s.last_ns = t;
-          s.values.push_back(value);
-        });
+        table.read(m->message,
+                   [&](const sync::TagTable::List& list, const tag_def_t& tag, std::int64_t t, double value) {
+                     Series& s = heard[list.node + "." + tag.name];
+                     s.unit = tag.unit;
+                     if (s.values.empty()) s.first_ns = t;
+                     s.last_ns = t;
+                     s.values.push_back(value);
+                   });
       }
     }
   }
   double rate_Hz(const std::string& name) {
     const Series& s = heard[name];
-    return s.values.size() < 2 ? 0 : static_cast<double>(s.values.size() - 1) / (static_cast<double>(s.last_ns - s.first_ns) * 1e-9);
+    return s.values.size() < 2
+               ? 0
+               : static_cast<double>(s.values.size() - 1) / (static_cast<double>(s.last_ns - s.first_ns) * 1e-9);
   }
 };
 
@@ -100,7 +103,8 @@ TEST_CASE("Variables of every node are told while somebody asks, each tick of th
     return total;
   };
   double parts = 0;
-  for (const char* phase : {"collision", "solve", "integrate", "decode", "other"}) parts += sum(std::string("sim_node.work.") + phase);
+  for (const char* phase : {"collision", "solve", "integrate", "decode", "other"})
+    parts += sum(std::string("sim_node.work.") + phase);
   const double whole = sum("sim_node.work");
   CHECK(parts > 0.8 * whole);
   CHECK(parts < 1.2 * whole);
@@ -115,7 +119,8 @@ TEST_CASE("One line of a scene lets what is heard make what is felt weaker") {
   Tagged c;
   // Each hit that sounded takes half a newton off the largest force, down to half a newton.
   c.processes.start_all(scene_with(
-      c.folder, "<tactus:map from='audio_node.hits' to='haptic_node.force_limit' gain='-0.5' offset='8N' low='0.5N'/>"));
+      c.folder,
+      "<tactus:map from='audio_node.hits' to='haptic_node.force_limit' gain='-0.5' offset='8N' low='0.5N'/>"));
   REQUIRE(c.ear.wait_until([&] { return c.all_live(kNodes) && c.ear.hits() > 0; }, kPatience_s));
   const auto weak = [&] {
     c.listen(2, "*");

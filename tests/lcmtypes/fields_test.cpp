@@ -101,6 +101,47 @@ TEMPLATE_TEST_CASE(
   for (const FieldPath& path : paths) CHECK_FALSE(path.read(other));
 }
 
+TEMPLATE_TEST_CASE("All numbers and texts of a message are visited in order, each by the path that reads it", "",
+                   EVERY_KIND) {
+  const std::string name = TestType::getTypeName();
+  const MessageType& type = *message_type(name);
+  Samples samples(13);
+  for (int i = 0; i < 3; ++i) {
+    TestType m{};
+    samples.fill(m);
+    const auto bytes = sync::encode(m);
+    const auto spots = schema().walk(name, bytes);
+    std::size_t at = 0;
+    const bool whole = for_each_leaf(type, bytes, [&](const std::string& path, const Field& field, const Leaf& value) {
+      REQUIRE(at < spots.size());
+      const Spot& spot = spots[at++];
+      INFO(name << "." << spot.path);
+      REQUIRE(path == spot.path);
+      REQUIRE(field.type == (spot.type == "byte" ? field.type : spot.type));
+      if (const auto* text = std::get_if<std::string>(&value))
+        CHECK(static_cast<double>(text->size()) == number_at(bytes, {spot.path, "int32_t", spot.offset}) - 1);
+      else if (const auto* number = std::get_if<double>(&value))
+        CHECK(*number == number_at(bytes, spot));
+      else
+        CHECK(static_cast<double>(std::get<std::int64_t>(value)) == number_at(bytes, spot));
+    });
+    CHECK(whole);
+    CHECK(at == spots.size());
+    // Cut short anywhere it is not whole, and what is visited is what there is.
+    for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 50) {
+      std::size_t visited = 0;
+      const std::vector<std::uint8_t> part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
+      CHECK_FALSE(for_each_leaf(type, part, [&](const std::string& path, const Field&, const Leaf&) {
+        REQUIRE(path == spots[visited++].path);
+      }));
+      CHECK(visited <= length);
+    }
+    auto longer = bytes;
+    longer.push_back(0);
+    CHECK_FALSE(for_each_leaf(type, longer, [](const std::string&, const Field&, const Leaf&) {}));
+  }
+}
+
 TEST_CASE("A list of fixed length is read like one of counted length") {
   pass_t pass{};
   uniform_t u{};

@@ -75,7 +75,8 @@ class Schema {
     for (std::string line; std::getline(lines, line, ';');) {
       std::smatch m;
       if (std::regex_search(line, std::regex(R"(^\s*const\s)"))) {
-        if (!fields.empty()) fields.back().enumerated = true;
+        // A constant that is no whole number names a value, and there are others.
+        if (!fields.empty() && !std::regex_search(line, std::regex(R"(\bdouble\b)"))) fields.back().enumerated = true;
       } else if (std::regex_search(line, m, std::regex(R"(^\s*(\w+)\s+(\w+)\s*(?:\[(\w+)\])?\s*$)"))) {
         fields.push_back({m[1], m[2], m[3], false});
       } else if (line.find_first_not_of(" \n\t") != std::string::npos) {

@@ -9,8 +9,8 @@ using namespace tactus::sync;
 
 namespace {
 
-map_def_t map(const std::string& from, const std::string& to, double gain = 1, double offset = 0, double low = -1e9,
-              double high = 1e9) {
+map_def_t map(const std::string& from, const std::string& to, double gain = 1, double offset = 0,
+              double low = -1e9, double high = 1e9) {
   map_def_t m{};
   m.from = from, m.to = to, m.gain = gain, m.offset = offset, m.low = low, m.high = high;
   return m;
@@ -56,7 +56,8 @@ TEST_CASE("Only the maps of its own process are heeded, and what they need is as
   CHECK_FALSE(maps.any());
 }
 
-TEST_CASE("The newest value of the variable is handed out, when it is another and at most a hundred times a second") {
+TEST_CASE(
+    "The newest value of the variable is handed out, when it is another and at most a hundred times a second") {
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node.force", "visual_node.exposure", 0.5, 1)});
   maps.push(values(0, {8}));

@@ -107,7 +107,8 @@ TEST_CASE("However many are tagged, each message fits a datagram and every value
   Heard h;
   std::vector<double> variables(1024);
   for (std::size_t i = 0; i < variables.size(); ++i)
-    h.tags.add("a_rather_long_name_of_a_variable_" + std::to_string(i), "kg m2/s2", &variables[i], i % 3 ? 0 : 250);
+    h.tags.add("a_rather_long_name_of_a_variable_" + std::to_string(i), "kg m2/s2", &variables[i],
+               i % 3 ? 0 : 250);
   h.tags.take(request({"*"}), at_ms(0));
   for (int ms = 0; ms < 300; ++ms) {
     for (std::size_t i = 0; i < variables.size(); ++i) variables[i] = static_cast<double>(i) + 1e-3 * ms;
@@ -118,7 +119,8 @@ TEST_CASE("However many are tagged, each message fits a datagram and every value
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const auto& seen = h.values.at("node.a_rather_long_name_of_a_variable_" + std::to_string(i) + " kg m2/s2");
     REQUIRE(seen.size() >= (i % 3 ? 240 : 60));
-    for (const Value& v : seen) REQUIRE(v.value == Approx(static_cast<double>(i) + 1e-9 * static_cast<double>(v.time_ns)));
+    for (const Value& v : seen)
+      REQUIRE(v.value == Approx(static_cast<double>(i) + 1e-9 * static_cast<double>(v.time_ns)));
   }
 }
 
