@@ -23,6 +23,14 @@ void Recorder::write(HostTime time, std::string_view channel, std::span<const st
   writer_.write((to_ns(time) + info_.realtime_offset_ns) / 1000, channel, data);
 }
 
+void Recorder::write_live(HostTime time, std::string_view channel, std::span<const std::uint8_t> data) {
+  write(time, channel, data);
+  if (limits_.split_bytes == 0 || writer_.bytes() < limits_.split_bytes) return;
+  // Also what comes at once, as from a flood, fills no part beyond its size.
+  if (!failing()) writer_.flush();
+  if (due_to_split(time)) split(time);
+}
+
 void Recorder::push(const MessageBatch& batch) {
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const MessageBatch::Message m = batch[i];
@@ -33,7 +41,7 @@ void Recorder::push(const MessageBatch& batch) {
       if (it != sequences_.end()) it->second.observe(*header);
     }
     if (begun_) {
-      write(m.arrival, m.channel, m.data);
+      write_live(m.arrival, m.channel, m.data);
       continue;
     }
     held_.push_back({m.arrival, std::string(m.channel), Bytes(m.data.begin(), m.data.end())});
@@ -52,7 +60,7 @@ void Recorder::begin(const std::vector<HeadAsset>& assets, HostTime now) {
   begun_ = true;
   part_began_ = now;
   write_head(held_.empty() ? now : held_.front().arrival);
-  for (const Held& m : held_) write(m.arrival, m.channel, m.data);
+  for (const Held& m : held_) write_live(m.arrival, m.channel, m.data);
   held_.clear();
   held_.shrink_to_fit();
   if (limits_.splits()) return;

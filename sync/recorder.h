@@ -62,6 +62,7 @@ class Recorder {
     Bytes data;
   };
   void write(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+  void write_live(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
   void write_head(HostTime live_from);
   bool due_to_split(HostTime now) const;
   void split(HostTime now);
