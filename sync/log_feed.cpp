@@ -41,8 +41,8 @@ BusOptions LogFeed::bus() const {
   return options;
 }
 
-HostTime LogFeed::next(Bus& bus) {
-  now_ += period_;
+HostTime LogFeed::next_at(Bus& bus, HostTime tick) {
+  now_ = std::max(now_, tick);
   for (;;) {
     if (!has_pending_ && !events_.next(pending_, pending_at_)) break;
     has_pending_ = true;

@@ -33,7 +33,9 @@ class LogFeed {
   void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
   // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
   // the recorder.
-  HostTime next(Bus& bus);
+  HostTime next(Bus& bus) { return next_at(bus, now_ + period_); }
+  // The same for a loop whose ticks are not even: the next one is then, and not before the last.
+  HostTime next_at(Bus& bus, HostTime tick);
   // All has been handed over, and `after` has passed since.
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
 

@@ -1,7 +1,7 @@
 // recorder: writes everything that crosses the bus to OUT/run.lcmlog, which the stock lcm-logplayer replays.
 //
 //   in   everything, on both ports; the scene and its assets for the head of the log
-//   out  a file; its health says what was lost
+//   out  a file; its health says what was lost; TAG_REQUEST, so that tagged variables are in the log
 //
 // When nothing arrives it writes nothing; when the scene does not come in 5 s the log begins without it; when the
 // disk is full it says so, keeps what it can, and goes on. What was heard is with the kernel within 20 ms: SIGKILL loses no
@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "lcmtypes/valid.h"
 #include "sync/node.h"
 #include "sync/recorder.h"
 #include "sync/recorder_tap.h"
@@ -19,6 +20,20 @@
 using namespace tactus;
 
 namespace {
+
+constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};  // it holds for three (lcmtypes/tag_request_t.lcm)
+
+// Throws std::runtime_error with one sentence.
+tag_request_t request_for(std::vector<std::string> patterns) {
+  if (patterns == std::vector<std::string>{"none"}) patterns.clear();
+  tag_request_t m{};
+  m.header.sim_time_ns = -1;
+  m.pattern_count = static_cast<std::int32_t>(patterns.size());
+  m.patterns = std::move(patterns);
+  m.header.run_id = m.header.incarnation = 1;  // for the check only: the bus fills them in
+  if (!valid(m)) throw std::runtime_error("--tags: give at most 16 patterns of at most 128 letters, or none");
+  return m;
+}
 
 std::int64_t realtime_minus_monotonic_ns() {
   timespec t{};
@@ -56,6 +71,9 @@ int main(int argc, char** argv) try {
   app.add_option("--keep", limits.keep, "of these files only the newest so many stay; needs a way to split")->check(CLI::Range(1, 100'000));
   app.add_option("--max-mb", max_mb, "of all files: the oldest go; of a single one: what exceeds it is left out, and counted")
       ->check(CLI::Range(1.0, 1e7));
+  std::vector<std::string> patterns{"*"};
+  app.add_option("--tags", patterns, "tagged variables to record, as node.tag with * for any letters, or none; may be repeated")
+      ->capture_default_str();
   sync::parse_or_exit(app, declaration.node, argc, argv);
   info.scene = std::filesystem::path(scene_file).filename().string();
   info.version = TACTUS_VERSION;
@@ -69,6 +87,7 @@ int main(int argc, char** argv) try {
   if (limits.splits() && limits.max_bytes > 0 && limits.split_bytes * 2 > limits.max_bytes)
     throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
 
+  tag_request_t wanted = request_for(patterns);
   sync::Node node(declaration, options);
   sync::RecorderTap tap(options.bus);
   sync::SceneReceiver scene(node.bus());
@@ -81,12 +100,17 @@ int main(int argc, char** argv) try {
   std::cerr << "recorder: writing " << path << std::endl;
 
   sync::MessageBatch batch;
+  sync::HostTime next_request{};
   while (node.running()) {
     const sync::HostTime now = node.wait();
     tap.take(batch);
     recorder.push(batch);
     if (scene.poll(now)) recorder.begin(assets_of(scene), now);
     recorder.poll(now);
+    if (wanted.pattern_count > 0 && now >= next_request) {
+      node.bus().publish(channels::kTagRequest, wanted);
+      next_request = now + kRequestPeriod;
+    }
     const bool trouble = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
     node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
                    recorder.note(tap.overflow(), tap.oversized()));
