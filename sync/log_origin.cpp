@@ -4,11 +4,21 @@
 #include <cstdlib>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/fields.h"
 #include "sync/decode.h"
 #include "sync/identity.h"
 #include "sync/log_header.h"
 
 namespace tactus::sync {
+namespace {
+
+std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8 && i < data.size(); ++i) value = value << 8 | data[i];
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
 
 std::int64_t bounded_us(std::int64_t timestamp_us) {
   constexpr std::int64_t kMost_us = 4'000'000'000'000'000;
@@ -25,6 +35,8 @@ void OriginFinder::observe(const LogEvent& event) {
     return;  // the head is stamped ahead of the run
   }
   const auto header = peek_header(event.data.data(), event.data.size());
+  // Bytes of another system may read as a header; that they begin as one of our types is no chance.
+  if (message_type(fingerprint_of(event.data)) == nullptr) return;
   // A replay of another log, recorded beside a run, or the scene at the head: said by nobody at that time.
   if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
   auto it = pairs_.find({header->run_id, header->clock});

@@ -59,6 +59,7 @@ void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, std::
     return;
   }
   waiting_bytes_ += size;
+  bytes_ += static_cast<std::int64_t>(size);
   last_us_ = std::max(last_us_, timestamp_us);
   if (blocks_.empty() || blocks_.back().size() + size > kBlockBytes) blocks_.emplace_back();
   std::vector<std::uint8_t>& block = blocks_.back();

@@ -46,6 +46,8 @@ class LogWriter {
   void flush();
 
   std::int64_t events() const { return events_; }
+  // Of all events, written or waiting.
+  std::int64_t bytes() const { return bytes_; }
   // Events that found no room.
   std::int64_t lost() const { return lost_; }
   // Why the last flush failed; empty: it did not.
@@ -59,6 +61,7 @@ class LogWriter {
   std::size_t waiting_bytes_ = 0;
   std::int64_t last_us_ = INT64_MIN;
   std::int64_t events_ = 0;
+  std::int64_t bytes_ = 0;
   std::int64_t lost_ = 0;
   std::string trouble_;
 };

@@ -9,9 +9,10 @@
 #include <string>
 #include <tactus/log_info_t.hpp>
 
+#include "sync/log_parts.h"
 #include "sync/log_writer.h"
-#include "sync/recorder_head.h"
 #include "sync/message_batch.h"
+#include "sync/recorder_head.h"
 #include "sync/sequence.h"
 
 namespace tactus::sync {
@@ -28,9 +29,15 @@ class Recorder {
 
   // info: all but header and live_from_ns.
   Recorder(Identity identity, log_info_t info, LogWriter writer, HostTime start);
+  // Splits and bounds the log: next opens the file of the next part (it may throw), prune is told the bytes of the
+  // present one and removes what is too much; it returns the bytes of the parts before it that are kept.
+  using Next = std::function<std::unique_ptr<LogSink>()>;
+  using Prune = std::function<std::int64_t(std::int64_t)>;
+  void limit(const LogLimits& limits, Next next, Prune prune);
 
   void push(const MessageBatch& batch);
-  // The scene is complete: it goes to the head of the log, if that is not written yet.
+  // The scene is complete: it goes to the head of the log, if that is not written yet, and to those of later
+  // parts.
   void begin(const std::vector<HeadAsset>& assets, HostTime now);
   // Call every 100 ms or more often: begins when it has waited long enough, and hands what there is to the disk.
   void poll(HostTime now);
@@ -38,8 +45,11 @@ class Recorder {
   void finish(HostTime now);
 
   bool begun() const { return begun_; }
-  bool failing() const { return !writer_.trouble().empty(); }
-  std::int64_t lost() const { return writer_.lost(); }
+  bool failing() const { return !writer_.trouble().empty() || !split_trouble_.empty(); }
+  std::int64_t lost() const { return lost_before_ + writer_.lost(); }
+  // Messages beyond the largest size that the log may have.
+  std::int64_t beyond() const { return beyond_; }
+  int parts() const { return parts_; }
   // Messages missing in the numbering of their sender, over all channels.
   std::int64_t gaps() const;
   // One line: what was written, what is missing and where.
@@ -52,6 +62,11 @@ class Recorder {
     Bytes data;
   };
   void write(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+  void write_live(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+  void write_head(HostTime live_from);
+  bool due_to_split(HostTime now) const;
+  void split(HostTime now);
+  std::int64_t events() const { return events_before_ + writer_.events(); }
 
   Identity identity_;
   log_info_t info_;
@@ -61,6 +76,16 @@ class Recorder {
   std::vector<Held> held_;
   std::size_t held_bytes_ = 0;
   HostTime next_flush_{};
+  LogLimits limits_;
+  Next next_;
+  Prune prune_;
+  // The scene of the head, kept where there may be another head.
+  std::vector<asset_ref_t> scene_refs_;
+  std::vector<Bytes> scene_bytes_;
+  HostTime part_began_{};
+  std::string split_trouble_;
+  std::int64_t bytes_before_ = 0, events_before_ = 0, lost_before_ = 0, beyond_ = 0;
+  int parts_ = 1;
   std::map<std::string, SequenceTracker, std::less<>> sequences_;
 };
 

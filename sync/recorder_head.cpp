@@ -4,6 +4,7 @@
 #include <map>
 
 #include "sync/decode.h"
+#include "sync/recorder_types.h"
 
 namespace tactus::sync {
 namespace {
@@ -60,7 +61,8 @@ std::vector<HeadEvent> log_head(const Identity& recorder, log_info_t info, const
     for (asset_chunk_t& c : chunks_of(asset)) chunks.push_back(std::move(c));
 
   std::vector<HeadEvent> head;
-  const auto events = static_cast<std::int64_t>(1 + pages.size() + chunks.size());
+  const std::vector<std::string> types = log_types();
+  const auto events = static_cast<std::int64_t>(1 + types.size() + pages.size() + chunks.size());
   std::map<std::string, std::int64_t> seq;
   const auto add = [&](const char* channel, auto& message) {
     const HostTime time = live_from - (events - static_cast<std::int64_t>(head.size())) * kHeadSpacing;
@@ -69,6 +71,10 @@ std::vector<HeadEvent> log_head(const Identity& recorder, log_info_t info, const
   };
   info.live_from_ns = to_ns(live_from);
   add(channels::kLogInfo, info);
+  for (const std::string& text : types) {
+    const HostTime time = live_from - (events - static_cast<std::int64_t>(head.size())) * kHeadSpacing;
+    head.push_back({time, kLogTypes, Bytes(text.begin(), text.end())});
+  }
   for (auto& page : pages) add(channels::kSceneManifest, page);
   for (auto& chunk : chunks) add(channels::kAssetChunk, chunk);
   return head;

@@ -26,8 +26,8 @@ struct HeadAsset {
   const Bytes* bytes;
 };
 
-// LOG_INFO, then the manifest in pages, then every chunk of every asset; the last kHeadSpacing before live_from.
-// info.live_from_ns is filled in.
+// LOG_INFO, then the message types (sync/recorder_types.h), the manifest in pages, then every chunk of every
+// asset; the last kHeadSpacing before live_from. info.live_from_ns is filled in.
 std::vector<HeadEvent> log_head(const Identity& recorder, log_info_t info, const std::vector<HeadAsset>& assets,
                                 HostTime live_from);
 

@@ -7,6 +7,7 @@
 #include "sync/datagram.h"
 #include "sync/identity.h"
 #include "sync/log_header.h"
+#include "sync/recorder_types.h"
 
 namespace tactus::sync {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::array kWithheld{
     kNodeHealth,   kPresented,      kSyncReport,   kClockProbe,    kClockMap,      kMediaClock,   kFrameShown,
     kPlayout,      kPlayoutRequest, kDegradation,  kDegraded,      kSimCommand,    kSimReply,     kSetting,
     kSettingReply, kDeviceForce,    kThermalState, kThermalDevice, kSceneManifest, kAssetRequest, kAssetChunk,
-    kPictureChunk, kLogInfo,        "LOG_TYPE",    kTagRequest,    kTagList,      kTagValues,      "LCM_SELF_TEST"};
+    kPictureChunk, kLogInfo,        kLogTypes,     kTagRequest,    "LCM_SELF_TEST"};
 // A log of noise has more channels than anybody remembers.
 constexpr std::size_t kMostDecided = 4096;
 

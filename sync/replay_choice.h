@@ -2,11 +2,11 @@
 //
 // A replay stands in for what is not there: the simulation, and senses that are not live. So what the world said
 // goes out, and what senses said of themselves, unless they are live. What does not go out, whoever said it, is
-// what would be mistaken for the live run: measurements (NODE_HEALTH, PRESENTED, SYNC_REPORT, DEGRADED, TAG_VALUES,
-// MEDIA_CLOCK, FRAME_SHOWN), clocks (CLOCK_PROBE, CLOCK_MAP: of clocks that read otherwise today), orders and
-// decisions (PLAYOUT, DEGRADATION, SETTING, SIM_COMMAND and their like: the live run has its own), forces and
-// temperatures for devices (DEVICE_FORCE, THERMAL_STATE, THERMAL_DEVICE: they were safe for another hand), and
-// what the replay serves itself (the scene).
+// what would be mistaken for the live run: measurements (NODE_HEALTH, PRESENTED, SYNC_REPORT, DEGRADED,
+// TAG_VALUES, MEDIA_CLOCK, FRAME_SHOWN), clocks (CLOCK_PROBE, CLOCK_MAP: of clocks that read otherwise today),
+// orders and decisions (PLAYOUT, DEGRADATION, SETTING, SIM_COMMAND and their like: the live run has its own),
+// forces and temperatures for devices (DEVICE_FORCE, THERMAL_STATE, THERMAL_DEVICE: they were safe for another
+// hand), and what the replay serves itself (the scene).
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/game_state_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/world_state_t.hpp>
 
@@ -43,6 +44,17 @@ Nanoseconds slowed(Nanoseconds d, double speed) {
   return Nanoseconds(std::llround(std::clamp(static_cast<double>(d.count()) / speed, -4e18, 4e18)));
 }
 
+// The times of tagged values, of the sender's clock as its header.
+void restamp_values(std::span<std::uint8_t> message, std::int64_t sent_ns, HostTime publish, double speed) {
+  auto values = decode<tag_values_t>(message.data(), message.size());
+  if (!values) return;
+  for (std::int64_t& t : values->times_ns) {
+    const std::int64_t ago = sent_ns - std::clamp(t, sent_ns - 60'000'000'000, sent_ns);
+    t = std::max<std::int64_t>(0, to_ns(publish - slowed(Nanoseconds(ago), speed)));
+  }
+  values->encode(message.data(), 0, static_cast<int>(message.size()));
+}
+
 }  // namespace
 
 ReplayStamps::ReplayStamps(const LogOrigin& origin, Identity live)
@@ -75,6 +87,10 @@ bool ReplayStamps::restamp(std::span<std::uint8_t> message, const ReplayMoment& 
   put(message, kClock, static_cast<std::uint64_t>(live_.clock), 4);
   put(message, kRun, static_cast<std::uint64_t>(live_.run_id));
   put(message, kIncarnation, static_cast<std::uint64_t>(incarnation));
+  if (get(message, 0) == static_cast<std::uint64_t>(tag_values_t::getHash())) {
+    restamp_values(message, header->publish_time_ns, publish, moment.speed);
+    return true;
+  }
   if (!has_sim_clock(message)) return true;
   const auto host_ns = static_cast<std::int64_t>(get(message, kSimHost));
   const auto rate = std::bit_cast<double>(get(message, kSimRate));

@@ -39,7 +39,7 @@ def commands(plan, run_id, git):
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
-        "replay": [*plan.replay, *(word for name in plan.senses() if name not in plan.without for word in ("--live", name))],
+        "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
     }
     own["sync_node"] = list(plan.playout)
     for name, tool in plan.hands.items():

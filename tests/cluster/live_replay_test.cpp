@@ -1,0 +1,158 @@
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <tactus/world_state_t.hpp>
+
+#include "sync/log_writer.h"
+#include "tests/cluster/run_log.h"
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+constexpr std::int64_t kLiveRun = Running::kRunId + 1;
+
+// Four seconds of the small scene, recorded into folder/run.lcmlog.
+std::filesystem::path recorded(const Folder& folder) {
+  Running c;
+  c.processes.start("recorder");
+  c.start();
+  c.ear.listen(4);
+  c.processes.signal("recorder", SIGTERM);
+  REQUIRE(c.processes.wait_for_exit("recorder", kPatience_s) == 0);
+  std::filesystem::rename(c.folder.path() / "run.lcmlog", folder.path() / "run.lcmlog");
+  return folder.path() / "run.lcmlog";
+}
+
+std::vector<std::string> options_of_replay(const std::filesystem::path& log, std::vector<std::string> more = {}) {
+  std::vector<std::string> words{log.string()};
+  for (const std::string& sense : kSenses) words.insert(words.end(), {"--live", sense});
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// What a log holds, but for what only says that somebody tried its network.
+std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const std::filesystem::path& path) {
+  sync::MappedFile file(path);
+  sync::LogScanner scanner(file.bytes());
+  std::vector<std::pair<std::string, std::vector<std::uint8_t>>> out;
+  for (sync::LogEvent e; scanner.next(e);)
+    if (e.channel != "LCM_SELF_TEST" && e.channel != channels::kNodeHealth)
+      out.emplace_back(e.channel, std::vector<std::uint8_t>(e.data.begin(), e.data.end()));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("All senses render a replayed log, and go on rendering it when one of them is killed") {
+  Folder folder;
+  const auto log = recorded(folder);
+  Processes processes(folder.path() / "again", kLiveRun);
+  Ear ear(kLiveRun);
+  for (const std::string& sense : kSenses) processes.start(sense);
+  processes.start("replay", options_of_replay(log, {"--loop"}));
+  const auto all_have_rendered = [&](const std::string& but, const std::map<std::string, std::int64_t>& before) {
+    return std::all_of(kSenses.begin(), kSenses.end(), [&](const std::string& n) {
+      return n == but || ear.rendered(n) > (before.contains(n) ? before.at(n) : 0);
+    });
+  };
+  const bool rendered = ear.wait_until([&] { return all_have_rendered("", {}); }, kPatience_s);
+  for (const std::string& n : kSenses) INFO(n << " rendered " << ear.rendered(n) << ": " << processes.said(n));
+  INFO(processes.said("replay"));
+  REQUIRE(rendered);
+  // What the recorded senses said of themselves is not heard: one haptic_node speaks, and in this life.
+  CHECK(ear.rejoined("haptic_node") == 0);
+  CHECK(ear.health("sim_node") == nullptr);
+
+  processes.kill("audio_node");
+  std::map<std::string, std::int64_t> before;
+  for (const std::string& n : kSenses) before[n] = ear.rendered(n);
+  CHECK(ear.wait_until([&] { return all_have_rendered("audio_node", before); }, kPatience_s));
+  SECTION("and when it comes back it gets the scene, and renders too") {
+    processes.start("audio_node");
+    const std::int64_t old = ear.rendered("audio_node");
+    CHECK(ear.wait_until(
+        [&] {
+          return ear.rejoined("audio_node") > 0 && ear.rendered("audio_node") != old &&
+                 ear.rendered("audio_node") > 0;
+        },
+        kPatience_s));
+  }
+  for (const char* n : {"haptic_node", "visual_node", "thermal_node"}) CHECK(processes.running(n));
+}
+
+TEST_CASE("A running replay obeys what is written into its pipe") {
+  Folder folder;
+  const auto log = recorded(folder);
+  const std::string pipe = folder.path() / "control";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  Processes processes(folder.path() / "again", kLiveRun);
+  Ear ear(kLiveRun);
+  auto& states = ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
+  processes.start("replay", {log, "--paused", "--stay", "--control", pipe});
+  const auto order = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
+  // Instants of the world that go out within so long.
+  const auto heard = [&](double seconds) {
+    ear.listen(0.3);
+    while (states.pop()) {
+    }
+    ear.listen(seconds);
+    std::vector<std::int64_t> times;
+    while (const auto m = states.pop()) times.push_back(m->message.header.sim_time_ns);
+    return times;
+  };
+  REQUIRE(ear.wait_until([&] { return ear.health("replay") != nullptr; }, kPatience_s));
+  CHECK(heard(0.5).empty());
+  order("loop on\nresume");
+  CHECK_FALSE(heard(1).empty());
+  order("pause");
+  CHECK(heard(0.5).empty());
+  order("seek 1\nstep 0.5");
+  ear.listen(3);
+  CHECK_THAT(processes.said("replay"), Catch::Contains("1.00 of"));
+  CHECK(heard(0.3).empty());
+  order("fly");
+  CHECK(ear.wait_until([&] { return processes.said("replay").find("cannot obey 'fly'") != std::string::npos; },
+                       kPatience_s));
+  order("quit");
+  CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);
+}
+
+TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its log is replayed in turn") {
+  Folder folder;
+  const std::filesystem::path ours = folder.path() / "ours.lcmlog";
+  {
+    sync::LogWriter writer(std::make_unique<sync::FileSink>(ours));
+    for (int i = 0; i < 2000; ++i)
+      writer.write(1'700'000'000'000'000 + 1000 * i, "CHANNEL_" + std::to_string(i % 5),
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(i % 700), static_cast<std::uint8_t>(i)));
+    writer.flush();
+  }
+  Processes processes(folder.path() / "out", kLiveRun);
+  const auto through_lcm_logger = [&](const std::filesystem::path& from, const std::filesystem::path& to,
+                                      const std::vector<std::string>& options) {
+    processes.spawn("lcm-logger", {"lcm-logger", "--quiet", "--lcm-url=udpm://239.255.76.67:7667?ttl=0", to});
+    Ear ear(kLiveRun);
+    ear.wait_until([&] { return std::filesystem::exists(to); }, kPatience_s);
+    ear.listen(0.5);
+    // No faster than the stock logger follows on a busy machine.
+    std::vector<std::string> words{from, "--most", "2000"};
+    words.insert(words.end(), options.begin(), options.end());
+    processes.start("replay", words);
+    REQUIRE(processes.wait_for_exit("replay", kPatience_s) == 0);
+    ear.listen(1);
+    processes.signal("lcm-logger", SIGTERM);
+    processes.wait_for_exit("lcm-logger", kPatience_s);
+  };
+  through_lcm_logger(ours, folder.path() / "stock.lcmlog", {});
+  CHECK_THAT(processes.said("replay"), Catch::Contains("holds no message of Tactus"));
+  const bool heard_all = events_in(ours) == events_in(folder.path() / "stock.lcmlog");
+  CHECK(heard_all);
+  // What replay says of itself has been recorded, too: not foreign any more.
+  through_lcm_logger(folder.path() / "stock.lcmlog", folder.path() / "again.lcmlog", {"--verbatim"});
+  const bool same = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
+  CHECK(same);
+}

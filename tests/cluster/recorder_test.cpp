@@ -1,0 +1,127 @@
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/mount.h>
+
+#include <fstream>
+#include <set>
+#include <tactus/game_state_t.hpp>
+#include <thread>
+
+#include "sync/log_header.h"
+#include "sync/pacing.h"
+#include "tests/cluster/run_log.h"
+#include "tests/cluster/running.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+// Numbered messages of a kind that nobody else sends.
+struct Sender {
+  static constexpr const char* kChannel = channels::kGameState;
+  Ear ear{Running::kRunId};
+  std::vector<sync::HostTime> sent;
+
+  void send(int count, sync::Nanoseconds apart) {
+    sync::HostTime next = sync::host_now();
+    for (int i = 0; i < count; ++i) {
+      game_state_t m{};
+      m.header.sim_time_ns = 0;
+      ear.bus().publish(kChannel, m);
+      sent.push_back(sync::host_now());
+      next += apart;
+      std::this_thread::sleep_until(std::chrono::steady_clock::time_point(next.time_since_epoch()));
+    }
+  }
+};
+
+std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
+  sync::MappedFile file(log);
+  sync::LogScanner scanner(file.bytes());
+  std::vector<std::int64_t> numbers;
+  for (sync::LogEvent e; scanner.next(e);)
+    if (e.channel == Sender::kChannel)
+      if (const auto header = sync::peek_header(e.data.data(), e.data.size())) numbers.push_back(header->seq);
+  // Whatever ended it, the file ends at the end of an event.
+  CHECK(scanner.damaged_regions() == 0);
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and its file is whole up to there") {
+  Folder folder;
+  Processes processes(folder.path(), Running::kRunId);
+  Sender sender;
+  processes.start("recorder");
+  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  // Without a scene the log begins after 5 s; what came until then waits.
+  sender.send(7000, sync::Nanoseconds(1'000'000));
+  const sync::HostTime killed = sync::host_now();
+  processes.kill("recorder");
+  const auto numbers = numbers_in(folder.path() / "run.lcmlog");
+  std::size_t owed = 0;
+  while (owed < sender.sent.size() && sender.sent[owed] < killed - sync::Nanoseconds(100'000'000)) ++owed;
+  CHECK(numbers.size() >= owed);
+  for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
+}
+
+TEST_CASE("A recorder whose disk is full says so, and its file is whole up to there") {
+  Folder folder;
+  const std::filesystem::path small = folder.path() / "small";
+  std::filesystem::create_directory(small);
+  if (mount("tmpfs", small.c_str(), "tmpfs", 0, "size=400k") != 0) {
+    WARN("no tmpfs may be mounted here");
+    return;
+  }
+  {
+    Processes processes(folder.path(), Running::kRunId);
+    Sender sender;
+    processes.spawn("recorder", {(programs() / "recorder").string(), "--run-id", std::to_string(Running::kRunId),
+                                 "--out", small});
+    REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+    sender.send(9000, sync::Nanoseconds(700'000));
+    const bool said = sender.ear.wait_until(
+        [&] {
+          const node_health_t* h = sender.ear.health("recorder");
+          return h && h->state == node_health_t::OUTPUT_LOST &&
+                 h->note.find("No space left on device") != std::string::npos;
+        },
+        kPatience_s);
+    CHECK(said);
+    const auto numbers = numbers_in(small / "run.lcmlog");
+    CHECK(numbers.size() > 100);
+    for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
+    processes.signal("recorder", SIGTERM);
+    CHECK(processes.wait_for_exit("recorder", kPatience_s) == 1);
+    CHECK_THAT(processes.said("recorder"), Catch::Contains("make room on its disk"));
+  }
+  umount(small.c_str());
+}
+
+TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and what others say besides") {
+  Folder folder;
+  Processes processes(folder.path(), Running::kRunId);
+  Sender sender;
+  processes.start("recorder", {"--split-mb", "1"});
+  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  sender.send(60'000, sync::Nanoseconds(0));
+  sender.ear.listen(6);
+  processes.signal("recorder", SIGTERM);
+  CHECK(processes.wait_for_exit("recorder", kPatience_s) == 0);
+  std::set<std::int64_t> found;
+  int parts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    if (entry.path().extension() != ".lcmlog") continue;
+    ++parts;
+    for (const std::int64_t n : numbers_in(entry.path())) CHECK(found.insert(n).second);
+  }
+  CHECK(parts > 3);
+  CHECK_THAT(processes.said("recorder"), !Catch::Contains("want of"));
+  // What is missing is a gap that the recorder has counted: as many as the kernel dropped at its socket.
+  const std::string said = processes.said("recorder");
+  const std::size_t at = said.rfind("GAME_STATE ");
+  const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(said.substr(at + 11));
+  CHECK(static_cast<std::int64_t>(found.size()) + gaps >= 60'000 - 1);
+}

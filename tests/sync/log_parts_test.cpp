@@ -1,0 +1,67 @@
+#include "sync/log_parts.h"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+using namespace tactus::sync;
+
+namespace {
+
+struct TemporaryFolder {
+  std::filesystem::path path;
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "tactus_XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path); }
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) names.insert(entry.path().filename());
+    return names;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Parts of a log are numbered on, and overwrite nothing") {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path / "run.2.lcmlog") << "x";
+  LogParts parts(folder.path, {});
+  for (int i = 0; i < 3; ++i) parts.open();
+  CHECK(folder.files() == std::set<std::string>{"run.lcmlog", "run.2.lcmlog", "run.3.lcmlog", "run.4.lcmlog"});
+  CHECK(std::filesystem::file_size(folder.path / "run.2.lcmlog") == 1);
+}
+
+TEST_CASE("Of many parts the newest stay, never more than asked for") {
+  const TemporaryFolder folder;
+  LogLimits limits;
+  limits.keep = 2;
+  LogParts parts(folder.path, limits);
+  for (int i = 1; i <= 5; ++i) {
+    parts.open();
+    parts.prune(100);
+    CHECK(folder.files().size() == static_cast<std::size_t>(std::min(i, 2)));
+  }
+  CHECK(folder.files() == std::set<std::string>{"run.4.lcmlog", "run.5.lcmlog"});
+  CHECK(parts.removed() == 3);
+}
+
+TEST_CASE("Parts together never exceed the largest size, and the one that is written stays") {
+  const TemporaryFolder folder;
+  LogLimits limits;
+  limits.max_bytes = 1000;
+  LogParts parts(folder.path, limits);
+  for (int i = 0; i < 10; ++i) {
+    parts.open();
+    for (const std::int64_t bytes : {100, 200, 300}) {
+      parts.prune(bytes);
+      CHECK(parts.bytes_before() + bytes <= 1000);
+    }
+  }
+  parts.prune(5000);
+  CHECK(folder.files() == std::set<std::string>{"run.10.lcmlog"});
+}
