@@ -35,7 +35,7 @@ TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a m
   // It ends with 1 when a byte differs, or an onset of sound is more than 1 ms off.
   const std::string said = run.output_of(
       {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/rerender").string(), run.out() / "run.lcmlog", "--degrade", late,
-       "--twice", "--live", "--set", "visual:width=160", "--set", "visual:height=120", "--json", table});
+       "--twice", "--live", "--set", "visual:width=320", "--set", "visual:height=240", "--json", table});
   INFO(said);
   const json result = json::parse(contents(table));
   CHECK(result["not_rendered"].empty());
