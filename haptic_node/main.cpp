@@ -26,13 +26,14 @@
 #include "haptic_node/offline.h"
 #include "haptic_node/quality.h"
 #include "haptic_node/session.h"
+#include "haptic_node/tagged.h"
 #include "lcmtypes/pointing.h"
+#include "sync/live_settings.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/pacing.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
-#include "sync/setting_changes.h"
 
 using namespace tactus;
 
@@ -89,8 +90,7 @@ int main(int argc, char** argv) try {
   std::optional<haptic::Session> session;
   bool points = false;    // its tool is a wand or the head: there is no touch to wait for
   bool no_touch = false;  // so are all tools of the scene: no touch model says that the world has begun
-  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
-  sync::SettingChanges changes(options.name, options.run_id);
+  sync::LiveSettings live(node);
   // A safety limit may not become looser than the scene has it, nor the command line.
   haptic::Settings own = given.settings;
   const auto change = [&](const std::string& name, const std::string& value) {
@@ -98,6 +98,8 @@ int main(int argc, char** argv) try {
     sync::change_live(choice.settings, own, haptic::setting_fields(), name, value);
     session->change(choice.settings);
   };
+  tool_state_t told{};  // last; for who records it
+  haptic::tag(node.tags(), told);
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
   auto& events = sense.events();
@@ -110,6 +112,7 @@ int main(int argc, char** argv) try {
     if (scenes.poll(now)) {
       choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       own = choice.settings;
+      live.set_scene(*scenes.scene());
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       if (session) session->let_go();
       device.reset();
@@ -167,19 +170,20 @@ int main(int argc, char** argv) try {
     while (const auto m = device_forces.pop())
       if (session && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
         session->push(m->message, m->arrival);
-    // One a tick: whoever moves a slider takes no more of a tick than that.
-    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
-    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
+    for (const std::string& news : live.step(now, change)) std::cerr << options.name << ": " << news << "\n";
     if (!session || (offline && !offline->in_tick())) continue;
+    std::optional<sync::InPhase> rendering(sync::Phase::kRender);
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
                                              .touch_delay = sense.profile_delay(),
                                              .force_step_N = sense.output().force_step_N,
                                              .touch_arrival = no_touch ? now : touch.count().newest_arrival},
                                             quality.planes());
+    rendering.reset();
     if (session->over()) continue;
     if (offline) offline->add(out.state);
     node.bus().publish(channels::kToolState, out.state);
+    if (node.tags().wanted()) told = out.state;
     if (device_force_t* force = session->tell()) node.bus().publish(channels::kDeviceForce, *force);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);

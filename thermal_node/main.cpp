@@ -14,6 +14,7 @@
 #include <iostream>
 #include <optional>
 
+#include "sync/live_settings.h"
 #include "sync/node.h"
 #include "sync/pacing.h"
 #include "sync/scene_exchange.h"
@@ -38,7 +39,8 @@ int main(int argc, char** argv) try {
       .inputs = {channels::kContacts, channels::kContactEvents},
       .presents = "the end of the tick whose heat holds it",
       .late = thermal::kLate,
-      .degradable = {"response"}};
+      .degradable = {"response"},
+      .phases = {sync::Phase::kRender}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);
@@ -73,6 +75,18 @@ int main(int argc, char** argv) try {
   std::unique_ptr<thermal::Device> device;
   std::optional<double> element_degC;  // as commanded last, whatever the scene
   std::optional<double> plate_degC;    // as measured last
+  thermal_state_t told{};  // last; for who records it
+  node.tags().add("skin", "degC", &told.skin_degC);
+  node.tags().add("command", "degC", &told.commanded_degC);
+  node.tags().add("plate", "degC", [&] { return plate_degC.value_or(told.commanded_degC); });
+  node.tags().add("flux", "W/m2", &told.heat_flux_W_m2);
+  node.tags().add("force", "N", &told.force_N);
+  sync::LiveSettings live(node);
+  thermal::Settings own = choice.settings;
+  const auto change = [&](const std::string& name, const std::string& value) {
+    sync::change_live(choice.settings, own, thermal::setting_fields(), name, value);
+    if (renderer) renderer->change(choice.settings);
+  };
   if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
@@ -88,6 +102,8 @@ int main(int argc, char** argv) try {
     if (scenes.poll(now)) {
       choice = thermal::choose(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
+      own = choice.settings;
+      live.set_scene(*scenes.scene());
       if (offline) offline->run().expect_rate(choice.settings.rate_Hz);
       node.set_rate(choice.settings.rate_Hz);
       quality = thermal::Quality(choice.settings);
@@ -105,14 +121,18 @@ int main(int argc, char** argv) try {
         renderer->resume(dwell);
       }
     }
+    for (const std::string& news : live.step(now, change)) std::cerr << declaration.node << ": " << news << "\n";
     if (!renderer) continue;
     const thermal::Tick tick =
         ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
+    std::optional<sync::InPhase> rendering(sync::Phase::kRender);
     const double command_degC = element_degC.value_or(choice.settings.skin_rest_degC);
     const auto plate = device ? device->step(command_degC, renderer->load_W(), now) : std::nullopt;
     thermal_state_t state = renderer->step(tick, {.response_s = sense.output().response_s,
                                                   .longest_substep_s = quality.longest_substep_s(),
                                                   .plate = plate});
+    rendering.reset();
+    told = state;
     element_degC = state.commanded_degC;
     if (offline) offline->add(state);
     node.bus().publish(channels::kThermalState, state);
