@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tactus/log_info_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/vectors.h"
@@ -22,12 +23,13 @@ DeviceState device_of(const tool_state_t& m) {
 
 }  // namespace
 
-ToolTrack::ToolTrack(const std::string& log, std::int32_t clock, sync::HostTime begin, sync::HostTime end)
-    : file_(log), scanner_(file_.bytes()), clock_(clock), begin_(begin), end_(end) {}
+ToolTrack::ToolTrack(const std::string& log, sync::OwnClock own, sync::HostTime begin, sync::HostTime end)
+    : file_(log), scanner_(file_.bytes()), own_(own), begin_(begin), end_(end) {}
 
 void ToolTrack::follow(int tool) {
   tool_ = tool;
   scanner_ = sync::LogScanner(file_.bytes());
+  simulation_ = sync::SimFollower(own_);
   incarnation_ = 0;
 }
 
@@ -36,12 +38,17 @@ std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
     if (e.channel == channels::kLogInfo && realtime_offset_ns_ == 0)
       if (const auto info = sync::decode<log_info_t>(e.data.data(), e.data.size()))
         realtime_offset_ns_ = info->realtime_offset_ns;
-    if (e.channel != channels::kToolState) continue;
-    const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
-    if (!m || m->tool != tool_) continue;
+    if (e.channel != channels::kToolState && e.channel != channels::kTouchModel) continue;
     constexpr std::int64_t kMost_us = 4'000'000'000'000'000;  // as LogFeed: in ns it is still a number
     const auto arrival =
         sync::host_time(std::clamp(e.timestamp_us, -kMost_us, kMost_us) * 1000 - realtime_offset_ns_);
+    if (e.channel == channels::kTouchModel) {
+      const auto m = sync::decode<touch_model_t>(e.data.data(), e.data.size());
+      if (m && m->tool == tool_) simulation_.follow(m->header, m->clock, arrival);
+      continue;
+    }
+    const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
+    if (!m || m->tool != tool_) continue;
     if (const auto tick = tick_of(*m, arrival); tick && tick->at > after) return tick;
   }
   return std::nullopt;
@@ -52,7 +59,7 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   RecordedTick tick;
   tick.published_ns = m.header.publish_time_ns;
   tick.seq = m.header.seq;
-  tick.at = m.header.clock == clock_ ? sync::host_time(tick.published_ns) : arrival;
+  tick.at = m.header.clock == own_.clock ? began(m.header) : arrival;
   if (tick.at < arrival - kMostUnderWay || tick.at > arrival + kMostUnderWay) return std::nullopt;
   if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
     return std::nullopt;
@@ -60,6 +67,16 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   heard_ = arrival;
   tick.device = device_of(m);
   return tick;
+}
+
+// A tick says at its end which instant of the world it is of: that of its beginning, by the clock of the touch
+// models. What arrived in between was not felt in it.
+sync::HostTime ToolTrack::began(const header_t& header) const {
+  const sync::HostTime told = sync::host_time(header.publish_time_ns);
+  const auto map = simulation_.map(told);
+  if (!map || header.sim_time_ns <= 0) return told;
+  const sync::HostTime at = map->to_host(sync::sim_time(header.sim_time_ns));
+  return at <= told && told - at <= kLongestTick ? at : told;
 }
 
 }  // namespace tactus::haptic

@@ -9,6 +9,7 @@
 
 #include "haptic_node/devices/device.h"
 #include "sync/log_reader.h"
+#include "sync/sim_follower.h"
 
 namespace tactus::haptic {
 
@@ -26,9 +27,12 @@ class ToolTrack {
   // A TOOL_STATE that arrived at the recorder so much before or after it says to have been sent is damaged.
   static constexpr sync::Nanoseconds kMostUnderWay{1'000'000'000};
 
-  // clock: of the recorder; begin, end: of the run on it. A sender with another clock is read by arrival. Throws
+  // A tick takes no longer: what says that it began earlier before it was told of is not its beginning.
+  static constexpr sync::Nanoseconds kLongestTick{1'000'000};
+
+  // own: of the recorder; begin, end: of the run on it. A sender with another clock is read by arrival. Throws
   // std::runtime_error with one sentence when there is no such file.
-  ToolTrack(const std::string& log, std::int32_t clock, sync::HostTime begin, sync::HostTime end);
+  ToolTrack(const std::string& log, sync::OwnClock own, sync::HostTime begin, sync::HostTime end);
 
   // From its beginning, those of this tool.
   void follow(int tool);
@@ -37,12 +41,14 @@ class ToolTrack {
 
  private:
   std::optional<RecordedTick> tick_of(const tool_state_t& m, sync::HostTime arrival);
+  sync::HostTime began(const header_t& header) const;
 
   sync::MappedFile file_;
   sync::LogScanner scanner_;
-  std::int32_t clock_;
+  sync::OwnClock own_;
   sync::HostTime begin_, end_;
   int tool_ = -1;
+  sync::SimFollower simulation_{own_};
   std::int64_t realtime_offset_ns_ = 0;
   std::int64_t incarnation_ = 0;
   sync::HostTime heard_{};  // of that

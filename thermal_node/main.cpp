@@ -156,7 +156,10 @@ int main(int argc, char** argv) try {
     if (offline)
       if (const auto line = offline->run().progress(sync::host_now())) std::cerr << options.name << ": " << *line << std::endl;
   }
-  if (offline) std::cerr << options.name << ": " << offline->result(choice.problem, sync::host_now()) << std::endl;
+  if (offline) {
+    const std::string result = offline->result(choice.problem, sync::host_now());
+    std::cerr << options.name << ": " << result << std::endl;
+  }
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("thermal_node", e);

@@ -1,5 +1,6 @@
 #include "visual_node/offline/video_file.h"
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -8,6 +9,22 @@
 #include "visual_node/video/i420.h"
 
 namespace tactus::visual {
+namespace {
+
+// FNV-1a of words of 64 bits, the first byte lowest: eight times as fast as of bytes, which takes a tenth of the
+// time of a frame.
+std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
+  std::uint64_t h = sync::kFnv1aBegin;
+  for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes.data(), sizeof word);
+    h = (h ^ word) * 1099511628211u;
+    h ^= h >> 32;  // else the upper bits of a word would reach none of the lower bits
+  }
+  return sync::fnv1a_64(h, bytes.data(), bytes.size());
+}
+
+}  // namespace
 
 std::string part_of(const std::string& video) { return video + ".part.mp4"; }
 
@@ -38,7 +55,7 @@ VideoFile::~VideoFile() {
 }
 
 void VideoFile::write(std::span<const std::uint8_t> rgba) {
-  newest_ = sync::fnv1a_64(sync::kFnv1aBegin, rgba.data(), rgba.size());
+  newest_ = hash_of(rgba);
   pixels_ = sync::fnv1a_64(pixels_, &newest_, sizeof newest_);
   rgba_to_i420(rgba, width_, height_, planes_);
   if (!encoder_->write(planes_))

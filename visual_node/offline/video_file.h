@@ -32,8 +32,8 @@ class VideoFile {
   void finish();
 
   std::int64_t frames() const { return frames_; }
-  // FNV-1a (64 bit) of all pixels of the newest picture, and of these numbers of all pictures: two renderings with
-  // one number show the same.
+  // A hash of all pixels of the newest picture, and of those of all pictures: two renderings with one number show
+  // the same.
   std::uint64_t pixels_of_newest() const { return newest_; }
   std::uint64_t pixels() const { return pixels_; }
 
