@@ -34,6 +34,8 @@ class Impacts {
   Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
           const Settings& settings, double rate_Hz, std::int64_t generation);
 
+  // Factor on everything from the next strike on.
+  void set_gain(double gain) { settings_.gain = gain; }
   // T_world_listener from the next strike on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 

@@ -24,11 +24,11 @@
 #include "audio_node/sliding.h"
 #include "sync/body_history.h"
 #include "sync/contact_stream.h"
+#include "sync/live_settings.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
-#include "sync/setting_changes.h"
 
 using namespace tactus;
 
@@ -44,7 +44,8 @@ const sync::Declaration kAudio{.node = "audio_node",
                                .inputs = {channels::kContactEvents, channels::kContacts, channels::kWorldState},
                                .presents = "the DAC time of its first sample",
                                .late = audio::kLate,
-                               .degradable = {"dropout"}};
+                               .degradable = {"dropout"},
+                               .phases = {sync::Phase::kRender}};
 constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
 constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
@@ -68,18 +69,19 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaP
 
 int main(int argc, char** argv) try {
   sync::NodeOptions options;
-  std::string device, log, wav;
+  std::string device;
+  audio::OfflineOptions of_log;
   CLI::App app;
   options.add_to(app, kAudio);
   app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
-  app.add_option("--log", log, "renders this log of a run instead of what is on the bus, as fast as it can; needs --wav");
-  app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
+  of_log.add_to(app, "renders this log of a run", "--wav");
+  app.add_option("--wav", of_log.wav, "file for the sound of the log")->needs("--log");
   sync::parse_or_exit(app, kAudio.node, argc, argv);
-  if (!log.empty() && wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  if (!of_log.log.empty() && of_log.wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
   std::optional<audio::Offline> offline;
-  if (!log.empty()) {
-    offline.emplace(log, wav, kAudio.rate_Hz, sync::host_now());
-    options.bus = offline->feed().bus(), options.run_id = offline->feed().run_id(), options.realtime = "off";
+  if (!of_log.log.empty()) {
+    offline.emplace(of_log, kAudio.rate_Hz, sync::host_now());
+    offline->run().adapt(options);
   }
 
   audio::Settings checked;
@@ -106,14 +108,15 @@ int main(int argc, char** argv) try {
   sync::HostTime slid_at{}, told_at{};
   std::int64_t scenes = 0;
 
-  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
-  sync::SettingChanges changes(options.name, options.run_id);
+  sync::LiveSettings live(node);
   audio::Settings own;  // what scene and command line say
   const auto change = [&](const std::string& name, const std::string& value) {
     audio::Settings changed = output.settings();
     sync::change_live(changed, own, audio::setting_fields(), name, value);
     output.configure(changed);
     if (sampler) sampler->configure(changed);
+    if (impacts) impacts->set_gain(changed.gain);
+    if (sliding) sliding->set_gain(changed.gain);
   };
 
   // What a scene has wrong keeps its default and is said once.
@@ -136,19 +139,27 @@ int main(int argc, char** argv) try {
     return m ? audio::extent_of(*m) : std::nullopt;
   };
   configure({});
-  const sync::HostTime started = offline ? offline->feed().begin() : sync::host_now();
+  if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(kAudio.modality, report); });
+  const sync::HostTime started = offline ? offline->run().feed().begin() : sync::host_now();
   std::int64_t hits = 0, dropped = 0;
   audio::DueHits due;
   const auto drop = [&](const contact_event_t& event, sync::HostTime scheduled) { output.drop(event.event_id, scheduled); };
 
-  while (node.running() && !(offline && offline->over())) {
-    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
+  node.tags().add("hits", "1", &hits);
+  node.tags().add("dropped", "1", &dropped);
+  node.tags().add("callbacks", "1", [&] { return static_cast<double>(output.callbacks()); }, 100);
+  node.tags().add("underflows", "1", [&] { return static_cast<double>(output.underflows()); }, 100);
+  node.tags().add("latency", "s", [&] { return sync::to_seconds(output.latency()); }, 100);
+
+  while (node.running() && !(offline && offline->run().over())) {
+    const sync::HostTime now = offline ? offline->run().next(node.bus()) : node.wait();
     sense.step(now);
     if (scene.poll(now)) {
       sense.set_scene(*scene.scene());
       ear.set_scene(*scene.scene());
       due.clear(drop);
       configure(scene.scene()->settings);
+      live.set_scene(*scene.scene());
       impacts = std::make_unique<audio::Impacts>(*scene.scene(), mesh, output.settings(),
                                                  output.settings().sample_rate_Hz, ++scenes);
       sampler = std::make_unique<audio::Sampler>(*scene.scene(), output.settings());
@@ -182,8 +193,7 @@ int main(int argc, char** argv) try {
       output.step_library();
     }
     if (sampler) sampler->play(output.library().database(), output.library().number());
-    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
-    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
+    for (const std::string& news : live.step(now, change)) std::cerr << kAudio.node << ": " << news << std::endl;
     const bool plays = (impacts || (!offline && now - started > kOpenAnyway)) && output.keep_open(now);
     output.allow(sense.delay());
     output.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
@@ -202,6 +212,7 @@ int main(int argc, char** argv) try {
       }
     }
     if (impacts && sampler) {
+      const sync::InPhase rendering(sync::Phase::kRender);
       // A log is heard as fast as it can be, however long a tick of it takes.
       const sync::HostTime begun = sync::host_now();
       const auto goes_on = [&] { return offline || sync::host_now() - begun < kStrikesFor; };
@@ -254,7 +265,7 @@ int main(int argc, char** argv) try {
     if (sampler)
       for (const std::string& news : sampler->news()) std::cerr << kAudio.node << ": " << news << std::endl;
     if (offline)
-      if (const auto line = offline->progress(now, sync::host_now())) std::cerr << kAudio.node << ": " << *line << std::endl;
+      if (const auto line = offline->run().progress(sync::host_now())) std::cerr << kAudio.node << ": " << *line << std::endl;
     if (const auto news = output.news()) std::cerr << kAudio.node << ": " << *news << std::endl;
 
     const sync::HostTime heard = std::max(events.count().newest_arrival, frames.count().newest_arrival);

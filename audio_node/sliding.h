@@ -31,6 +31,8 @@ class Sliding {
   Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces, const sync::BodyHistory& bodies,
           const Impacts& impacts, const Settings& settings, double rate_Hz);
 
+  // Factor on everything from the next instant on.
+  void set_gain(double gain) { settings_.gain = gain; }
   // T_world_listener from the next contacts on; at first the scene's.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 

@@ -13,22 +13,27 @@
 //        PRESENTED                     every begin and hit of its tool
 //
 // Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
-// hit transients. The loop never waits for another node.
+// hit transients. The loop never waits for another node. With --log it hears a recorded run instead of the bus, its hand
+// is where TOOL_STATE says that it was, and what it feels goes into --trace, as fast as it can; the same log gives the
+// same bytes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <thread>
 
+#include "haptic_node/offline.h"
 #include "haptic_node/quality.h"
 #include "haptic_node/session.h"
+#include "haptic_node/tagged.h"
 #include "lcmtypes/pointing.h"
+#include "sync/live_settings.h"
 #include "sync/node.h"
 #include "sync/opening.h"
 #include "sync/pacing.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
-#include "sync/setting_changes.h"
 
 using namespace tactus;
 
@@ -53,12 +58,23 @@ int main(int argc, char** argv) try {
       "--device", device_spec,
       "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
       "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  haptic::OfflineOptions of_log;
+  of_log.add_to(app, "feels this log of a run", "--trace");
+  app.add_option("--trace", of_log.trace, "file for what the hand feels in the log, CSV with the columns of haptic.csv")
+      ->needs("--log")->excludes("--device");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const auto given = haptic::choose(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
   std::shared_ptr<const haptic::DeviceSpec> device_given;
   if (!device_spec.empty())
     device_given = std::make_shared<haptic::DeviceSpec>(haptic::parse_device_spec(device_spec));
+
+  std::optional<haptic::Offline> offline;
+  if (!of_log.log.empty()) {
+    if (of_log.trace.empty()) throw std::runtime_error("--log needs --trace FILE, which what the hand feels is written to");
+    offline.emplace(of_log, declaration.rate_Hz, sync::host_now());
+    offline->run().adapt(options);
+  }
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
@@ -74,8 +90,7 @@ int main(int argc, char** argv) try {
   std::optional<haptic::Session> session;
   bool points = false;    // its tool is a wand or the head: there is no touch to wait for
   bool no_touch = false;  // so are all tools of the scene: no touch model says that the world has begun
-  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
-  sync::SettingChanges changes(options.name, options.run_id);
+  sync::LiveSettings live(node);
   // A safety limit may not become looser than the scene has it, nor the command line.
   haptic::Settings own = given.settings;
   const auto change = [&](const std::string& name, const std::string& value) {
@@ -83,17 +98,21 @@ int main(int argc, char** argv) try {
     sync::change_live(choice.settings, own, haptic::setting_fields(), name, value);
     session->change(choice.settings);
   };
+  tool_state_t told{};  // last; for who records it
+  haptic::tag(node.tags(), told);
   sync::Sense sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
   auto& events = sense.events();
+  if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
-  while (node.running()) {
-    const sync::HostTime now = node.wait();
+  while (node.running() && !(offline && offline->over())) {
+    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     sense.step(now);
     if (scenes.poll(now)) {
       choice = haptic::choose(*scenes.scene(), tool_name, options.set);
       own = choice.settings;
+      live.set_scene(*scenes.scene());
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       if (session) session->let_go();
       device.reset();
@@ -103,10 +122,11 @@ int main(int argc, char** argv) try {
         return std::make_unique<haptic::SurfaceMaps>(haptic::read_maps(scene, pictures));
       });
       if (choice.tool >= 0)  // its file is read in a thread of its own, at no priority
-        device.emplace([scene = *scenes.scene(), choice, given = device_given] {
+        device.emplace([scene = *scenes.scene(), choice, given = device_given, &offline] {
           sync::leave_realtime();
-          return haptic::device_of(scene, choice, given.get());
+          return offline ? offline->device() : haptic::device_of(scene, choice, given.get());
         });
+      if (offline) offline->follow(choice.tool);
       std::cerr << options.name << ": "
                 << (choice.tool >= 0 ? haptic::limits_sentence(choice.settings) : choice.problem) << "\n";
       node.set_tool(choice.tool);
@@ -120,6 +140,8 @@ int main(int argc, char** argv) try {
       quality = haptic::Quality(choice.settings);
       node.set_state(node_health_t::WAITING, choice.tool >= 0 ? "waits for its device" : choice.problem);
     }
+    while (offline && ((opening_maps && !opening_maps->done()) || (device && !device->done())))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (opening_maps && opening_maps->done()) {
       maps = opening_maps->take();
       opening_maps.reset();
@@ -148,22 +170,24 @@ int main(int argc, char** argv) try {
     while (const auto m = device_forces.pop())
       if (session && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
         session->push(m->message, m->arrival);
-    // One a tick: whoever moves a slider takes no more of a tick than that.
-    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
-    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
-    if (!session) continue;
+    for (const std::string& news : live.step(now, change)) std::cerr << options.name << ": " << news << "\n";
+    if (!session || (offline && !offline->in_tick())) continue;
+    std::optional<sync::InPhase> rendering(sync::Phase::kRender);
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
                                              .touch_delay = sense.profile_delay(),
                                              .force_step_N = sense.output().force_step_N,
                                              .touch_arrival = no_touch ? now : touch.count().newest_arrival},
                                             quality.planes());
+    rendering.reset();
     if (session->over()) continue;
+    if (offline) offline->add(out.state);
     node.bus().publish(channels::kToolState, out.state);
+    if (node.tags().wanted()) told = out.state;
     if (device_force_t* force = session->tell()) node.bus().publish(channels::kDeviceForce, *force);
     for (const presentation_t& report : out.reports) sense.report(report);
     sense.publish(now);
-    quality.add(sync::host_now() - now);
+    if (!offline) quality.add(sync::host_now() - now);
     node.set_quality(quality.step(), quality.steps());
     node.count_rendered(static_cast<std::int64_t>(out.reports.size()));
     if (session->device_lost())
@@ -176,7 +200,10 @@ int main(int argc, char** argv) try {
       node.set_state(node_health_t::RUNNING, maps ? maps->trouble : "reads the maps of its surfaces");
     else
       node.set_state(node_health_t::READY, "waits for a touch model");
+    if (offline)
+      if (const auto line = offline->run().progress(sync::host_now())) std::cerr << options.name << ": " << *line << std::endl;
   }
+  if (offline) std::cerr << options.name << ": " << offline->result(choice.problem, sync::host_now()) << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("haptic_node", e);

@@ -30,6 +30,9 @@ inline constexpr const char* kSimCommand = "SIM_COMMAND";        // sim_command_
 inline constexpr const char* kSimReply = "SIM_REPLY";            // sim_reply_t
 inline constexpr const char* kSetting = "SETTING";               // setting_change_t
 inline constexpr const char* kSettingReply = "SETTING_REPLY";    // setting_reply_t
+inline constexpr const char* kTagRequest = "TAG_REQUEST";        // tag_request_t
+inline constexpr const char* kTagList = "TAG_LIST";              // tag_list_t
+inline constexpr const char* kTagValues = "TAG_VALUES";          // tag_values_t
 inline constexpr const char* kGameState = "GAME_STATE";          // game_state_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 

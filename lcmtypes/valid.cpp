@@ -101,6 +101,10 @@ bool sane(const playout_entry_t& e) {
   return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) &&
          between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) && between(e.needs_ns, -1, kMaxDelay_ns);
 }
+bool sane(const map_def_t& d) {
+  return !d.from.empty() && d.from.size() <= 128 && printable(d.from) && !d.to.empty() && d.to.size() <= 128 &&
+         printable(d.to) && sane(d.gain) && sane(d.offset) && sane(d.low) && sane(d.high) && d.low <= d.high;
+}
 bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
 }
@@ -260,6 +264,27 @@ bool valid(const setting_change_t& m) {
 bool valid(const setting_reply_t& m) {
   return sane(m.header) && m.id > 0 && between(m.done, 0, 1) && m.text.size() <= 512;
 }
+bool valid(const tag_list_t& m) {
+  const auto tag = [](const tag_def_t& t) {
+    return name(t.name) && t.name.size() <= 48 && name(t.unit) && t.unit.size() <= 16 && sane_not_negative(t.rate_Hz);
+  };
+  return sane(m.header) && name(m.node) && m.list > 0 && between(m.total, 0, 1024) && m.first >= 0 &&
+         m.tag_count >= 0 && m.first + m.tag_count <= m.total && std::all_of(m.tags.begin(), m.tags.end(), tag);
+}
+bool valid(const tag_request_t& m) {
+  const auto pattern = [](const std::string& p) { return !p.empty() && p.size() <= 128 && printable(p); };
+  return sane(m.header) && between(m.pattern_count, 0, 16) &&
+         std::all_of(m.patterns.begin(), m.patterns.end(), pattern);
+}
+bool valid(const tag_values_t& m) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  return sane(m.header) && name(m.node) && m.list > 0 && between(m.column_count, 1, 128) &&
+         between(m.row_count, 1, 128) && m.value_count == m.column_count * m.row_count &&
+         std::all_of(m.columns.begin(), m.columns.end(), [](int c) { return between(c, 0, 1023); }) &&
+         std::all_of(m.times_ns.begin(), m.times_ns.end(), [](long t) { return clock_time(t); }) &&
+         std::is_sorted(m.times_ns.begin(), m.times_ns.end()) &&
+         std::all_of(m.values.begin(), m.values.end(), finite);
+}
 bool valid(const sim_command_t& m) {
   const auto within = [](const vec3_t& v) {
     return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMostPush;
@@ -362,7 +387,7 @@ bool valid(const scene_t& m) {
   return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) &&
          all_sane(m.looks) && all_sane(m.shaders) && all_sane(m.passes) && sane(m.camera) &&
          sane_not_negative(m.camera_fov_rad) && m.profile.size() <= kMaxProfileBytes && sane(m.ambient) &&
-         sane(m.background) && sane(m.listener);
+         sane(m.background) && sane(m.listener) && all_sane(m.maps);
 }
 
 }  // namespace tactus

@@ -29,6 +29,9 @@
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/sync_report_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 #include <tactus/tool_state_t.hpp>
@@ -65,6 +68,9 @@ bool valid(const setting_reply_t&);
 bool valid(const sim_command_t&);
 bool valid(const sim_reply_t&);
 bool valid(const sync_report_t&);
+bool valid(const tag_list_t&);
+bool valid(const tag_request_t&);
+bool valid(const tag_values_t&);
 bool valid(const thermal_device_t&);
 bool valid(const thermal_state_t&);
 bool valid(const tool_state_t&);

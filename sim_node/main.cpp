@@ -55,7 +55,8 @@ int main(int argc, char** argv) try {
                                       .modality = "",
                                       .rate_Hz = 1000,
                                       .fifo_priority = 50,
-                                      .about = "Simulates the world of a scene and publishes its contacts."};
+                                      .about = "Simulates the world of a scene and publishes its contacts.",
+                                      .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
   CLI::App app;
   sync::NodeOptions options;
   std::string scene;
@@ -86,6 +87,11 @@ int main(int argc, char** argv) try {
   sim::FollowedRate followed(settings.visual_follows);
   std::vector<tool_state_t> news;
   const std::vector<contact_event_t> no_events;
+
+  node.tags().add("world.time", "s", [&] { return sync::to_seconds(simulation.now().time_since_epoch()); });
+  node.tags().add("world.realtime_factor", "1", [&] { return telling->pacer.realtime_factor(); }, 10);
+  node.tags().add("contacts.tools", "1", [&] { return static_cast<double>(simulation.tool_contacts().size()); });
+  node.tags().add("contacts.events", "1", [&] { return static_cast<double>(simulation.events().size()); });
 
   // A fixed time: it is nobody in particular that is given it, and nobody is waited for.
   node.set_state(node_health_t::WAITING, "offers the scene; its time has not begun");

@@ -53,6 +53,9 @@ class Bus {
     return add(std::make_unique<RawQueue>(channel, capacity), channel, port);
   }
 
+  // An inbox of the caller's, which outlives the bus' last drain and is not among inboxes().
+  void hear_also(InboxBase& inbox) { subscribe(inbox.count().channel.c_str(), &inbox, Port::kRealtime); }
+
   // Heeds the clock maps of this run from now on. For processes that drain; call before the first drain.
   void follow_clocks();
   // Our clock and what is known of others. Refers to this bus.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sync/late.h"
+#include "sync/phases.h"
 
 namespace tactus::sync {
 
@@ -23,6 +24,8 @@ struct Declaration {
   std::string presents = {};             // the instant that PRESENTED speaks of
   Late late = Late::kShowNewest;
   std::vector<std::string> degradable = {};  // attributes of a profile that act on its output, e.g. "frame_rate"
+
+  std::vector<Phase> phases = {};  // of its tick, that are tagged beside decoding and what is left: "work.render", ...
 };
 
 }  // namespace tactus::sync

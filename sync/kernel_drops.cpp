@@ -1,5 +1,6 @@
 #include "sync/kernel_drops.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -7,7 +8,10 @@
 
 namespace tactus::sync {
 
-std::int64_t sum_drops(const std::string& table, const std::set<std::string>& inodes) {
+namespace {
+
+// Over the lines of which wanted(words) holds.
+std::int64_t sum(const std::string& table, const auto& wanted) {
   std::istringstream lines(table);
   std::string line;
   std::getline(lines, line);  // headings
@@ -17,9 +21,21 @@ std::int64_t sum_drops(const std::string& table, const std::set<std::string>& in
     std::vector<std::string> word;
     for (std::string w; words >> w;) word.push_back(w);
     // sl local remote st queues tr:tm retrnsmt uid timeout inode ref pointer drops
-    if (word.size() >= 13 && inodes.contains(word[9])) sum += std::stoll(word[12]);
+    if (word.size() >= 13 && wanted(word)) sum += std::stoll(word[12]);
   }
   return sum;
+}
+
+}  // namespace
+
+std::int64_t sum_drops(const std::string& table, const std::set<std::string>& inodes) {
+  return sum(table, [&](const std::vector<std::string>& word) { return inodes.contains(word[9]); });
+}
+
+std::int64_t drops_of_port(const std::string& table, int port) {
+  char end[8];
+  std::snprintf(end, sizeof end, ":%04X", static_cast<unsigned>(port));
+  return sum(table, [&](const std::vector<std::string>& word) { return word[1].ends_with(end); });
 }
 
 std::int64_t kernel_drops() {

@@ -7,26 +7,25 @@
 #include <functional>
 #include <set>
 #include <string>
-#include <tactus/log_info_t.hpp>
 #include <utility>
-#include <vector>
 
 #include "sync/bus.h"
+#include "sync/dated_events.h"
+#include "sync/log_ages.h"
+#include "sync/log_origin.h"
 #include "sync/log_reader.h"
-#include "sync/summary_clock.h"
 
 namespace tactus::sync {
 
 class LogFeed {
  public:
-  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no run that our
-  // recorder has written.
+  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no message of a run.
   LogFeed(const std::string& path, double rate_Hz);
 
   // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour
   // would.
-  std::int64_t run_id() const { return info_.header.run_id; }
-  std::int32_t clock() const { return info_.header.clock; }
+  std::int64_t run_id() const { return origin_.info.header.run_id; }
+  std::int32_t clock() const { return origin_.info.header.clock; }
   // That node's options: in memory, with the run and the clock of the log.
   BusOptions bus() const;
 
@@ -34,7 +33,9 @@ class LogFeed {
   void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
   // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
   // the recorder.
-  HostTime next(Bus& bus);
+  HostTime next(Bus& bus) { return next_at(bus, now_ + period_); }
+  // The same for a loop whose ticks are not even: the next one is then, and not before the last.
+  HostTime next_at(Bus& bus, HostTime tick);
   // All has been handed over, and `after` has passed since.
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
 
@@ -44,30 +45,22 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events whose stamps are damaged: further than SummaryClock::kLargestStep from those of the run, and too few to
+  // Events whose stamps are damaged: further than LogAges::kApart_us from those of the run, and too few to
   // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
-  std::int64_t misdated() const;
+  std::int64_t misdated() const { return ages_.misdated(); }
+  // One sentence when the log itself does not say, or not rightly, which run it is; empty: it does.
+  const std::string& recovered() const { return origin_.recovered; }
 
  private:
-  // Design: who takes part in a run says ten times a second how it is; so few in a row are no run.
-  static constexpr std::int64_t kFewestOfARun = 32;
-  // Events whose stamps lie near each other.
-  struct Age {
-    HostTime first, last;
-    std::int64_t events;
-  };
-  HostTime stamp(const LogEvent& event) const;
-  HostTime arrival(const LogEvent& event);
-
   MappedFile file_;
   std::set<std::string, std::less<>> left_out_;
-  LogScanner whole_, scanner_;
-  SummaryClock clock_;
-  std::vector<Age> damaged_ages_;
-  HostTime arrived_{};  // the event before
+  LogScanner whole_;
+  LogAges ages_;
+  LogOrigin origin_;
+  DatedEvents events_;
   LogEvent pending_;
+  HostTime pending_at_{};
   bool has_pending_ = false;
-  log_info_t info_{};
   HostTime begin_{}, end_{}, now_{};
   Nanoseconds period_;
 };

@@ -33,6 +33,11 @@ bool LogScanner::sync_at(std::size_t at) const {
   return at + 4 <= bytes_.size() && big_endian(&bytes_[at], 4) == kLogSync;
 }
 
+bool LogScanner::follows_at(std::size_t at, std::int64_t number) const {
+  return at + 12 <= bytes_.size() && sync_at(at) &&
+         big_endian(&bytes_[at + 4], 8) == static_cast<std::uint64_t>(number) + 1;
+}
+
 bool LogScanner::event_at(std::size_t at, LogEvent& event) const {
   if (at + kLogEventHeaderBytes > bytes_.size() || !sync_at(at)) return false;
   const std::uint8_t* p = &bytes_[at];
@@ -52,7 +57,9 @@ std::size_t LogScanner::next_event_after(std::size_t at, std::size_t until) cons
   static constexpr std::uint8_t word[4] = {0xED, 0xA1, 0xDA, 0x01};
   LogEvent ignored;
   while (at < until) {
-    const void* found = memmem(&bytes_[at], bytes_.size() - at, word, sizeof word);
+    // No farther than needed: whoever asks often, as damage makes him, takes no longer than the log.
+    const std::size_t within = std::min(bytes_.size(), until + sizeof word - 1) - at;
+    const void* found = memmem(&bytes_[at], within, word, sizeof word);
     if (found == nullptr) return until;
     at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes_.data());
     if (at < until && event_at(at, ignored)) return at;
@@ -67,6 +74,8 @@ void LogScanner::skip_to(std::size_t at) {
   at_ = at;
 }
 
+void LogScanner::start_at(std::size_t at) { at_ = next_event_after(std::min(at, bytes_.size()), bytes_.size()); }
+
 bool LogScanner::next(LogEvent& event) {
   while (at_ < bytes_.size()) {
     if (!event_at(at_, event)) {
@@ -74,8 +83,9 @@ bool LogScanner::next(LogEvent& event) {
       continue;
     }
     const std::size_t end = at_ + kLogEventHeaderBytes + event.channel.size() + event.data.size();
-    if (end < bytes_.size() && !sync_at(end)) {
-      // Either the damage begins behind this event, or this event's length is a lie that swallows intact ones.
+    if (!follows_at(end, event.number)) {
+      // Either the damage begins behind this event, or this event's length is a lie that swallows intact ones. A
+      // lie may end at the beginning of an event, too, but not of the one that is numbered next.
       const std::size_t swallowed = next_event_after(at_ + kLogEventHeaderBytes, end);
       if (swallowed < end) {
         skip_to(swallowed);

@@ -1,8 +1,8 @@
 // Reads an LCM event log and goes on after damage. Pure but for the mapping of the file.
 //
-// Format (LCM, docs/content/log-file-format.md), big-endian: u32 sync word, i64 number, i64 time stamp in us, i32 length
-// of the channel, i32 length of the data, channel, data. There is no checksum, so damage inside an event's data is only
-// found by decoding it.
+// Format (LCM, docs/content/log-file-format.md), big-endian: u32 sync word, i64 number, i64 time stamp in us, i32
+// length of the channel, i32 length of the data, channel, data. There is no checksum, so damage inside an event's
+// data is only found by decoding it.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,10 @@ class LogScanner {
 
   // False at the end.
   bool next(LogEvent& event);
+  // The next to be read is the first event that begins at or behind this byte; what lies between is no damage.
+  void start_at(std::size_t at);
+  // Where that begins, or the end.
+  std::size_t at() const { return at_; }
 
   std::int64_t events() const { return events_; }
   // Runs of bytes that were skipped, and how many bytes in all. A last event that was cut off is one of them.
@@ -38,6 +42,8 @@ class LogScanner {
 
  private:
   bool sync_at(std::size_t at) const;
+  // True when the event numbered after `number` begins there.
+  bool follows_at(std::size_t at, std::int64_t number) const;
   // Parses what looks like an event at `at` and lies within the bytes.
   bool event_at(std::size_t at, LogEvent& event) const;
   std::size_t next_event_after(std::size_t at, std::size_t until) const;

@@ -54,6 +54,7 @@ constexpr Nanoseconds kReportPeriod{100'000'000};
 // A loop that was demoted gets its priority back after so long below 80 %.
 constexpr Nanoseconds kForgiven{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
+constexpr std::size_t kMostTagRequests = 64;
 // A note may quote what came over the bus; a report with it still fits a datagram.
 constexpr std::size_t kLongestNote = 140;
 
@@ -112,8 +113,12 @@ Node::Node(Declaration declaration, NodeOptions options)
       options_(with_profile(std::move(options))),
       scheduling_(enter(declaration_, options_)),
       bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
-      loop_(declaration_.rate_Hz) {
+      loop_(declaration_.rate_Hz),
+      tags_(options_.name, options_.run_id),
+      tag_requests_(channels::kTagRequest, kMostTagRequests) {
   bus_.follow_clocks();
+  bus_.hear_also(tag_requests_);
+  tag_work();
   health_.tool = -1;
   health_.nominal_rate_Hz = declaration_.rate_Hz;
   rate_since_ = tick_begin_ = next_report_ = host_now();
@@ -152,7 +157,31 @@ void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_H
   health_.nominal_rate_Hz = rate_Hz;
 }
 
+void Node::tag_work() {
+  tags_.add("work", "us", &work_us_);
+  std::vector<Phase> phases = declaration_.phases;
+  phases.insert(phases.end(), {Phase::kDecode, Phase::kOther});
+  for (const Phase phase : phases) tags_.add(std::string("work.") + name(phase), "us", phases_.told(phase));
+}
+
+void Node::serve_tags(HostTime now) {
+  while (const auto m = tag_requests_.pop()) tags_.take(m->message, now);
+  tags_.step(now);
+  while (tag_list_t* m = tags_.next_list()) bus_.publish(channels::kTagList, *m);
+  while (tag_values_t* m = tags_.next_values()) bus_.publish(channels::kTagValues, *m);
+}
+
+void Node::begin_tick(HostTime now) {
+  tick_begin_ = now;
+  phases_.begin(tags_.wanted());
+  const InPhase decoding(Phase::kDecode);
+  bus_.drain(now);
+}
+
 void Node::end_tick(HostTime now) {
+  phases_.end();
+  work_us_ = static_cast<double>((now - tick_begin_).count()) / 1000;
+  serve_tags(now);
   tick_.add(now - tick_begin_);
   if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
   if (!demoted_ && !is_realtime()) return;
@@ -175,8 +204,7 @@ HostTime Node::wait() {
   if (end >= next_report_) report(end);
   const HostTime now = loop_.wait();
   wake_.add(loop_.wake_lateness());
-  tick_begin_ = now;
-  bus_.drain(now);
+  begin_tick(now);
   if (options_.load > 0)
     for (const auto wasted = from_seconds(options_.load / loop_.deadlines().rate_Hz()); host_now() - now < wasted;) continue;
   return now;
@@ -184,6 +212,7 @@ HostTime Node::wait() {
 
 HostTime Node::poll() {
   const HostTime now = host_now();
+  const InPhase decoding(Phase::kDecode);
   bus_.drain(now);
   return now;
 }
@@ -194,8 +223,7 @@ HostTime Node::wait_for_event() {
   if (end >= next_report_) report(end);
   bus_.wait(from_seconds(1 / loop_.deadlines().rate_Hz()));
   ++event_ticks_;
-  tick_begin_ = host_now();
-  bus_.drain(tick_begin_);
+  begin_tick(host_now());
   return tick_begin_;
 }
 

@@ -19,7 +19,9 @@
 #include "sync/declaration.h"
 #include "sync/histogram.h"
 #include "sync/pacing.h"
+#include "sync/phases.h"
 #include "sync/realtime.h"
+#include "sync/tags.h"
 
 namespace CLI {
 class App;
@@ -71,6 +73,8 @@ class Node {
   void renew();
 
   Bus& bus() { return bus_; }
+  // Variables of this process that can be recorded; the time of each phase of its tick is among them.
+  Tags& tags() { return tags_; }
   const NodeOptions& options() const { return options_; }
   const Declaration& declaration() const { return declaration_; }
   void set_rate(double rate_Hz);
@@ -99,7 +103,11 @@ class Node {
   void override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz);
 
  private:
+  void tag_work();
+  // The loop's turn is over, and the next one has begun.
   void end_tick(HostTime now);
+  void begin_tick(HostTime now);
+  void serve_tags(HostTime now);
   void report(HostTime now);
   node_health_t health_message(HostTime now);
 
@@ -110,6 +118,10 @@ class Node {
   Bus bus_;
   Loop loop_;
   BusyGuard guard_;
+  Tags tags_;
+  Queue<tag_request_t> tag_requests_;
+  Phases phases_{host_now};
+  double work_us_ = 0;
   Histogram tick_, wake_;
   node_health_t health_{};
   std::string note_;

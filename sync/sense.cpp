@@ -167,6 +167,7 @@ void Sense::report(const presentation_t& report) {
   const auto arrived = arrivals_.find(r.event_id);
   r.ready_ns = arrived == arrivals_.end() ? -1 : to_ns(arrived->second + output_latency_);
   reporter_.report(r);
+  if (tell_) tell_(r);
 }
 
 void Sense::publish(HostTime now) {

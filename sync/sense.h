@@ -12,6 +12,7 @@
 //   }
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -102,6 +103,8 @@ class Sense {
   HostTime newest_arrival() const;
 
   void report(const presentation_t& report);
+  // Is told of every report, too: of a log, whose reports nobody hears on the bus.
+  void tell(std::function<void(const presentation_t&)> of_report) { tell_ = std::move(of_report); }
   // Sends reports, and the decisions of the profile.
   void publish(HostTime now);
 
@@ -158,6 +161,7 @@ class Sense {
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
   OutputDef output_;
   PresentationReporter reporter_;
+  std::function<void(const presentation_t&)> tell_;
   std::map<std::int64_t, HostTime> arrivals_;  // of events, raw
   std::deque<std::int64_t> arrivals_order_;
 };

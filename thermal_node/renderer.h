@@ -48,6 +48,12 @@ class Renderer {
   // model and the rendering say.
   thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
 
+  // Other settings from the next step on, of those that can be changed while it runs.
+  void change(const Settings& settings) {
+    settings_.reference_force_N = settings.reference_force_N;
+    settings_.pressure_exponent = settings.pressure_exponent;
+  }
+
   // What the finger is thought to give to the plate, W.
   double load_W() const;
 

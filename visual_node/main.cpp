@@ -18,10 +18,10 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "sync/live_settings.h"
 #include "sync/node.h"
 #include "sync/scene_exchange.h"
 #include "sync/sense.h"
-#include "sync/setting_changes.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
@@ -46,7 +46,8 @@ int main(int argc, char** argv) try {
       .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
       .presents = "the fence after the frame that first shows it",
       .late = sync::Late::kShowNewest,
-      .degradable = {"frame_rate", "resolution"}};
+      .degradable = {"frame_rate", "resolution"},
+      .phases = {sync::Phase::kRender}};
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, declaration);
@@ -59,9 +60,10 @@ int main(int argc, char** argv) try {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   visual::OfflineOptions of_log;
-  app.add_option("--log", of_log.log, "draws this log of a run instead of what is on the bus, as fast as it can; needs --video");
+  of_log.add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", of_log.video, "file for the pictures of the log, MP4")->needs("--log");
-  app.add_flag("--as-recorded", of_log.as_recorded, "the degradation profiles of the log hold too")->needs("--log");
+  app.add_option("--frames", of_log.frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
+  app.add_flag("--as-recorded", of_log.as_recorded, "the same as --degrade logged")->needs("--log");
   sync::parse_or_exit(app, declaration.node, argc, argv);
   const std::vector<setting_t> no_scene;
   for (const std::string& wrong :
@@ -77,7 +79,7 @@ int main(int argc, char** argv) try {
     if (of_log.video.empty()) throw std::runtime_error("--log needs --video FILE, which the pictures are written to");
     of_log.snapshot = keep.snapshot, of_log.snapshot_every_s = keep.snapshot_every_s;
     offline.emplace(of_log, settings.rate_Hz, sync::host_now());
-    offline->adapt(options);
+    offline->run().adapt(options);
   }
   const auto clock = [&] { return offline ? offline->now() : sync::host_now(); };
   visual::Stage stage(settings, window);
@@ -94,13 +96,15 @@ int main(int argc, char** argv) try {
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::FrameLock lock(node.bus().clocks(), declaration.modality, node.bus().identity().incarnation);
   visual::WallTalk walls(node, lock);
-  if (offline) composer.foresee({}, {});
+  if (offline) {
+    composer.foresee({}, {});
+    sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });
+  }
   visual::Recording recording(keep);
   visual::PictureStream stream;
   visual::LiveOverlays overlays(node.bus());
   visual::LiveDesk desk(node.bus());
-  auto& setting_changes = node.bus().queue<setting_change_t>(channels::kSetting, 64);
-  sync::SettingChanges changes(options.name, options.run_id);
+  sync::LiveSettings live(node);
   visual::Settings own = settings;
   visual::Frame frame;
   sync::HostTime fence{};
@@ -121,7 +125,7 @@ int main(int argc, char** argv) try {
     if (name.starts_with("stream"))
       stream.begin(stage.picture().width(), stage.picture().height(), settings);
     else
-      overlays.configure(settings);
+      overlays.configure(settings), composer.change(settings);
   };
   const auto receive = [&](sync::HostTime now) {
     sense.step(now);
@@ -151,9 +155,14 @@ int main(int argc, char** argv) try {
     stream.begin(view.width(), view.height(), settings);
     node.set_rate(settings.rate_Hz);
     sense.set_scene(*scenes.scene());
+    live.set_scene(*scenes.scene());
     sense.set_output_latency(sync::from_seconds(1 / settings.rate_Hz) + visual::FrameComposer::kFlashesTake);
   };
+  node.tags().add("picture", "us", [&] { return sync::to_seconds(took) * 1e6; });
+  node.tags().add("quality", "1", [&] { return stage.quality().step(); });
+  node.tags().add("flashed", "1", &flashed);
   const auto draw = [&](sync::HostTime now, const std::optional<visual::AgreedFrame>& agreed) {
+    const sync::InPhase rendering(sync::Phase::kRender);
     const sync::OutputDef output = sense.output();
     overlays.tint(composer, scenes.scene() ? scenes.scene()->bodies.size() : 0);
     const sync::HostTime heard = world.count().newest_arrival;
@@ -201,8 +210,8 @@ int main(int argc, char** argv) try {
     flashed += rendered;
   };
 
-  while (node.running() && !stage.closed() && !desk.closing() && !(offline && offline->over())) {
-    const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
+  while (node.running() && !stage.closed() && !desk.closing() && !(offline && offline->run().over())) {
+    const sync::HostTime now = offline ? offline->run().next(node.bus()) : node.wait();
     receive(now);
     if (scenes.poll(now)) {
       load(now);
@@ -211,6 +220,7 @@ int main(int argc, char** argv) try {
     if (const std::string lost = stage.recover(now, composer.view(), frame.list); !lost.empty()) say(lost);
     for (const std::string& sentence : stage.take_trouble()) say(sentence);
     if (lock.on() && !offline) walls.catch_up(receive);  // a wall that is slow hears of its head all the same
+    for (const std::string& sentence : live.step(now, change)) say(sentence);
     const auto agreed = lock.begin(clock(), sense.profile_delay());
     const std::int64_t periods_before = std::exchange(periods, node.deadlines().ticks() + node.deadlines().missed());
     tick += offline ? 1 : agreed ? 1 + agreed->skipped : periods - periods_before;
@@ -222,7 +232,7 @@ int main(int argc, char** argv) try {
     const auto read = [&](std::span<std::uint8_t> rgba) { stage.picture().read(rgba); };
     if (offline) {
       offline->add(read);
-      if (const auto line = offline->progress(sync::host_now())) say(*line);
+      if (const auto line = offline->run().progress(sync::host_now())) say(*line);
       continue;
     }
     if (auto pair = recording.add(tick, fresh ? fence : now + took, read)) {
@@ -233,8 +243,6 @@ int main(int argc, char** argv) try {
     }
     if (fresh) stream.add(now, frame.instant ? sync::to_ns(*frame.instant) : -1, read);
     for (picture_chunk_t& chunk : stream.take_chunks()) node.bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
-    if (const auto m = setting_changes.pop()) changes.take(m->message, change);
-    for (setting_reply_t& reply : changes.replies()) node.bus().publish(channels::kSettingReply, reply);
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string walls_note = lock.note(now), video = walls_note.empty() ? recording.note() : walls_note;
     node.set_state(frame.state, frame.note + (frame.note.empty() || video.empty() ? "" : "; ") + video);

@@ -43,10 +43,12 @@ class Plan:
     network: str
     port: int
     settings: dict  # node: list of "name=value"
+    world: str = "sim_node"  # the process that says what happens: the simulation, or replay
+    replay: list = dataclasses.field(default_factory=list)  # command line of replay
 
     def nodes(self):
         """Names of the processes of this run; the order is that of starting."""
-        return [n for n in ("recorder", "sync_node", *self.senses(), "sim_node") if n not in self.without]
+        return [n for n in ("recorder", "sync_node", *self.senses(), self.world) if n not in self.without]
 
     def senses(self):
         """Names of the processes of all senses, those that are left out too."""

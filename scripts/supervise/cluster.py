@@ -19,12 +19,13 @@ BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or REPOSITORY / "build" / "dev" 
 SUPERVISE = pathlib.Path(__file__).resolve().parent
 # Simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
 # Each group has so long to end before the next is asked: a sense that still closes its video has said all it had to say.
-STOP_ORDER = ((("sim_node",), 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
+WORLDS = ("sim_node", "replay")
+STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
 PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
-WORLD_BEGINS = "sim_node: the world begins"  # sim_node/main.cpp
+WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/main.cpp, sync/replay_main.cpp
 
 
 def commands(plan, run_id, git):
@@ -38,6 +39,7 @@ def commands(plan, run_id, git):
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
+        "replay": [*plan.replay, *(word for name in plan.senses() if name not in plan.without for word in ("--live", name))],
     }
     own["sync_node"] = list(plan.playout)
     for name, tool in plan.hands.items():
@@ -142,12 +144,12 @@ class Cluster:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
         self.write_address()
-        for group in (("recorder", "sync_node"), tuple(self.plan.senses()), ("sim_node",)):
+        for group in (("recorder", "sync_node"), tuple(self.plan.senses()), (self.plan.world,)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
                     raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
-            if group != ("sim_node",):  # nobody waits for the scene here
+            if group != (self.plan.world,):  # nobody waits for the scene here
                 services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
 
     def write_address(self):
@@ -173,10 +175,11 @@ class Cluster:
 
     def expects_world(self):
         """False: there is no simulation, or it was left down."""
-        return "sim_node" in self.services and not self.services["sim_node"].lost()
+        return self.plan.world in self.services and not self.services[self.plan.world].lost()
 
     def world_has_begun(self):
-        return "sim_node" in self.services and self.services["sim_node"].has_said(WORLD_BEGINS)
+        world = self.plan.world
+        return world in self.services and self.services[world].has_said(WORLD_BEGINS[world])
 
     def alive(self):
         return self.holder is not None and self.holder.poll() is None
@@ -199,7 +202,7 @@ class Cluster:
         for names, grace_s in STOP_ORDER:
             names = tuple(self.plan.senses()) if names == SENSES else names
             services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
-            if names == ("sim_node",):
+            if names == WORLDS:
                 time.sleep(PRESENT_THE_LAST_S)
         stubborn = services.make_end(self.services.values(), PATIENCE_S)
         self.end_supervisor()

@@ -6,6 +6,7 @@
 #include "sim_node/behaviour/behaviour_model.h"
 #include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
+#include "sync/phases.h"
 
 namespace tactus::sim {
 namespace {
@@ -209,6 +210,7 @@ void Solver::join(Manifold& c) {
 
 void Solver::step() {
   if (impulse_) return impulse_->step(settings_.step_s);
+  const sync::InPhase phase(sync::Phase::kSolve);  // which integrates, too
   // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
@@ -233,6 +235,7 @@ void Solver::step() {
   for (std::size_t i = 0; i < fall_m_s_.size(); ++i) fall_m_s_[i] = inert_[i].gravity_m_s;
   std::swap(contacts_, solved_);
   read_bodies();
+  const sync::InPhase collision(sync::Phase::kCollision);
   engine_->shapes->collide(contacts_);
 }
 

@@ -5,6 +5,7 @@
 #include "lcmtypes/vectors.h"
 #include "sim_node/dual/group_bodies.h"
 #include "sim_node/state/fingerprint.h"
+#include "sync/phases.h"
 
 namespace tactus::sim {
 
@@ -90,6 +91,7 @@ void Simulation::look() {
   const std::span<BodyMotion> motions = mechanics_->motions();
   place_tools(motions);
   game_.step(now(), motions);
+  const sync::InPhase phase(sync::Phase::kCollision);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     ToolTouch& touch = tools_[i].touch;
     touch.look_only_at(mechanics_->near_tools());

@@ -6,6 +6,7 @@
 
 #include "sim_node/collision/gaps/choose.h"
 #include "sim_node/collision/layer_options.h"
+#include "sync/phases.h"
 
 namespace tactus::sim {
 namespace {
@@ -95,6 +96,7 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
 
 void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,
                          std::vector<Manifold>& out) {
+  const sync::InPhase phase(sync::Phase::kCollision);
   out.clear();
   for (const NearPair& pair : near_.find(bodies, active, h_s)) look(pair, out);
 }

@@ -10,6 +10,7 @@
 #include "sim_node/scene/sdf_read.h"
 #include "sim_node/scene/tactus_holes.h"
 #include "sim_node/scene/tactus_looks.h"
+#include "sim_node/scene/tactus_maps.h"
 #include "sim_node/scene/tactus_materials.h"
 #include "sim_node/scene/tactus_profile.h"
 #include "sim_node/scene/tactus_settings.h"
@@ -75,6 +76,7 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
   read_tools(context, element);
   read_holes(context, element);
   read_settings(context, element);
+  read_maps(context, element);
   read_profile(context, element);
 }
 

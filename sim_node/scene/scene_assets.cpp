@@ -97,7 +97,7 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
     if (tool.shape == tool_def_t::MESH)
       tool.mesh_hash =
           hashes.meshes[static_cast<std::size_t>(tool_mesh(tool))];
-  scene.settings = world.settings;
+  scene.settings = world.settings, scene.maps = world.maps;
   scene.camera = to_pose(world.camera), scene.camera_fov_rad = world.camera_fov_rad;
   scene.listener = to_pose(world.listener);
   scene.profile = world.profile;
@@ -107,7 +107,7 @@ scene_t to_message(const WorldDef& world, std::int64_t step_ns, const Hashes& ha
   scene.visual_count = count(scene.visuals), scene.material_count = count(scene.materials);
   scene.light_count = count(scene.lights), scene.tool_count = count(scene.tools);
   scene.look_count = count(scene.looks), scene.shader_count = count(scene.shaders), scene.pass_count = count(scene.passes);
-  scene.setting_count = count(scene.settings);
+  scene.setting_count = count(scene.settings), scene.map_count = count(scene.maps);
   return scene;
 }
 

@@ -15,7 +15,7 @@ const std::map<std::string, Names> kSupported{
     {"sdf", {"world", "model"}},
     {"world", {"gravity", "physics", "scene", "gui", "light", "model", "frame", "tactus:material", "tactus:tool",
                "tactus:camera", "tactus:listener", "tactus:profile", "tactus:hole", "tactus:look", "tactus:shader",
-               "tactus:pass", "tactus:environment"}},
+               "tactus:pass", "tactus:environment", "tactus:map"}},
     {"physics", {"max_step_size", "real_time_factor", "real_time_update_rate"}},
     {"scene", {"ambient", "background"}},
     {"gui", {"camera"}},

@@ -122,6 +122,7 @@ struct WorldDef {
   Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();
   std::string profile;  // of degradation, XML; empty: none
   std::vector<setting_t> settings;
+  std::vector<map_def_t> maps;
   // Pairs of bodies that do not collide: jointed without self collision.
   std::vector<std::pair<int, int>> no_collision;
   std::string source_file;

@@ -9,12 +9,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 #include <span>
 
 #include "audio_node/bank/ring.h"
 #include "audio_node/spatial/onset.h"
 #include "tests/audio_node/recorded_run.h"
+#include "tests/rendered_log.h"
 
 using namespace tactus;
 using namespace tactus::audio::test;
@@ -78,8 +80,11 @@ std::vector<float> mono_of(const std::string& path) {
 }
 
 // Hits far enough apart that each can be told, at times by chance. Returns them.
-std::vector<double> record(const std::string& path) {
+std::vector<double> record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path));
+  if (!profile.empty())
+    run.raw(0.01, channels::kDegradation,
+            tactus::test::in_force(profile, {10'000'000, kLogBegins_ns + 10'000'000, 4711, 7, 9, 33, 0}));
   std::mt19937 random(11);
   std::uniform_real_distribution<double> gap(0.25, 0.4);
   std::vector<double> times;
@@ -167,6 +172,50 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
     // Single-precision poles round alike in all of them; a fused multiply-add rounds once less, 6e-8 a sample,
     // which 12,000 samples of ringing make 7e-4 of phase at the most.
     CHECK(std::sqrt(difference / power) < 1e-3);
+  }
+}
+
+TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, which holds only when it is asked for") {
+  const Folder folder;
+  const std::string muted = R"(<profile name="muted"><degrade modality="audio" off="true"/></profile>)";
+  const std::string late = R"(<profile name="late"><degrade modality="audio" delay="40ms" loss="50%"/></profile>)";
+  record(folder.file("plain.lcmlog"));
+  record(folder.file("muted.lcmlog"), muted);
+  std::ofstream(folder.file("late.xml")) << late;
+  const auto heard = [&](const char* log, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"--log", folder.file(log), "--wav", folder.file("x.wav"),
+                                   "--presented", folder.file("x.csv")};
+    words.insert(words.end(), more.begin(), more.end());
+    const Done done = render(folder, words);
+    CAPTURE(done.said);
+    REQUIRE(done.status == 0);
+    return std::pair(bytes_of(folder.file("x.wav")), bytes_of(folder.file("x.csv")));
+  };
+  const auto plain = heard("plain.lcmlog");
+  CHECK((heard("muted.lcmlog") == plain));
+  const auto rows = tactus::test::cells_of(plain.second);
+  REQUIRE(rows.size() == kHits);
+  std::map<std::string, std::int64_t> at_ns;
+  for (const auto& row : rows) {
+    CHECK(row.at(6) == "presented");
+    at_ns[row.at(1)] = std::stoll(row.at(4));
+  }
+
+  const auto logged = heard("muted.lcmlog", {"--degrade", "logged"});
+  CHECK(std::all_of(logged.first.end() - 48000 * 8 * 14, logged.first.end(), [](char c) { return c == 0; }));
+  for (const char* log : {"plain.lcmlog", "muted.lcmlog"}) {
+    const auto worse = heard(log, {"--degrade", folder.file("late.xml")});
+    int presented = 0, dropped = 0;
+    for (const auto& row : tactus::test::cells_of(worse.second)) {
+      dropped += row.at(6) == "dropped_by_profile";
+      if (row.at(6) != "presented") continue;
+      ++presented;
+      // Rounded to a sample, each.
+      CHECK(std::abs(std::stoll(row.at(4)) - at_ns.at(row.at(1)) - 40'000'000) <= 21'000);
+    }
+    CHECK(presented + dropped == kHits);
+    CHECK(presented > 5);
+    CHECK(dropped > 5);
   }
 }
 

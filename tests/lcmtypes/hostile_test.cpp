@@ -75,7 +75,8 @@ Bytes encoded_sample(Samples& samples) {
       device_state_t, device_force_t, frame_shown_t, picture_chunk_t,                                                                            \
       node_health_t, sync_report_t, clock_probe_t, clock_map_t, media_clock_t, scene_manifest_t, asset_request_t, \
       asset_chunk_t, scene_t, mesh_t, log_info_t, degradation_t, degraded_t, playout_t,           \
-      playout_request_t, setting_change_t, setting_reply_t, sim_command_t, sim_reply_t, game_state_t, thermal_device_t
+      playout_request_t, setting_change_t, setting_reply_t, sim_command_t, sim_reply_t, game_state_t, thermal_device_t, \
+      tag_list_t, tag_request_t, tag_values_t
 
 }  // namespace
 

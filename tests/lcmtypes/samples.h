@@ -247,6 +247,24 @@ class Samples {
   void fill(setting_reply_t& m) {
     fill(m.header), m.id = whole(1, 1 << 30), m.done = static_cast<std::int8_t>(whole(0, 1)), m.text = name(200);
   }
+  void fill(tag_def_t& t) { t.name = name(), t.unit = "N", t.rate_Hz = real(0, 99); }
+  void fill(tag_list_t& m) {
+    fill(m.header), m.node = name(), m.list = whole(1, 1 << 30), m.first = static_cast<std::int16_t>(whole(0, 9));
+    m.tag_count = static_cast<std::int32_t>(whole(0, 9)), m.total = static_cast<std::int16_t>(m.first + m.tag_count + whole(0, 9));
+    for (int i = 0; i < m.tag_count; ++i) fill(m.tags.emplace_back());
+  }
+  void fill(tag_request_t& m) {
+    fill(m.header), m.pattern_count = static_cast<std::int32_t>(whole(0, 9));
+    for (int i = 0; i < m.pattern_count; ++i) m.patterns.push_back(name());
+  }
+  void fill(tag_values_t& m) {
+    fill(m.header), m.node = name(), m.list = whole(1, 1 << 30);
+    m.column_count = static_cast<std::int32_t>(whole(1, 6)), m.row_count = static_cast<std::int32_t>(whole(1, 6));
+    m.value_count = static_cast<std::int32_t>(m.column_count * m.row_count);
+    for (std::int16_t i = 0; i < m.column_count; ++i) m.columns.push_back(i);
+    for (int i = 0; i < m.row_count; ++i) m.times_ns.push_back(100 * i + whole(0, 99));
+    for (int i = 0; i < m.value_count; ++i) fill(m.values.emplace_back());
+  }
   void fill(sim_command_t& m) {
     fill(m.header), m.id = whole(1, 1 << 30), m.kind = static_cast<std::int8_t>(whole(0, 7)), m.steps = whole(0, 9);
     m.name = name(), m.property = name(), fill_list(m.count, m.values, 0, 6);
@@ -335,6 +353,9 @@ class Samples {
   }
   void fill(setting_t& s) { s.node = name(), s.name = name(), s.value = name(); }
   void fill(body_def_t& b) { b.name = name(), b.tool = -1, b.mass_kg = real(0, 9), fill(b.pose); }
+  void fill(map_def_t& d) {
+    d.from = "x" + name(), d.to = "y" + name(), d.gain = real(-9, 9), d.offset = real(-9, 9), d.low = real(-9, 0), d.high = real(0, 9);
+  }
   void fill(scene_t& m) {
     m.name = name(), fill(m.gravity_m_s2), m.step_ns = 1'000'000;
     fill_list(m.body_count, m.bodies, 1, 5);
@@ -344,6 +365,7 @@ class Samples {
     fill_list(m.pass_count, m.passes, 0, 2), m.environment_asset = whole(0, 9);
     fill_list(m.material_count, m.materials, 0, 3), fill_list(m.light_count, m.lights, 0, 3);
     fill_list(m.tool_count, m.tools, 0, 2), fill_list(m.setting_count, m.settings, 0, 3);
+    fill_list(m.map_count, m.maps, 0, 3);
     fill(m.camera), m.camera_fov_rad = 1, m.profile = name(), fill(m.ambient), fill(m.background), fill(m.listener);
   }
 

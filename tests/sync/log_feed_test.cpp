@@ -123,3 +123,26 @@ TEST_CASE("Stamps that are damaged to another age make a run no longer, and lose
   check([](int i) { return i >= 8 ? -kTenYears_us : 0; }, 2, 17'500'000);
   check([](int i) { return i >= 8 ? std::int64_t{3} << 60 : 0; }, 2, 17'500'000);
 }
+
+TEST_CASE("A loop whose ticks are not even is handed what had arrived by each of them, and time never goes back") {
+  const Folder folder;
+  LogFeed feed(log_in(folder), 1000);
+  Bus bus(Identity::fresh("listener", feed.run_id()), feed.bus());
+  auto& heard = bus.queue<node_health_t>(channels::kNodeHealth, 64);
+  const auto waiting = [&] {
+    int n = 0;
+    while (heard.pop()) ++n;
+    return n;
+  };
+  const HostTime begin = feed.begin();
+  CHECK(feed.next_at(bus, begin + Nanoseconds(2'400'000)) == begin + Nanoseconds(2'400'000));
+  CHECK(waiting() == 1);
+  CHECK(feed.next_at(bus, begin + Nanoseconds(10'000'000)) == begin + Nanoseconds(10'000'000));
+  CHECK(waiting() == 4);
+  CHECK(feed.next_at(bus, begin) == begin + Nanoseconds(10'000'000));
+  CHECK(waiting() == 0);
+  CHECK(feed.next(bus) == begin + Nanoseconds(11'000'000));
+  CHECK(feed.next_at(bus, feed.end()) == feed.end());
+  CHECK(waiting() == 5);
+  CHECK(feed.over(Nanoseconds(0)));
+}

@@ -80,11 +80,13 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
   frame.instant = instant;
   if (instant) frame.how = bodies_.how(*instant);
   judge(frame, now, newest_arrival);
-  if (view_) frame.tools = tool_poses(instant, now);
-  if (view_)
+  if (view_) {
+    frame.tools = tool_poses(instant, now);
     frame.list = view_->draw(body_poses(instant), frame.tools, view_of_head(head, frame));
-  else
+    frame.list.lighting.exposure = static_cast<float>(settings_.exposure);
+  } else {
     frame.list.lighting.background = kNoScene;
+  }
 }
 
 void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, sync::Nanoseconds held) {
@@ -162,11 +164,16 @@ std::vector<PoseSample> FrameComposer::newest_samples(sync::HostTime now) const 
   return samples;
 }
 
-std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const {
+std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) {
   std::vector<ToolPose> poses(scene_->tools.size());
+  const double dt_s = sync::to_seconds(now - std::exchange(tools_drawn_, now));
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto it = tools_.find(static_cast<int>(i));
-    if (it == tools_.end() || now - it->second.arrival > kToolStaleAfter) continue;
+    if (it == tools_.end()) continue;
+    if (now - it->second.arrival > kToolStaleAfter) {
+      it->second.display.reset();
+      continue;
+    }
     const tool_state_t& m = it->second.state;
     sync::Nanoseconds ahead{0};
     if (t && m.header.sim_time_ns >= 0)
@@ -174,6 +181,8 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
     poses[i] = {true, to_eigen(m.device), to_eigen(m.proxy)};
     poses[i].device.translation() += to_eigen(m.device_velocity_m_s) * sync::to_seconds(ahead);
     poses[i].proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
+    const Eigen::Vector3d beside = it->second.display.step(poses[i].proxy.translation(), settings_.display_gain, dt_s);
+    for (Eigen::Isometry3d* pose : {&poses[i].device, &poses[i].proxy}) pose->translation() += beside;
   }
   return poses;
 }

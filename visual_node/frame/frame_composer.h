@@ -15,6 +15,7 @@
 #include "sync/contact_stream.h"
 #include "sync/pose_history.h"
 #include "visual_node/frame/agreed_frame.h"
+#include "visual_node/frame/display_gain.h"
 #include "visual_node/frame/event_ledger.h"
 #include "visual_node/frame/how_count.h"
 #include "visual_node/frame/motion_marker.h"
@@ -53,7 +54,8 @@ class FrameComposer {
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) {
-    tools_[m.tool] = {m, arrival};
+    ToolArrival& tool = tools_[m.tool];
+    tool.state = m, tool.arrival = arrival;
     if (m.tool == head_tool_) head_.push(m, arrival);
   }
   // A new scene; its view gives the geometries to the renderer. What was known of bodies and events stays.
@@ -62,6 +64,11 @@ class FrameComposer {
 
   // Null before the first scene.
   const SceneView* view() const { return view_ ? &*view_ : nullptr; }
+  // Of the settings, those that are looked at in each frame.
+  void change(const Settings& settings) {
+    settings_.exposure = settings.exposure;
+    settings_.display_gain = settings.display_gain;
+  }
   // Colours of the scene's bodies from now on, as SceneView::tint.
   void tint(std::vector<Eigen::Vector4f> bodies) {
     if (view_) view_->tint(std::move(bodies));
@@ -91,6 +98,7 @@ class FrameComposer {
   struct ToolArrival {
     tool_state_t state;
     sync::HostTime arrival;
+    DisplayGain display = {};
   };
   void draw(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, std::optional<sync::SimTime> instant,
             const sync::Sample<sync::BodyPose>& head, sync::HostTime newest_arrival);
@@ -99,13 +107,14 @@ class FrameComposer {
   void judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t);
   std::vector<PoseSample> newest_samples(sync::HostTime now) const;
-  std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) const;
+  std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now);
   std::optional<Eigen::Isometry3d> view_of_head(const sync::Sample<sync::BodyPose>& head, Frame& frame) const;
 
   Settings settings_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;
   std::map<int, ToolArrival> tools_;
+  sync::HostTime tools_drawn_{};
   sync::PoseHistory head_;
   int head_tool_ = -1;  // of the scene, which the view follows; -1: none
   std::optional<scene_t> scene_;

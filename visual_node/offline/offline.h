@@ -6,20 +6,19 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "sync/log_feed.h"
-#include "sync/node.h"
+#include "sync/offline.h"
 #include "visual_node/offline/video_file.h"
 
 namespace tactus::visual {
 
-struct OfflineOptions {
-  std::string log, video;
-  bool as_recorded = false;  // the profiles of the run hold; else only what the command line says
-  std::string snapshot;      // PNG file; empty: none
+struct OfflineOptions : sync::OfflineOptions {
+  std::string video;
+  std::string frames;    // table of when each frame is and what it shows, CSV; empty: none
+  std::string snapshot;  // PNG file; empty: none
   double snapshot_every_s = 1;
 };
 
@@ -28,22 +27,15 @@ class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run, or the video would lie where something
   // is.
-  Offline(OfflineOptions options, double rate_Hz, sync::HostTime clock);
+  Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  // What a node needs to take part in the run of the log.
-  void adapt(sync::NodeOptions& options) const;
-  // The next tick of the log.
-  sync::HostTime next(sync::Bus& bus) { return now_ = feed_.next(bus); }
-  sync::HostTime now() const { return now_; }
-  bool over() const { return feed_.over(sync::Nanoseconds(0)); }
+  sync::Offline& run() { return run_; }
+  sync::HostTime now() const { return run_.now(); }
   // A scene has come. Throws std::runtime_error with one sentence when its pictures do not fit the video.
   void begin(int width, int height, const Settings& settings);
   // The picture of this tick; read() fills the bytes given, sRGB, the lowest row first. Before the first scene
   // there is none.
   void add(const std::function<void(std::span<std::uint8_t>)>& read);
-
-  // Once a second a line for people.
-  std::optional<std::string> progress(sync::HostTime clock);
   // The file gets its name. What came of it, in lines. Throws std::runtime_error with one sentence when there is
   // none.
   std::string result(std::int64_t flashed, std::int64_t dropped, sync::HostTime clock);
@@ -51,10 +43,11 @@ class Offline {
  private:
   OfflineOptions options_;
   double rate_Hz_;
-  sync::LogFeed feed_;
+  sync::Offline run_;
   std::unique_ptr<VideoFile> video_;
+  std::unique_ptr<sync::WholeFile> frames_;
   std::vector<std::uint8_t> rgba_;
-  sync::HostTime now_{}, next_snapshot_{}, began_, said_;
+  sync::HostTime next_snapshot_{};
 };
 
 }  // namespace tactus::visual

@@ -38,7 +38,8 @@ VideoFile::~VideoFile() {
 }
 
 void VideoFile::write(std::span<const std::uint8_t> rgba) {
-  for (const std::uint8_t byte : rgba) pixels_ = (pixels_ ^ byte) * 1099511628211u;
+  newest_ = sync::fnv1a_64(sync::kFnv1aBegin, rgba.data(), rgba.size());
+  pixels_ = sync::fnv1a_64(pixels_, &newest_, sizeof newest_);
   rgba_to_i420(rgba, width_, height_, planes_);
   if (!encoder_->write(planes_))
     throw std::runtime_error("the encoder of " + file_ + " has died; is the disk full?");

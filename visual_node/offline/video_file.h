@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sync/identity.h"
 #include "visual_node/settings.gen.h"
 #include "visual_node/video/encoder.h"
 
@@ -31,7 +32,9 @@ class VideoFile {
   void finish();
 
   std::int64_t frames() const { return frames_; }
-  // FNV-1a (64 bit) of all pixels of all pictures: two renderings with one number show the same.
+  // FNV-1a (64 bit) of all pixels of the newest picture, and of these numbers of all pictures: two renderings with
+  // one number show the same.
+  std::uint64_t pixels_of_newest() const { return newest_; }
   std::uint64_t pixels() const { return pixels_; }
 
  private:
@@ -40,7 +43,7 @@ class VideoFile {
   std::optional<Encoder> encoder_;
   std::vector<std::uint8_t> planes_;
   std::int64_t frames_ = 0;
-  std::uint64_t pixels_ = 14695981039346656037u;  // offset basis
+  std::uint64_t newest_ = sync::kFnv1aBegin, pixels_ = sync::kFnv1aBegin;
   bool finished_ = false;
 };
 

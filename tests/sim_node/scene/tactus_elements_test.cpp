@@ -295,3 +295,27 @@ TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its p
                      "off='true'><tactus:x/></tactus:degrade></tactus:profile>"),
              Catch::Contains("attributes alone"));
 }
+
+TEST_CASE("A map drives a number that can be changed, within its bounds, and not a limit that protects a person beyond them") {
+  const WorldDef w = load("<tactus:map from='haptic_node.force' to='visual_node.exposure' gain='2' offset='1' high='5'/>"
+                          "<tactus:map from='sim_node.world.time' to='haptic_node_left.force_limit' low='500mN'/>");
+  REQUIRE(w.maps.size() == 2);
+  CHECK(w.maps[0].from == "haptic_node.force");
+  CHECK(w.maps[0].to == "visual_node.exposure");
+  CHECK(w.maps[0].gain == 2);
+  CHECK(w.maps[0].offset == 1);
+  CHECK(w.maps[0].low == 0.01);
+  CHECK(w.maps[0].high == 5);
+  CHECK(w.maps[1].gain == 1);
+  CHECK(w.maps[1].low == 0.5);
+  CHECK(w.maps[1].high == 8);  // its default: no scene may loosen it
+  const auto map = [](const std::string& rest) { return refusal("<tactus:map " + rest + "/>"); };
+  CHECK_THAT(map("from='force' to='visual_node.exposure'"), Catch::Contains("NODE.NAME"));
+  CHECK_THAT(map("from='a.b'"), Catch::Contains("to"));
+  CHECK_THAT(map("from='a.b' to='nose_node.exposure'"), Catch::Contains("no such node"));
+  CHECK_THAT(map("from='a.b' to='visual_node.width'"), Catch::Contains("exposure"));  // what there is instead
+  CHECK_THAT(map("from='a.b' to='visual_node.overlay'"), Catch::Contains("no number"));
+  CHECK_THAT(map("from='a.b' to='haptic_node.force_limit' high='20N'"), Catch::Contains("high"));
+  CHECK_THAT(map("from='a.b' to='visual_node.exposure' low='3' high='2'"), Catch::Contains("low"));
+  CHECK_THAT(map("from='a.b' to='visual_node.exposure' gian='3'"), Catch::Contains("gian"));
+}

@@ -1,0 +1,61 @@
+// What TAG_LIST and TAG_VALUES tell together: for who shows, records or follows tagged variables. Pure; bounded whatever
+// arrives.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
+#include <utility>
+#include <vector>
+
+namespace tactus::sync {
+
+class TagTable {
+ public:
+  // Lists of so many processes, counting those of which there is a newer one; the oldest of all is forgotten.
+  static constexpr std::size_t kMostLists = 64;
+
+  struct List {
+    std::string node;
+    std::vector<tag_def_t> tags;  // by number; with an empty name: not known yet
+    std::int64_t heard = 0;       // grows with each list that is heard
+  };
+
+  void push(const tag_list_t& m);
+
+  // take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each value that is one, row by row.
+  // time_ns: CLOCK_MONOTONIC of the sender. What no list tells is counted.
+  template <class Take>
+  void read(const tag_values_t& m, Take&& take) {
+    const auto known = lists_.find({m.header.incarnation, m.list});
+    std::size_t i = 0;
+    for (const std::int64_t time_ns : m.times_ns)
+      for (const std::int16_t column : m.columns) {
+        const double value = m.values[i++];
+        const tag_def_t* def = known == lists_.end() ? nullptr : tag(known->second, column);
+        if (def == nullptr)
+          ++untold_;
+        else if (value != tag_values_t::NONE)
+          take(known->second, *def, time_ns, value);
+      }
+  }
+
+  // By the incarnation of the process and the number of the list.
+  const std::map<std::pair<std::int64_t, std::int64_t>, List>& lists() const { return lists_; }
+  // Values whose list has not been heard.
+  std::int64_t untold() const { return untold_; }
+
+ private:
+  static const tag_def_t* tag(const List& list, std::int16_t number) {
+    const auto i = static_cast<std::size_t>(number);
+    return number < 0 || i >= list.tags.size() || list.tags[i].name.empty() ? nullptr : &list.tags[i];
+  }
+
+  std::map<std::pair<std::int64_t, std::int64_t>, List> lists_;
+  std::int64_t heard_ = 0;
+  std::int64_t untold_ = 0;
+};
+
+}  // namespace tactus::sync

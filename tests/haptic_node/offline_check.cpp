@@ -1,0 +1,196 @@
+// A recorded run felt again by the program itself, held tick by tick against a session that lived through it.
+#include <cmath>
+#include <random>
+
+#include "haptic_node/devices/recorded_hand.h"
+#include "haptic_node/session.h"
+#include "sync/export_csv.h"
+#include "tests/audio_node/recorded_run.h"
+#include "tests/haptic_node/world.h"
+#include "tests/rendered_log.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using audio::test::kLogBegins_ns;
+using audio::test::RecordedRun;
+using tactus::test::cells_of;
+using tactus::test::in_force;
+using tactus::test::Rendered;
+using tactus::test::RenderedLog;
+
+namespace {
+
+constexpr std::int32_t kClock = 4711;  // of RecordedRun
+constexpr std::int64_t kRun = 7;
+constexpr double kFrom_s = 0.1, kUntil_s = 2.1;
+
+header_t header_at(double at_s, std::int64_t seq, std::int64_t incarnation) {
+  return {std::llround(at_s * 1e9), kLogBegins_ns + std::llround(at_s * 1e9), kClock, kRun, 9, incarnation, seq};
+}
+
+scene_t floor_and_stylus() {
+  scene_t s = haptic::test::scene();
+  for (body_def_t& b : s.bodies) b.pose.orientation.w = 1;
+  s.listener.orientation.w = s.camera.orientation.w = 1;
+  return s;
+}
+
+// The tip goes up and down through a floor at z = 5 mm, slides, and hits it once; a hand that the floor does not
+// stop.
+DeviceState hand_at(double t_s) {
+  DeviceState d;
+  d.position = {0.02 * std::sin(3 * t_s), 0.01 * std::cos(2 * t_s), 0.0095 + 0.004 * std::cos(20 * t_s)};
+  // A message holds single precision. Volatile: GCC 12 vectorises the rounding of two of them away.
+  const auto rounded = [](double v) {
+    const volatile float single = static_cast<float>(v);
+    return static_cast<double>(single);
+  };
+  d.velocity = {rounded(0.06 * std::cos(3 * t_s)), rounded(-0.02 * std::sin(2 * t_s)),
+                rounded(-0.08 * std::sin(20 * t_s))};
+  return d;
+}
+
+touch_model_t model_at(double t_s, std::int64_t seq) {
+  touch_plane_t floor = haptic::test::plane(7, {0, 0, 0.005}, {0, 0, 1}, 0.4);
+  floor.point_body_m.z = 0.005f, floor.normal_body = floor.normal;
+  touch_model_t m = haptic::test::model(0, {floor});
+  m.header = header_at(t_s, seq, 21);
+  m.clock = {m.header.sim_time_ns, m.header.publish_time_ns, 1};
+  return m;
+}
+
+contact_events_t hit_at(double t_s) {
+  contact_events_t m{};
+  m.header = header_at(t_s, 0, 21);
+  m.clock = {m.header.sim_time_ns, m.header.publish_time_ns, 1};
+  m.pages = 1;
+  m.events = {haptic::test::event(1, contact_event_t::BEGIN, t_s * 1e3),
+              haptic::test::event(2, contact_event_t::HIT, t_s * 1e3)};
+  m.count = 2;
+  return m;
+}
+
+// Lives through the run and records it: touch models at even milliseconds, ticks some time after each, as a real
+// loop wakes. Returns what the hand felt, as a table.
+std::string live(const std::string& log, const std::string& profile = "", double until_s = kUntil_s) {
+  const scene_t scene = floor_and_stylus();
+  RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
+  if (!profile.empty()) run.raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
+  const Choice choice = choose(scene, "", {});
+  DeviceState hand;
+  Safety safety(safety_limits(choice.settings));
+  sync::ClockMaps maps(kRun);
+  Session session(scene, choice, std::make_unique<RecordedHand>(hand), {kRun, kClock, &maps}, safety);
+  session.set_maps(std::make_shared<SurfaceMaps>(read_maps(scene, {})));
+  std::string table = sync::haptic_csv_names();
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> after_us(200, 700);
+  std::int64_t seq = 0;
+  for (int ms = static_cast<int>(kFrom_s * 1000); ms < static_cast<int>(until_s * 1000); ++ms, ++seq) {
+    const double t_s = ms * 1e-3, tick_s = t_s + after_us(random) * 1e-6;
+    const touch_model_t model = model_at(t_s, seq);
+    run.raw(t_s, channels::kTouchModel, sync::encode(model));
+    session.push(model, sync::host_time(model.header.publish_time_ns));
+    if (ms == 200) {
+      run.raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
+      session.push(hit_at(t_s), sync::host_time(model.header.publish_time_ns));
+    }
+    hand = hand_at(tick_s);
+    const header_t header = header_at(tick_s, seq, 44);
+    tool_state_t state = session.step(sync::host_time(header.publish_time_ns)).state;
+    const std::int64_t sim_time_ns = state.header.sim_time_ns;
+    state.header = header;
+    state.header.sim_time_ns = sim_time_ns;
+    run.raw(tick_s + 50e-6, channels::kToolState, sync::encode(state));  // it takes a while to the recorder
+    table += sync::csv_row(state);
+  }
+  run.finish();
+  return table;
+}
+
+double largest_force_N(const std::string& table) {
+  double most = 0;
+  for (const auto& row : cells_of(table)) most = std::max(most, std::abs(std::stod(row.at(11))));
+  return most;
+}
+
+constexpr const char* kOff = R"(<profile name="numb"><degrade modality="haptic" off="true"/></profile>)";
+
+}  // namespace
+
+TEST_CASE("What the hand felt is felt again from the log, tick by tick to the last digit, as often as one likes") {
+  const RenderedLog of("haptic_node");
+  const std::string felt = live(of.file("run.lcmlog"));
+  CHECK(largest_force_N(felt) > 2);
+  CHECK(cells_of(felt).size() == 2000);
+  const std::string again = of.trace();
+  CHECK((again == felt));  // not printed: 2000 lines
+  CHECK((of.trace() == again));
+}
+
+TEST_CASE("A profile degrades what is felt of a log, and that of the run holds only when it is asked for") {
+  const RenderedLog of("haptic_node");
+  const std::string felt = live(of.file("run.lcmlog"));
+  live(of.file("numb.lcmlog"), kOff);
+  const std::string off = of.trace({"--degrade", of.write("off.xml", kOff)});
+  CHECK(largest_force_N(off) == 0);
+  CHECK(cells_of(off).size() == 2000);
+  CHECK((of.trace({}, "numb.lcmlog") == felt));
+  CHECK((of.trace({"--degrade", "logged"}, "numb.lcmlog") == off));
+
+  SECTION("touch models that are held back by 20 ms are felt 20 ticks later, and events are told as late") {
+    const std::string late = R"(<profile name="late"><degrade modality="haptic" delay="20ms"/></profile>)";
+    const auto table = cells_of(of.trace({"--degrade", of.write("late.xml", late), "--presented", of.file("p.csv")}));
+    const auto events = cells_of(RenderedLog::bytes(of.file("p.csv")));
+    REQUIRE(events.size() == 2);
+    const auto hit = std::find_if(events.begin(), events.end(), [](const auto& row) { return row.at(2) == "transient"; });
+    REQUIRE(hit != events.end());
+    CHECK(std::stoll(hit->at(3)) == kLogBegins_ns + 200'000'000 + 20'000'000);
+    // The floor comes with the first model that is let through.
+    CHECK(table.at(18).at(20) == "none");
+    CHECK(table.at(25).at(20) != "none");
+  }
+}
+
+TEST_CASE("Ticks that were never recorded are not felt, and those before and after the gap are") {
+  const RenderedLog of("haptic_node");
+  live(of.file("whole.lcmlog"));
+  std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
+  const std::size_t middle = bytes.size() / 2;
+  bytes.erase(middle, 50'000);
+  of.write("run.lcmlog", bytes);
+  const auto rows = cells_of(of.trace());
+  CHECK(rows.size() < 1990);
+  CHECK(rows.size() > 1500);
+  for (std::size_t i = 1; i < rows.size(); ++i) CHECK(std::stoll(rows[i].at(24)) > std::stoll(rows[i - 1].at(24)));
+  CHECK(std::stoll(rows.back().at(24)) == 1999);
+}
+
+TEST_CASE("A log that nobody's hand is in, a tool that there is not and a log of no run are refused in one sentence") {
+  const RenderedLog of("haptic_node");
+  const auto refusal = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--trace", of.file("x.csv")});
+    const Rendered done = of.render(words);
+    CAPTURE(done.said);
+    CHECK(done.status == 1);
+    CHECK_FALSE(std::filesystem::exists(of.file("x.csv")));
+    CHECK_FALSE(std::filesystem::exists(of.file("x.csv.part")));
+    return done.said;
+  };
+  live(of.file("run.lcmlog"), "", 0.3);
+  live(of.file("empty.lcmlog"), "", kFrom_s);
+  CHECK_THAT(refusal({"--log", of.file("empty.lcmlog")}), Catch::Contains("nobody held it"));
+  CHECK_THAT(refusal({"--log", of.file("run.lcmlog"), "--tool", "toe"}), Catch::Contains("\"toe\""));
+  RecordedRun(std::make_unique<sync::FileSink>(of.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
+  CHECK_THAT(refusal({"--log", of.file("bare.lcmlog")}), Catch::Contains("no scene"));
+  CHECK_THAT(refusal({"--log", of.write("text.lcmlog", "This is a letter.\n")}), Catch::Contains("no LCM log"));
+  CHECK_THAT(refusal({"--log", of.file("run.lcmlog"), "--device", "virtual_hand"}), Catch::Contains("--device"));
+  const Rendered no_trace = of.render({"--log", of.file("run.lcmlog")});
+  CHECK(no_trace.status == 1);
+  CHECK_THAT(no_trace.said, Catch::Contains("--trace"));
+  const std::string log = RenderedLog::bytes(of.file("run.lcmlog"));
+  const Rendered over = of.render({"--log", of.file("run.lcmlog"), "--trace", of.file("run.lcmlog")});
+  CHECK(over.status == 1);
+  CHECK_THAT(over.said, Catch::Contains("is the log itself"));
+  CHECK((RenderedLog::bytes(of.file("run.lcmlog")) == log));
+}

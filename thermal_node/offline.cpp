@@ -1,0 +1,36 @@
+#include "thermal_node/offline.h"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "sync/export_csv.h"
+
+namespace tactus::thermal {
+
+Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
+    : run_(options, {{options.trace, "--trace"}}, rate_Hz, clock),
+      trace_(options.trace, "--trace"),
+      period_s_(1 / rate_Hz) {
+  trace_.write(sync::thermal_csv_names());
+}
+
+void Offline::add(const thermal_state_t& state) {
+  thermal_state_t row = state;
+  row.header.publish_time_ns = sync::to_ns(run_.now());
+  trace_.write(sync::csv_row(row));
+  ++rows_;
+}
+
+std::string Offline::result(const std::string& problem, sync::HostTime clock) {
+  if (rows_ == 0)
+    throw std::runtime_error(
+        problem.empty() ? "the log has no scene; give one that scripts/run wrote from its beginning" : problem);
+  const double felt_s = static_cast<double>(rows_) * period_s_;
+  const std::string rest = run_.finish(felt_s, clock);
+  trace_.finish();
+  std::ostringstream text;
+  text << trace_.path() << ": " << rows_ << " ticks, " << felt_s << " s" << rest;
+  return text.str();
+}
+
+}  // namespace tactus::thermal
