@@ -33,7 +33,7 @@ export class Variables {
     }));
   }
   restore(): void {
-    let kept: [string, Kind][] = [["TOOL_STATE:force_N.z", "graph"], ["TOOL_STATE:proxy.position_m.z", "graph"], ["THERMAL_STATE:skin_K", "text"]];
+    let kept: [string, Kind][] = [["TOOL_STATE:force_N.z", "graph"], ["TOOL_STATE:proxy.position_m.z", "graph"], ["THERMAL_STATE:skin_degC", "text"]];
     try {
       const text = localStorage.getItem("tactus-live-variables");
       if (text) kept = JSON.parse(text) as [string, Kind][];
