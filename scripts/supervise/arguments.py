@@ -45,6 +45,7 @@ class Plan:
     settings: dict  # node: list of "name=value"
     world: str = "sim_node"  # the process that says what happens: the simulation, or replay
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
+    live: int = None  # port of the live page, 0: any that is free; None: there is none
 
     def nodes(self):
         """Names of the processes of this run; the order is that of starting."""
@@ -78,6 +79,7 @@ def parse(words, here):
     for option in PLAYOUT:
         parser.add_argument(f"--{option}")
     parser.add_argument("--window", action="store_true")
+    parser.add_argument("--live")
     parser.add_argument("--listen", action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
     parser.add_argument("--seed", default="1")
@@ -87,7 +89,7 @@ def parse(words, here):
     for word in words:
         if any(ord(c) < 32 or ord(c) == 127 for c in word):
             raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
-    a = parser.parse_args(words)
+    a = parser.parse_args(with_live_port(words))
     here = pathlib.Path(here)
     scene_path = scene_file(here, a.scene)
     tools = scene.tools(scene_path)
@@ -110,13 +112,23 @@ def parse(words, here):
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
                 devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
                 degrade=profile(here, a.degrade), playout=playout(a),
-                window=a.window, listen=a.listen, realtime=a.realtime,
+                window=a.window, live=live_port(a.live), listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several))
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
                       "--window away and look at video.mp4")
     return plan
+
+
+def with_live_port(words):
+    """--live may stand alone: then the port is any that is free."""
+    return [part for word, following in zip(words, [*words[1:], ""])
+            for part in ((word, "0") if word == "--live" and not following.isdigit() else (word,))]
+
+
+def live_port(text):
+    return None if text is None else int(number("--live", text, 0, 65535, "", whole=True))
 
 
 def number(option, text, least, most, unit, whole=False):

@@ -120,7 +120,7 @@ class Cluster:
         self.plan, self.network, self.run_id = plan, network, run_id
         self.folder = services.make_folder(plan.out)
         self.in_use = None
-        self.holder = self.table = None
+        self.holder = self.table = self.page = None
         try:
             self.in_use = services.hold(self.folder)
             logs = plan.out / "logs"

@@ -15,6 +15,7 @@ import arguments
 import cluster
 import equipment
 import hands
+import live
 import network
 import priority
 import services
@@ -70,6 +71,8 @@ def watch_over(running, seconds, stop):
         elif end is None and now > next_said:
             say(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
             next_said += PROGRESS_S
+        if running.page is not None:
+            running.page.keep()
         if not running.alive():
             raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
         for name, why in running.lost().items():
@@ -142,6 +145,7 @@ def run(plan, watch=watch_over):
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
+    page = live.Page(plan.live) if plan.live is not None else None
     claim = claim_out(plan)
     warnings = equipment.lacking(plan)
     running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
@@ -152,6 +156,9 @@ def run(plan, watch=watch_over):
     wrong = []
     try:
         running.start()
+        if page is not None:
+            running.page = page
+            page.start(plan.out)
         if not watch(running, plan.seconds, stop):
             wrong.append("interrupted before the world began")
     except Refusal as refusal:
@@ -159,6 +166,8 @@ def run(plan, watch=watch_over):
     except OSError as error:
         wrong.append(sentence_of(error))
     finally:
+        if page is not None:
+            page.stop()
         taken = running.taken_down()
         stubborn = running.stop()
         lost = running.lost()

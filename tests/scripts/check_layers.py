@@ -27,7 +27,7 @@ QUARANTINE = [
 ]
 MOST_LINES = 400
 SOURCES = (".h", ".cpp", ".c", ".lcm", ".py", ".cmake", ".glsl", ".vert", ".frag", ".sh")
-SKIPPED = {"build", "out", ".git", "__pycache__", "shared"}
+SKIPPED = {"build", "out", ".git", "__pycache__", "shared", "node_modules", "dist"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]')
 UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX|HA" r"CK)\b")
 

@@ -1,0 +1,115 @@
+#include "scripts/live/browser_message.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <tactus/sim_command_t.hpp>
+
+namespace tactus::live {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostSenses = 16;
+constexpr int kMostSteps = 10'000;
+
+double number(const json& j, const char* name, double least, double most) {
+  const auto found = j.find(name);
+  if (found == j.end() || !found->is_number())
+    throw std::invalid_argument(std::string("the page sent no number \"") + name + "\"; load it again");
+  const double value = found->get<double>();
+  if (!(value >= least && value <= most))
+    throw std::invalid_argument(std::string("\"") + name + "\" is out of range; load the page again");
+  return value;
+}
+
+bool flag(const json& j, const char* name) {
+  const auto found = j.find(name);
+  if (found == j.end() || !found->is_boolean())
+    throw std::invalid_argument(std::string("the page did not say whether \"") + name + "\"; load it again");
+  return found->get<bool>();
+}
+
+std::string text(const json& j, std::size_t most) {
+  if (!j.is_string()) throw std::invalid_argument("the page sent something that is no name; load it again");
+  std::string s = j.get<std::string>();
+  const auto printable = [](unsigned char c) { return c > 32 && c < 127; };
+  if (s.empty() || s.size() > most || !std::all_of(s.begin(), s.end(), printable))
+    throw std::invalid_argument("the page sent a name that is empty, too long or not printable; load it again");
+  return s;
+}
+
+bool is_sense(const std::string& name) {
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+WatchThese watch(const json& j) {
+  const auto names = j.find("names");
+  if (names == j.end() || !names->is_array() || names->size() > kMostWatched)
+    throw std::invalid_argument("the page watches at most " + std::to_string(kMostWatched) + " variables; take some away");
+  WatchThese w;
+  for (const json& name : *names) w.names.push_back(text(name, 192));
+  return w;
+}
+
+Command command(const json& j) {
+  const auto what = j.find("what");
+  const std::string word = what == j.end() ? "" : text(*what, 16);
+  if (word == "pause") return {sim_command_t::PAUSE, 0};
+  if (word == "resume") return {sim_command_t::RESUME, 0};
+  if (word == "reset") return {sim_command_t::RESET, 0};
+  if (word == "step") return {sim_command_t::STEP, static_cast<int>(number(j, "steps", 1, kMostSteps))};
+  throw std::invalid_argument("the page asks the simulation for what it must not; load it again");
+}
+
+DegradeThus degrade(const json& j) {
+  const auto senses = j.find("senses");
+  if (senses == j.end() || !senses->is_object() || senses->size() > kMostSenses)
+    throw std::invalid_argument("the page sent no sliders, or too many; load it again");
+  DegradeThus d;
+  for (const auto& [name, s] : senses->items()) {
+    if (name.empty() || name.size() > 64 || !is_sense(name) || !s.is_object())
+      throw std::invalid_argument("the page sent sliders of what is no sense; load it again");
+    Sliders sliders{number(s, "delay_ms", 0, 2000), number(s, "rate_Hz", 0, 1000), number(s, "loss", 0, 1)};
+    if (sliders.rate_Hz > 0 && sliders.rate_Hz < 0.1) throw std::invalid_argument("\"rate_Hz\" is below 0.1; give more, or 0");
+    d.senses[name] = sliders;
+  }
+  return d;
+}
+
+}  // namespace
+
+BrowserMessage parse_browser_message(std::string_view bytes) {
+  if (bytes.size() > kMostBrowserBytes) throw std::invalid_argument("the page sent too much at once; load it again");
+  const json j = json::parse(bytes, nullptr, false);
+  if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent what is no message; load it again");
+  const std::string kind = text(j["t"], 16);
+  if (kind == "watch") return watch(j);
+  if (kind == "command") return command(j);
+  if (kind == "degrade") return degrade(j);
+  if (kind == "hand") return HandAt{number(j, "x", -1, 1), number(j, "y", -1, 1), number(j, "push_m", -1, 1), flag(j, "down")};
+  if (kind == "play") return LogPlay{flag(j, "play"), number(j, "rate", 0.1, 16)};
+  if (kind == "seek") return LogSeek{number(j, "to_s", 0, 1e7)};
+  throw std::invalid_argument("the page asks for what this server does not know; load it again");
+}
+
+std::string profile_of(const std::map<std::string, Sliders>& senses) {
+  std::ostringstream xml;
+  xml << "<profile name=\"live page\">";
+  for (const auto& [name, s] : senses) {
+    if (!(s.delay_ms > 0 || s.rate_Hz > 0 || s.loss > 0)) continue;
+    xml << "<degrade modality=\"" << name << '"';
+    if (s.delay_ms > 0) xml << " delay=\"" << s.delay_ms << "ms\"";
+    if (s.rate_Hz > 0) xml << " rate=\"" << s.rate_Hz << "Hz\"";
+    if (s.loss > 0) xml << " loss=\"" << s.loss * 100 << "%\"";
+    xml << "/>";
+  }
+  xml << "</profile>";
+  return xml.str();
+}
+
+}  // namespace tactus::live

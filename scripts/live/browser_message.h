@@ -1,0 +1,54 @@
+// What a browser may ask, read as what a stranger sent: each kind has its members, each member its range, anything else is
+// refused with one sentence. Pure.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tactus::live {
+
+// What the sliders of one sense say; 0: nothing is wrong with it.
+struct Sliders {
+  double delay_ms = 0;  // 0 .. 2000
+  double rate_Hz = 0;   // 0, or 0.1 .. 1000
+  double loss = 0;      // share, 0 .. 1
+};
+
+struct WatchThese {
+  std::vector<std::string> names;  // "CHANNEL:path" or "node.tag", at most kMostWatched
+};
+struct Command {
+  std::int8_t kind = 0;  // of sim_command_t: PAUSE, RESUME, STEP or RESET
+  int steps = 0;
+};
+struct DegradeThus {
+  std::map<std::string, Sliders> senses;
+};
+struct HandAt {
+  double x = 0, y = 0;  // place in the picture, -1 .. 1 from left to right and from below to above
+  double push_m = 0;    // away from the camera, -1 .. 1
+  bool down = false;    // held: the first button of the device
+};
+struct LogPlay {
+  bool play = false;
+  double rate = 1;  // 0.1 .. 16
+};
+struct LogSeek {
+  double to_s = 0;  // since its beginning
+};
+using BrowserMessage = std::variant<WatchThese, Command, DegradeThus, HandAt, LogPlay, LogSeek>;
+
+inline constexpr std::size_t kMostWatched = 32;
+inline constexpr std::size_t kMostBrowserBytes = 8192;
+
+// Throws std::invalid_argument with one sentence.
+BrowserMessage parse_browser_message(std::string_view text);
+
+// The profile that the sliders ask for, as XML; it degrades nothing when they all stand at 0.
+std::string profile_of(const std::map<std::string, Sliders>& senses);
+
+}  // namespace tactus::live

@@ -1,0 +1,140 @@
+#include "scripts/live/controls.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "lcmtypes/vectors.h"
+#include "sync/asking.h"
+#include "sync/identity.h"
+#include "sync/printable.h"
+
+namespace tactus::live {
+namespace {
+
+constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
+constexpr sync::Nanoseconds kPatience{3'000'000'000};  // an answer comes with the next step
+constexpr sync::Nanoseconds kProfile{2'000'000'000};   // as scripts/degrade; sync_node repeats it then
+constexpr sync::Nanoseconds kTags{1'000'000'000};      // as TAG_REQUEST says
+
+header_t unstamped() {
+  header_t h{};
+  h.sim_time_ns = -1;
+  h.run_id = h.incarnation = 1;  // the bus stamps them; a header without is not valid
+  return h;
+}
+
+}  // namespace
+
+Controls::Controls(sync::Bus& bus, Tell tell)
+    : bus_(bus),
+      tell_(std::move(tell)),
+      replies_(bus.queue<sim_reply_t>(channels::kSimReply, 64)),
+      setting_replies_(bus.queue<setting_reply_t>(channels::kSettingReply, 64)),
+      frames_(bus.queue<contact_frame_t>(channels::kContacts, 1024)),
+      tools_(bus.queue<tool_state_t>(channels::kToolState, 256)),
+      scene_(bus),
+      simulation_(bus.clocks()) {}
+
+void Controls::command(const Command& command, sync::HostTime now) {
+  sim_command_t c{};
+  c.header = unstamped();
+  c.id = sync::question_id();
+  c.kind = command.kind;
+  c.steps = command.steps;
+  command_ = {c, now + kPatience, now};
+}
+
+void Controls::degrade(const DegradeThus& sliders, std::int64_t realtime_ns, sync::HostTime now) {
+  sync::ProfileInForce p;
+  p.text = profile_of(sliders.senses);
+  sync::parse_profile(p.text, "the page's sliders");
+  p.hash = sync::fnv1a_64(p.text.data(), p.text.size());
+  p.generation = realtime_ns;
+  if (const auto map = simulation_.map(now)) p.start = std::max(sync::SimTime{}, map->to_sim(now));
+  profile_ = p;
+  profile_until_ = now + kProfile;
+  profile_next_ = now;
+}
+
+void Controls::hand(const HandAt& at, double aspect, sync::HostTime now) {
+  if (scene() == nullptr) throw std::invalid_argument("the scene is not known yet; take hold of the tool in a moment");
+  if (scene()->tools.empty()) throw std::invalid_argument("this scene has no tool to hold; run one that has");
+  std::optional<Eigen::Vector3d> where;
+  if (tool_) where = to_eigen(tool_->device.position_m);
+  hand_.aim(at, *scene(), aspect, where, now);
+}
+
+void Controls::stream(double rate_Hz, sync::HostTime now) {
+  setting_change_t c{};
+  c.header = unstamped();
+  c.id = sync::question_id();
+  c.node = "visual_node";
+  c.name = "stream";
+  std::ostringstream value;
+  value << rate_Hz;
+  c.value = value.str();
+  setting_ = {c, now + kPatience, now};
+}
+
+void Controls::want_tags(const std::vector<std::string>& names, sync::HostTime now) {
+  constexpr std::size_t kMostPatterns = 16, kMostLetters = 128;  // of TAG_REQUEST
+  std::vector<std::string> patterns;
+  for (const std::string& name : names)
+    if (name.size() <= kMostLetters && patterns.size() <= kMostPatterns) patterns.push_back(name);
+  if (patterns.size() > kMostPatterns) patterns = {"*"};
+  if (tags_next_ && patterns == tags_.patterns) return;
+  tags_.patterns = patterns;
+  tags_.pattern_count = static_cast<std::int16_t>(patterns.size());
+  tags_next_ = now;
+}
+
+Controls::World Controls::world(sync::HostTime now) const {
+  const auto map = simulation_.map(now);
+  if (!map || !clock_) return {};
+  return {sync::to_seconds(map->to_sim(now).time_since_epoch()), clock_->rate, true};
+}
+
+void Controls::step(sync::HostTime now) {
+  const auto ours = [&](const header_t& h) { return h.run_id == bus_.identity().run_id; };
+  while (const auto m = frames_.pop()) {
+    if (!ours(m->message.header)) continue;
+    simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    clock_ = m->message.clock;
+  }
+  while (auto m = tools_.pop())
+    if (ours(m->message.header) && m->message.tool == 0) tool_ = std::move(m->message);
+  if (scene_.poll(now)) ++scenes_;
+  while (const auto m = replies_.pop()) {
+    if (!command_ || !ours(m->message.header) || m->message.id != command_->question.id) continue;
+    command_.reset();
+    tell_(sync::printable(m->message.text), m->message.done != 0);
+  }
+  while (const auto m = setting_replies_.pop())
+    if (setting_ && ours(m->message.header) && m->message.id == setting_->question.id) setting_.reset();
+  if (command_ && now >= command_->until) {
+    command_.reset();
+    tell_("no sim_node answers; is it running?", false);
+  }
+  if (setting_ && now >= setting_->until) setting_.reset();
+  if (command_ && now >= command_->next) {
+    bus_.publish(channels::kSimCommand, command_->question);
+    command_->next = now + kRepeat;
+  }
+  if (setting_ && now >= setting_->next) {
+    bus_.publish(channels::kSetting, setting_->question);
+    setting_->next = now + kRepeat;
+  }
+  if (profile_ && now < profile_until_ && now >= profile_next_) {
+    sync::send_profile(bus_, *profile_);
+    profile_next_ = now + kRepeat;
+  }
+  if (tags_next_ && now >= *tags_next_) {
+    tags_.header = unstamped();
+    bus_.publish(channels::kTagRequest, tags_);
+    tags_next_ = now + kTags;
+  }
+  if (auto state = hand_.state(now)) bus_.publish(channels::kDeviceState, *state);
+}
+
+}  // namespace tactus::live

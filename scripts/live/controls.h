@@ -1,0 +1,79 @@
+// What pages do to the cluster, as scripts/simulation, degrade and set do it, but without waiting: each order is repeated until
+// it is answered or has been sent for long enough. Bounded: a new order of a kind takes the place of the one before.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tool_state_t.hpp>
+
+#include "scripts/live/browser_message.h"
+#include "scripts/live/hand.h"
+#include "sync/bus.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/scene_exchange.h"
+#include "sync/sim_follower.h"
+
+namespace tactus::live {
+
+class Controls {
+ public:
+  using Tell = std::function<void(const std::string& sentence, bool good)>;
+  explicit Controls(sync::Bus& bus, Tell tell);
+
+  // realtime_ns: CLOCK_REALTIME, which numbers profiles. Each throws std::invalid_argument with one sentence when it must not be.
+  void command(const Command& command, sync::HostTime now);
+  void degrade(const DegradeThus& sliders, std::int64_t realtime_ns, sync::HostTime now);
+  void hand(const HandAt& at, double aspect, sync::HostTime now);
+  // Asks visual_node for so many pictures a second.
+  void stream(double rate_Hz, sync::HostTime now);
+  void want_tags(const std::vector<std::string>& names, sync::HostTime now);
+
+  // Once a turn of the loop: sends what is due and reads the answers.
+  void step(sync::HostTime now);
+
+  struct World {
+    double sim_s = 0, rate = 0;
+    bool known = false;
+  };
+  World world(sync::HostTime now) const;
+  // Of the profile that was sent last; 0: none.
+  std::int64_t profile_hash() const { return profile_ ? profile_->hash : 0; }
+  const scene_t* scene() const { return scene_.scene(); }
+  // Of the scene that is there now; grows with each.
+  int scenes() const { return scenes_; }
+
+ private:
+  template <class Question>
+  struct Asked {
+    Question question;
+    sync::HostTime until, next;
+  };
+  sync::Bus& bus_;
+  Tell tell_;
+  sync::Queue<sim_reply_t>& replies_;
+  sync::Queue<setting_reply_t>& setting_replies_;
+  sync::Queue<contact_frame_t>& frames_;
+  sync::Queue<tool_state_t>& tools_;
+  sync::SceneReceiver scene_;
+  sync::SimFollower simulation_;
+  Hand hand_;
+  std::optional<tool_state_t> tool_;
+  std::optional<sim_clock_t> clock_;
+  std::optional<Asked<sim_command_t>> command_;
+  std::optional<Asked<setting_change_t>> setting_;
+  std::optional<sync::ProfileInForce> profile_;
+  sync::HostTime profile_until_{}, profile_next_{};
+  tag_request_t tags_{};
+  std::optional<sync::HostTime> tags_next_;
+  int scenes_ = 0;
+};
+
+}  // namespace tactus::live

@@ -1,0 +1,74 @@
+// What all pages show alike, gathered from the messages as they come from the bus or out of a log: health of the nodes, the
+// report of sync_node, events and what became of them in each sense. Pure; bounded whatever arrives.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tuple>
+
+#include "sync/time.h"
+
+namespace tactus::live {
+
+class Feed {
+ public:
+  // Events are remembered until so many later ones; of a frame more are left out and counted.
+  static constexpr std::size_t kRemembered = 4096;
+  static constexpr std::size_t kMostOfFrame = 400;
+  static constexpr std::size_t kMostNodes = 64, kMostModalities = 32;
+
+  // run_id: only messages of this run; 0: of any, as in a log.
+  explicit Feed(std::int64_t run_id) : run_id_(run_id) {}
+
+  // Channels that are of use here.
+  static bool wants(std::string_view channel);
+  void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
+  // A log was wound back.
+  void clear();
+
+  // What is new since the last call, for every page; {} when nothing is.
+  nlohmann::json news(sync::HostTime now);
+  // All that somebody needs who has just come: the state of all nodes and the newest report.
+  nlohmann::json state(sync::HostTime now) const;
+  std::set<std::string> modalities() const;
+  std::int64_t bad() const { return bad_; }
+
+ private:
+  struct Node {
+    node_health_t health;
+    sync::HostTime arrival;
+  };
+  bool ours(const header_t& header) const { return run_id_ == 0 || header.run_id == run_id_; }
+  void take(const contact_events_t& m);
+  void take(const presented_t& m);
+  void take(const sync_report_t& m);
+  nlohmann::json health(sync::HostTime now) const;
+  nlohmann::json report() const;
+
+  std::int64_t run_id_;
+  std::map<std::string, Node> nodes_;
+  std::map<std::string, modality_report_t> modalities_;
+  std::map<std::pair<std::string, std::string>, pair_report_t> pairs_;
+  std::map<std::int64_t, std::int64_t> event_host_ns_;  // by event_id
+  std::deque<std::int64_t> event_order_;
+  std::int32_t event_clock_ = 0;
+  std::set<std::tuple<std::int64_t, std::string, int>> presented_;
+  std::deque<std::tuple<std::int64_t, std::string, int>> presented_order_;
+  nlohmann::json events_ = nlohmann::json::array(), presentations_ = nlohmann::json::array();
+  std::int64_t left_out_ = 0, bad_ = 0;
+  bool report_new_ = false;
+  std::optional<sync::HostTime> health_told_;
+};
+
+}  // namespace tactus::live

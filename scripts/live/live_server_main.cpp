@@ -1,0 +1,262 @@
+// live_server: shows a running cluster, or a log, in web pages, and hands on what the pages ask for.
+//
+//   in   all channels that a page shows; SIM_REPLY, SETTING_REPLY, SCENE_MANIFEST, ASSET_CHUNK
+//   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"): only what a page asks
+//
+// Nobody waits for it. A page that does not keep up loses frames of its own, which are counted; without a page nothing is decoded.
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+#include "scripts/live/controls.h"
+#include "scripts/live/log_player.h"
+#include "scripts/live/station.h"
+#include "scripts/live/web_server.h"
+#include "sync/node.h"
+#include "sync/printable.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kTurn{5'000'000};      // design: the device that a page is speaks at 200 Hz
+constexpr double kStream_Hz = 15;                  // design: smooth enough to steer by, 12 KB each
+constexpr std::size_t kMostFileBytes = 8 << 20;
+std::atomic<bool> stop{false};
+
+struct Options {
+  std::string log, page, bind = "127.0.0.1", token;
+  int http_port = 0, listen_fd = -1;
+  std::int64_t run_id = 1;
+  sync::BusOptions bus;
+};
+
+live::PageFile read_file(const std::string& folder, const char* name, const char* type) {
+  const auto path = std::filesystem::path(folder) / name;
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream bytes;
+  bytes << file.rdbuf();
+  if (!file || bytes.str().empty() || bytes.str().size() > kMostFileBytes)
+    throw std::runtime_error(path.string() + " is not there; scripts/live/bundle makes the page");
+  return {type, bytes.str()};
+}
+
+std::string random_token() {
+  std::random_device random;
+  std::ostringstream text;
+  for (int i = 0; i < 4; ++i) text << std::hex << (0x10000000u | random());
+  return text.str();
+}
+
+std::shared_ptr<const std::string> shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+std::shared_ptr<const std::string> said(const std::string& sentence, bool good) {
+  return shared(nlohmann::json{{"t", "reply"}, {"text", sync::printable(sentence)}, {"good", good}}.dump());
+}
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// What is served, with the pages that look on.
+class Server {
+ public:
+  Server(const Options& o, live::Station& station)
+      : station_(station),
+        web_(o.listen_fd >= 0 ? o.listen_fd : live::listen_on(o.bind, o.http_port),
+             {{"/", read_file(o.page, "index.html", "text/html; charset=utf-8")},
+              {"/main.js", read_file(o.page, "main.js", "text/javascript; charset=utf-8")},
+              {"/main.css", read_file(o.page, "main.css", "text/css; charset=utf-8")}},
+             o.token, o.bind == "127.0.0.1",
+             {[this](int page) { opened_.push_back(page); }, [this](int page) { station_.close(page); pages_.erase(page); },
+              [this](int page, std::string_view text) { messages_.emplace_back(page, text); }}) {
+    // The address is for a person; whoever reads it from this output opens it.
+    std::cout << "live_server: open http://" << o.bind << ":" << web_.port() << "/?token=" << o.token << std::endl;
+  }
+  // handle(page, message) for each thing that a page asks.
+  template <class Handle>
+  void turn(Handle&& handle) {
+    web_.run_for(kTurn);
+    const sync::HostTime now = sync::host_now();
+    for (const int page : std::exchange(opened_, {})) {
+      station_.open(page);
+      pages_.insert(page);
+      web_.send(page, shared(station_.hello(now)));
+    }
+    for (const auto& [page, text] : std::exchange(messages_, {})) {
+      if (!pages_.contains(page)) continue;
+      try {
+        live::BrowserMessage m = live::parse_browser_message(text);
+        if (const auto* watch = std::get_if<live::WatchThese>(&m)) {
+          if (const std::string wrong = station_.watch(page, watch->names); !wrong.empty()) web_.send(page, said(wrong, false));
+        } else {
+          handle(m);
+        }
+      } catch (const std::invalid_argument& e) {
+        web_.send(page, said(e.what(), false));
+      }
+    }
+  }
+  // True when a frame was sent.
+  bool show(sync::HostTime now, const nlohmann::json& extra) {
+    if (const auto picture = station_.picture()) {
+      const auto bytes = shared(*picture);
+      for (const int page : pages_) web_.send_picture(page, bytes);
+    }
+    if (sync::host_now() < next_frame_) return false;
+    next_frame_ = sync::host_now() + live::Station::kFrame;
+    std::int64_t dropped = 0;
+    for (const int page : pages_)
+      if (const auto* q = web_.queue(page)) dropped += q->dropped() + q->dropped_pictures();
+    nlohmann::json all = extra;
+    all["pages"] = {{"open", pages_.size()}, {"dropped", dropped}, {"refused", web_.refused()}};
+    for (auto& [page, frame] : station_.frames(now, all)) web_.send(page, shared(std::move(frame)));
+    return true;
+  }
+  void tell(const std::string& sentence, bool good) {
+    for (const int page : pages_) web_.send(page, said(sentence, good));
+  }
+  bool anybody() const { return !pages_.empty(); }
+
+ private:
+  live::Station& station_;
+  std::vector<int> opened_;
+  std::vector<std::pair<int, std::string>> messages_;
+  std::set<int> pages_;
+  sync::HostTime next_frame_{};
+  live::WebServer web_;
+};
+
+void show_log(const Options& o) {
+  live::LogPlayer player(o.log);
+  live::Station station(false, 0, std::filesystem::path(o.log).filename());
+  Server server(o, station);
+  sync::HostTime last = sync::host_now();
+  bool wound = false;  // and no page knows it yet
+  while (!stop) {
+    server.turn([&](const live::BrowserMessage& m) {
+      if (const auto* play = std::get_if<live::LogPlay>(&m)) {
+        player.play(play->play, play->rate);
+      } else if (const auto* seek = std::get_if<live::LogSeek>(&m)) {
+        player.seek(seek->to_s);
+        station.clear();
+        wound = true;
+      } else {
+        throw std::invalid_argument("this is a log: nothing of it can be changed; start scripts/run --live");
+      }
+    });
+    const sync::HostTime now = sync::host_now();
+    player.read_on();
+    if (server.anybody())  // it waits for who opens it
+      player.advance(now - last, [&](std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime t) {
+        if (station.wants(channel)) station.take(channel, bytes, t);
+      });
+    last = now;
+    nlohmann::json extra{{"log", {{"position_s", player.position_s()}, {"length_s", player.length_s()},
+                                  {"playing", player.playing()}, {"rate", player.rate()}, {"damaged", player.damaged_regions()}}}};
+    if (wound) extra["wound"] = true;
+    if (server.show(player.position(), extra)) wound = false;
+  }
+}
+
+nlohmann::json scene_of(const scene_t& scene) {
+  nlohmann::json bodies = nlohmann::json::array(), tools = nlohmann::json::array();
+  for (const body_def_t& b : scene.bodies) bodies.push_back(sync::printable(b.name));
+  for (const tool_def_t& t : scene.tools) tools.push_back(sync::printable(t.name));
+  return {{"name", sync::printable(scene.name)}, {"bodies", bodies}, {"tools", tools}};
+}
+
+void show_cluster(const Options& o) {
+  sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
+  bus.follow_clocks();
+  live::Station station(true, o.run_id, "live");
+  Server server(o, station);
+  live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.tell(sentence, good); });
+  std::vector<std::pair<std::string, sync::RawQueue*>> inputs;
+  for (const Channel& c : channel_types()) {
+    const std::size_t capacity = c.name == channels::kPictureChunk ? 1024 : 128;  // design: some turns of each
+    inputs.emplace_back(c.name, &bus.raw(std::string(c.name).c_str(), capacity));
+    inputs.back().second->set_wanted(false);
+  }
+  bool streaming = false, looked_on = false;
+  sync::HostTime opened{}, next_scene{};
+  while (!stop) {
+    server.turn([&](const live::BrowserMessage& m) {
+      const sync::HostTime now = sync::host_now();
+      if (const auto* command = std::get_if<live::Command>(&m)) controls.command(*command, now);
+      else if (const auto* degrade = std::get_if<live::DegradeThus>(&m)) controls.degrade(*degrade, realtime_ns(), now);
+      else if (const auto* hand = std::get_if<live::HandAt>(&m)) controls.hand(*hand, station.picture_aspect(), now);
+      else throw std::invalid_argument("the world cannot be wound back; open its log");
+    });
+    const sync::HostTime now = sync::host_now();
+    bus.drain(now);
+    for (auto& [name, queue] : inputs) {
+      queue->set_wanted(station.wants(name));
+      queue->read([&, channel = std::string_view(name)](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+        station.take(channel, bytes, arrival);
+      });
+    }
+    const bool looks = server.anybody();
+    if (looks && !looked_on) opened = now;
+    // Somebody's own choice of a stream is left as it is: pictures come already, or come on after the last page has gone.
+    if (looks && !streaming && now - opened > sync::from_seconds(1) &&
+        (!station.picture_came() || now - *station.picture_came() > sync::from_seconds(2))) {
+      controls.stream(kStream_Hz, now);
+      streaming = true;
+      opened = now;
+    }
+    if (streaming && looks && station.picture_came() && now - *station.picture_came() > sync::from_seconds(4) && now - opened > sync::from_seconds(5)) {
+      streaming = false;  // visual_node was started anew and knows of nothing
+    }
+    if (!looks && looked_on && streaming) {
+      controls.stream(0, now);
+      streaming = false;
+    }
+    looked_on = looks;
+    if (looks) controls.want_tags(station.wanted_tags(), now);
+    controls.step(now);
+    const auto world = controls.world(now);
+    nlohmann::json extra{{"world", {{"known", world.known}, {"sim_s", world.sim_s}, {"rate", world.rate}}},
+                         {"profile", std::to_string(controls.profile_hash())}};
+    // Again once a second, for who has just come.
+    if (controls.scene() != nullptr && now >= next_scene) {
+      extra["scene"] = scene_of(*controls.scene());
+      if (server.show(now, extra)) next_scene = now + sync::from_seconds(1);
+      continue;
+    }
+    server.show(now, extra);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Shows a running cluster, or a log, in a web page; prints the address. scripts/run --live starts it.");
+  Options o;
+  app.add_option("LOG", o.log, "shows this log instead of a running cluster");
+  app.add_option("--page", o.page, "folder of the page, made by scripts/live/bundle")->required();
+  app.add_option("--http-port", o.http_port, "of the page; 0: any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--bind", o.bind, "address that the page is served on; beyond 127.0.0.1 whoever knows the token can drive the cluster")->capture_default_str();
+  app.add_option("--listen-fd", o.listen_fd, "a listening socket that was inherited, instead of --http-port")->check(CLI::Range(0, 1'000'000));
+  app.add_option("--token", o.token, "of the address; default: drawn at random")->envname("TACTUS_LIVE_TOKEN");
+  app.add_option("--port", o.bus.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
+  app.add_option("--run-id", o.run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  sync::parse_or_exit(app, "live_server", argc, argv);
+  for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
+  signal(SIGPIPE, SIG_IGN);
+  if (o.token.empty()) o.token = random_token();
+  if (o.token.size() < 16 || o.token.size() > 128)
+    throw std::runtime_error("--token: give 16 to 128 letters and digits, or none");
+  if (o.log.empty()) show_cluster(o);
+  else show_log(o);
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("live_server", e);
+}

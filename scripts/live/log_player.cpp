@@ -1,0 +1,85 @@
+#include "scripts/live/log_player.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <tactus/log_info_t.hpp>
+
+#include "sync/decode.h"
+
+namespace tactus::live {
+
+LogPlayer::LogPlayer(const std::string& path)
+    : file_(std::make_unique<sync::MappedFile>(path)), bytes_(file_->bytes()), whole_(bytes_), scanner_(bytes_) {
+  try {
+    begin();
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(path + ": " + e.what());
+  }
+}
+
+LogPlayer::LogPlayer(std::span<const std::uint8_t> bytes) : bytes_(bytes), whole_(bytes), scanner_(bytes) { begin(); }
+
+void LogPlayer::begin() {
+  // What turns the stamps into the recorder's CLOCK_MONOTONIC comes first; a log of LCM's own logger lacks it: then its stamps
+  // are the clock.
+  sync::LogScanner look(bytes_);
+  sync::LogEvent event;
+  bool any = false;
+  for (int i = 0; i < kMostEvents && look.next(event); ++i) {
+    any = true;
+    if (event.channel != channels::kLogInfo) continue;
+    if (const auto info = sync::decode<log_info_t>(event.data.data(), event.data.size())) {
+      offset_ns_ = info->realtime_offset_ns;
+      break;
+    }
+  }
+  if (!any) throw std::runtime_error("holds no event of an LCM log; name a run.lcmlog");
+  read_on();
+  begin_ = position_ = places_.front().time;
+  playing_ = true;
+}
+
+sync::HostTime LogPlayer::stamp(const sync::LogEvent& event) const {
+  constexpr std::int64_t kMost_us = 4'000'000'000'000'000;  // the year 2096; more is damage
+  const std::int64_t us = std::clamp<std::int64_t>(event.timestamp_us, 0, kMost_us);
+  return sync::host_time(us * 1000 - std::clamp<std::int64_t>(offset_ns_, -kMost_us * 1000, kMost_us * 1000));
+}
+
+bool LogPlayer::read_on() {
+  sync::LogEvent event;
+  for (int i = 0; i < kMostEvents; ++i) {
+    if (!whole_.next(event)) return false;
+    const sync::HostTime t = whole_clock_.observe(stamp(event));
+    end_ = places_.empty() ? t : std::max(end_, t);
+    if (!places_.empty() && t < places_.back().time + kPlaceEach) continue;
+    const auto* channel = reinterpret_cast<const std::uint8_t*>(event.channel.data());
+    places_.push_back({t, static_cast<std::size_t>(channel - bytes_.data()) - sync::kLogEventHeaderBytes});
+  }
+  return true;
+}
+
+void LogPlayer::seek(double to_s) {
+  const sync::HostTime to = begin_ + sync::from_seconds(std::clamp(to_s, 0.0, length_s()));
+  const auto after = std::upper_bound(places_.begin(), places_.end(), to - kBefore,
+                                      [](sync::HostTime t, const Place& p) { return t < p.time; });
+  const Place& from = after == places_.begin() ? places_.front() : *std::prev(after);
+  scanner_ = sync::LogScanner(bytes_.subspan(from.offset));
+  clock_ = sync::SummaryClock();
+  has_pending_ = false;
+  position_ = to;
+}
+
+void LogPlayer::advance(sync::Nanoseconds dt, const Take& take) {
+  if (playing_)
+    position_ = std::min(end_, position_ + sync::from_seconds(std::clamp(sync::to_seconds(dt), 0.0, 0.5) * rate_));
+  for (int i = 0; i < kMostEvents; ++i) {
+    if (!has_pending_ && !scanner_.next(pending_)) return;
+    has_pending_ = true;
+    const sync::HostTime t = clock_.observe(stamp(pending_));
+    if (t > position_) return;
+    take(pending_.channel, pending_.data, t);
+    has_pending_ = false;
+  }
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,69 @@
+// A log that is played for pages: forward at any speed, from any place. Pure but for the mapping of the file. The log is read
+// through once in pieces while it plays, so that a large one opens at once.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sync/log_reader.h"
+#include "sync/summary_clock.h"
+#include "sync/time.h"
+
+namespace tactus::live {
+
+class LogPlayer {
+ public:
+  using Take = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
+  // Design: a tenth of a second of reading or playing at once at the most, on a slow machine.
+  static constexpr int kMostEvents = 20'000;
+  // After a seek what lies so far before is shown too, so that graphs are not empty.
+  static constexpr sync::Nanoseconds kBefore{3'000'000'000};
+
+  // Throws std::runtime_error with one sentence when that is no log.
+  explicit LogPlayer(const std::string& path);
+  // The same of bytes that live longer than this.
+  explicit LogPlayer(std::span<const std::uint8_t> bytes);
+
+  // Reads on; true while there is more.
+  bool read_on();
+  void play(bool on, double rate) { playing_ = on, rate_ = rate; }
+  // The next advance begins kBefore there, and hands over what lies between at once.
+  void seek(double to_s);
+  // So much real time has passed: hands over what was recorded meanwhile.
+  void advance(sync::Nanoseconds dt, const Take& take);
+
+  bool playing() const { return playing_; }
+  double rate() const { return rate_; }
+  // Of the recorder's clock.
+  sync::HostTime position() const { return position_; }
+  double position_s() const { return sync::to_seconds(position_ - begin_); }
+  double length_s() const { return sync::to_seconds(end_ - begin_); }
+  std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
+
+ private:
+  void begin();
+  sync::HostTime stamp(const sync::LogEvent& event) const;
+  struct Place {
+    sync::HostTime time;
+    std::size_t offset;
+  };
+  static constexpr sync::Nanoseconds kPlaceEach{500'000'000};
+
+  std::unique_ptr<sync::MappedFile> file_;
+  std::span<const std::uint8_t> bytes_;
+  sync::LogScanner whole_, scanner_;
+  sync::SummaryClock whole_clock_, clock_;
+  std::vector<Place> places_;
+  std::int64_t offset_ns_ = 0;
+  sync::HostTime begin_{}, end_{}, position_{};
+  sync::LogEvent pending_;
+  bool has_pending_ = false, playing_ = true;
+  double rate_ = 1;
+};
+
+}  // namespace tactus::live

@@ -1,0 +1,98 @@
+// The live page: what a cluster does, or what a log holds, and what one may do to it.
+import "uplot/dist/uPlot.min.css";
+import "./page.css";
+import { Connection } from "./connection";
+import { Common, Frame, Hello, Said, element } from "./messages";
+import { Picture } from "./picture";
+import { Raster } from "./raster";
+import { Senses } from "./senses";
+import { Sliders } from "./sliders";
+import { Variables } from "./variables";
+
+let live = true, paused = false, playing = true, now_s = 0, at_ms = 0, profile = "0", seeking = false, restored = false;
+const send = (m: object): void => connection.send(m);
+const variables = new Variables((names) => send({ t: "watch", names }));
+const senses = new Senses(), raster = new Raster();
+const picture = new Picture(send);
+const sliders = new Sliders((s) => send({ t: "degrade", senses: s }));
+
+let toastTimer = 0;
+function toast(text: string, good: boolean): void {
+  const box = element("toast");
+  box.textContent = text;
+  box.className = good ? "on" : "on bad";
+  clearTimeout(toastTimer);
+  toastTimer = window.setTimeout(() => { box.className = ""; }, 4000);
+}
+function common(m: Common): void {
+  now_s = m.now;
+  at_ms = performance.now();
+  if (m.tags) variables.catalog(undefined, m.tags);
+  if (m.health) { senses.takeHealth(m.health, profile); if (live) sliders.modalities(senses.modalities()); }
+  if (m.report) senses.takeReport(m.report);
+}
+function hello(m: Hello): void {
+  live = m.live;
+  document.body.dataset.live = String(live);
+  element("title").textContent = m.title;
+  element("logbar").hidden = live;
+  element("controls").hidden = !live;
+  element("degrade").hidden = !live;
+  element("handlabel").hidden = !live;
+  senses.thresholds = m.thresholds;
+  variables.catalog(m.catalog, m.tags);
+  common(m);
+  if (restored) variables.resend();
+  else variables.restore();
+  restored = true;
+}
+function frame(m: Frame): void {
+  if (m.wound) { variables.clear(); senses.clear(); raster.clear(); }
+  if (m.profile) profile = m.profile;
+  common(m);
+  if (m.values) variables.take(m.values);
+  raster.take(m.events, m.presented);
+  if (m.presented) senses.presented(m.presented);
+  if (m.scene) element("title").textContent = m.scene.name;
+  if (m.world?.known) {
+    paused = m.world.rate === 0;
+    element("world").textContent = `${m.world.sim_s.toFixed(1)} s ${paused ? "stands still" : ""}`;
+    element("pause").textContent = paused ? "Resume" : "Pause";
+  }
+  if (m.pages) element("link").textContent = `connected${m.pages.dropped ? `, ${m.pages.dropped} dropped` : ""}`;
+  if (m.log) {
+    playing = m.log.playing;
+    const seek = element<HTMLInputElement>("seek");
+    seek.max = String(Math.max(0.01, m.log.length_s));
+    if (!seeking) seek.value = String(m.log.position_s);
+    element("place").textContent = `${m.log.position_s.toFixed(1)} / ${m.log.length_s.toFixed(1)} s${m.log.damaged ? `, ${m.log.damaged} places damaged` : ""}`;
+    element("play").textContent = playing ? "Pause" : "Play";
+  }
+}
+const connection = new Connection((m: Said) => {
+  if (m.t === "hello") hello(m);
+  else if (m.t === "frame") frame(m);
+  else toast(m.text, m.good);
+}, (jpeg) => picture.show(jpeg), (open) => {
+  element("link").textContent = open ? "connected" : "not connected";
+  element("link").className = open ? "good" : "bad";
+});
+
+element("pause").addEventListener("click", () => send({ t: "command", what: paused ? "resume" : "pause" }));
+element("reset").addEventListener("click", () => send({ t: "command", what: "reset" }));
+element("step").addEventListener("click", () => send({ t: "command", what: "step", steps: Math.max(1, Math.min(10000, Math.round(Number(element<HTMLInputElement>("steps").value)) || 1)) }));
+const speed = (): number => Number(element<HTMLSelectElement>("speed").value);
+element("play").addEventListener("click", () => send({ t: "play", play: !playing, rate: speed() }));
+element("speed").addEventListener("change", () => send({ t: "play", play: playing, rate: speed() }));
+const seek = element<HTMLInputElement>("seek");
+seek.addEventListener("input", () => { seeking = true; });
+seek.addEventListener("change", () => { seeking = false; send({ t: "seek", to_s: Number(seek.value) }); });
+
+// Between two frames time goes on, so that curves glide; a world that stands still, and a log, do not.
+function draw(): void {
+  const ahead = live ? Math.min(0.2, (performance.now() - at_ms) / 1000) : 0;
+  variables.draw(now_s + ahead);
+  raster.draw(now_s + ahead, senses.modalities());
+}
+setInterval(draw, 50);
+setInterval(() => senses.draw(now_s), 250);

@@ -1,0 +1,41 @@
+// What the server says: scripts/live/README.md.
+export interface Named { name: string; unit: string; about: string }
+export interface Threshold { earlier: string; later: string; ms: number; what: string; source: string }
+export interface NodeHealth {
+  node: string; modality: string; state: number; lost: boolean; note: string; rate_Hz: number; nominal_Hz: number; missed: number;
+  ticks: number; rendered: number; profile: string; realtime: number; gaps: number; tick_max_us: number; wake_max_us: number;
+}
+export interface Sense { modality: string; owed: number; presented: number; lost: number; dropped: number; late: number }
+export interface Pair { a: string; b: string; n: number; p05_ms: number; p50_ms: number; p95_ms: number; beyond_least: number }
+export type Event = [time_s: number, kind: number, body_a: number, body_b: number, speed_m_s: number];
+export type Presentation = [time_s: number, modality: string, part: number, outcome: number, latency_ms: number | null];
+export interface Common { now: number; health?: NodeHealth[]; report?: { senses: Sense[]; pairs: Pair[] }; tags?: Named[] }
+export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: Named[] }
+export interface Frame extends Common {
+  t: "frame"; values?: [number, number, number][]; events?: Event[]; presented?: Presentation[]; left_out?: number; wound?: boolean;
+  world?: { known: boolean; sim_s: number; rate: number }; profile?: string;
+  scene?: { name: string; bodies: string[]; tools: string[] };
+  pages?: { open: number; dropped: number; refused: number };
+  log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number };
+}
+export interface Reply { t: "reply"; text: string; good: boolean }
+export type Said = Hello | Frame | Reply;
+
+export const senseColour: Record<string, string> = { haptic: "#e69f00", audio: "#56b4e9", visual: "#cc79a7", thermal: "#d9622b", world: "#9aa4b2" };
+export const colourOf = (modality: string): string => senseColour[modality] ?? "#009e73";
+export function element<T extends HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page lacks #${id}`);
+  return found as T;
+}
+// Text from the bus never becomes markup.
+export function make(tag: string, className = "", text = ""): HTMLElement {
+  const e = document.createElement(tag);
+  e.className = className;
+  e.textContent = text;
+  return e;
+}
+export const figure = (x: number): string => {
+  const size = Math.abs(x);
+  return size !== 0 && (size >= 1e6 || size < 1e-3) ? x.toExponential(3) : x.toFixed(size >= 1000 ? 0 : size >= 10 ? 2 : 4);
+};

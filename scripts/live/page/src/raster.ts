@@ -1,0 +1,58 @@
+// Events over the last seconds, a lane for the world and one for each sense.
+import { Event, Presentation, colourOf, element, make } from "./messages";
+
+const SPAN_S = 10;
+const MOST = 6000;
+
+export class Raster {
+  private events: Event[] = [];
+  private presented: Presentation[] = [];
+  constructor() {
+    const legend = element("rasterlegend");
+    legend.append(make("span", "quiet", "world: │ begin  ◆ hit  · end    senses: │ presented  × dropped"));
+  }
+  clear(): void { this.events = []; this.presented = []; }
+  take(events: Event[] = [], presented: Presentation[] = []): void {
+    this.events.push(...events);
+    this.presented.push(...presented);
+    if (this.events.length > MOST) this.events.splice(0, this.events.length - MOST);
+    if (this.presented.length > MOST) this.presented.splice(0, this.presented.length - MOST);
+  }
+  draw(now: number, modalities: string[]): void {
+    const canvas = element<HTMLCanvasElement>("raster"), scale = devicePixelRatio;
+    const lanes = ["world", ...modalities];
+    canvas.style.height = `${lanes.length * 24 + 20}px`;
+    const w = (canvas.width = canvas.clientWidth * scale), h = (canvas.height = canvas.clientHeight * scale);
+    const g = canvas.getContext("2d")!, left = 80 * scale, lane = 24 * scale;
+    const x = (t: number) => left + ((t - now + SPAN_S) / SPAN_S) * (w - left - 8 * scale);
+    g.font = `${11 * scale}px DejaVu Sans, sans-serif`;
+    g.textBaseline = "middle";
+    lanes.forEach((m, i) => {
+      const y = (i + 0.5) * lane;
+      g.fillStyle = "#2b313b"; g.fillRect(left, y, w - left, 1);
+      g.fillStyle = colourOf(m); g.fillText(m, 0, y);
+    });
+    g.fillStyle = "#8b95a3"; g.textAlign = "center";
+    for (let s = 0; s <= SPAN_S; s += 2) {
+      const at = Math.min(w - 20 * scale, x(now - SPAN_S + s));
+      g.fillText(s === SPAN_S ? "now" : `${s - SPAN_S} s`, at, h - 9 * scale);
+    }
+    g.textAlign = "left";
+    g.fillStyle = colourOf("world");
+    for (const [t, kind, , , speed] of this.events) {
+      if (t < now - SPAN_S || t > now) continue;
+      const y = 0.5 * lane, at = x(t);
+      if (kind === 0) g.fillRect(at, y - 0.35 * lane, scale, 0.7 * lane);
+      else if (kind === 1) { const r = scale * (2.5 + Math.min(4, 2 * speed)); g.beginPath(); g.moveTo(at, y - r); g.lineTo(at + r, y); g.lineTo(at, y + r); g.lineTo(at - r, y); g.fill(); }
+      else g.fillRect(at, y - scale, 2 * scale, 2 * scale);
+    }
+    for (const [t, modality, part, outcome] of this.presented) {
+      const i = lanes.indexOf(modality);
+      if (i < 0 || t < now - SPAN_S || t > now) continue;
+      const y = (i + 0.5) * lane, at = x(t);
+      g.fillStyle = outcome <= 1 ? colourOf(modality) : "#f08a7c";
+      if (outcome <= 1) g.fillRect(at, y - (part === 1 ? 0.2 : 0.35) * lane, 1.5 * scale, (part === 1 ? 0.4 : 0.7) * lane);
+      else g.fillText("×", at - 4 * scale, y);
+    }
+  }
+}

@@ -1,0 +1,120 @@
+#include "scripts/live/station.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "scripts/live/catalog.h"
+#include "sync/decode.h"
+#include "sync/identity.h"
+#include "sync/printable.h"
+#include "sync/thresholds.h"
+
+namespace tactus::live {
+namespace {
+
+using nlohmann::json;
+
+// Text of the bus may be no UTF-8: what is none is replaced.
+std::string dump(const json& j) { return j.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+constexpr sync::Nanoseconds kSameClock{5'000'000'000};  // farther from its arrival is a time of another clock
+constexpr std::size_t kMostTags = 4096;                 // in the list of a page
+
+}  // namespace
+
+Station::Station(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id) {}
+
+bool Station::wants(std::string_view channel) const {
+  if (watches_.empty()) return false;
+  if (Feed::wants(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
+      channel == channels::kTagValues)
+    return true;
+  return std::any_of(watches_.begin(), watches_.end(), [&](const auto& w) { return w.second.wants(channel); });
+}
+
+void Station::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+  feed_.take(channel, bytes, arrival);
+  for (auto& [page, w] : watches_) w.take(channel, bytes, arrival);
+  if (channel == channels::kTagList) {
+    if (const auto m = sync::decode<tag_list_t>(bytes.data(), bytes.size())) tags_.push(*m);
+  } else if (channel == channels::kTagValues) {
+    const auto m = sync::decode<tag_values_t>(bytes.data(), bytes.size());
+    if (!m) return;
+    tags_.read(*m, [&](const sync::TagTable::List& list, const tag_def_t& def, std::int64_t time_ns, double value) {
+      const sync::HostTime own = sync::host_time(time_ns);
+      const bool same = own > arrival - kSameClock && own < arrival + kSameClock;
+      for (auto& [page, w] : watches_) w.take_tag(list.node + "." + def.name, same ? own : arrival, value);
+    });
+  } else if (channel == channels::kPictureChunk) {
+    const auto m = sync::decode<picture_chunk_t>(bytes.data(), bytes.size());
+    if (!m) return;
+    auto picture = pictures_.take(*m);
+    if (!picture) return;
+    // Of several walls the first; visual_node draws it.
+    if (!wall_ || picture->source == static_cast<std::int32_t>(sync::fnv1a_32("visual_node"))) wall_ = picture->source;
+    if (picture->source != *wall_) return;
+    if (picture->height > 0) aspect_ = static_cast<double>(picture->width) / picture->height;
+    picture_.emplace(picture->jpeg.begin(), picture->jpeg.end());
+    picture_came_ = arrival;
+  }
+}
+
+void Station::clear() {
+  feed_.clear();
+  picture_.reset();
+}
+
+json Station::tag_list() const {
+  json out = json::array();
+  std::map<std::string, std::pair<std::string, std::int64_t>> newest;  // name: unit, and when it was heard
+  for (const auto& [key, list] : tags_.lists())
+    for (const tag_def_t& t : list.tags) {
+      if (t.name.empty() || newest.size() >= kMostTags) continue;
+      auto& entry = newest[list.node + "." + t.name];
+      if (list.heard >= entry.second) entry = {t.unit, list.heard};
+    }
+  for (const auto& [name, unit] : newest)
+    out.push_back({{"name", sync::printable(name)}, {"unit", sync::printable(unit.first)}, {"about", "tagged variable"}});
+  return out;
+}
+
+std::string Station::hello(sync::HostTime now) const {
+  json thresholds = json::array();
+  for (const sync::Threshold& t : sync::published_thresholds())
+    thresholds.push_back({{"earlier", t.earlier}, {"later", t.later}, {"ms", sync::to_seconds(t.at) * 1e3},
+                          {"what", t.what}, {"source", t.source}});
+  json out{{"t", "hello"}, {"live", live_}, {"title", sync::printable(title_)}, {"thresholds", thresholds},
+           {"catalog", field_catalog()}, {"tags", tag_list()}, {"now", sync::to_seconds(now.time_since_epoch())}};
+  out.update(feed_.state(now));
+  return dump(out);
+}
+
+std::map<int, std::string> Station::frames(sync::HostTime now, const json& extra) {
+  json all = feed_.news(now);
+  all["t"] = "frame";
+  all["now"] = sync::to_seconds(now.time_since_epoch());
+  all.update(extra);
+  std::size_t tags = 0;
+  for (const auto& [key, list] : tags_.lists())
+    tags += static_cast<std::size_t>(std::count_if(list.tags.begin(), list.tags.end(), [](const tag_def_t& t) { return !t.name.empty(); }));
+  if (std::exchange(tags_told_, tags) != tags) all["tags"] = tag_list();
+  std::map<int, std::string> out;
+  for (auto& [page, w] : watches_) {
+    json frame = all;
+    frame["values"] = w.values();
+    out[page] = dump(frame);
+  }
+  return out;
+}
+
+std::optional<std::string> Station::picture() { return std::exchange(picture_, std::nullopt); }
+
+std::vector<std::string> Station::wanted_tags() const {
+  std::set<std::string> names;
+  for (const auto& [page, w] : watches_)
+    for (const std::string& name : w.tags()) names.insert(name);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,71 @@
+// Between the messages and the pages: what came is handed to what each page watches, and what is new is told in frames. Pure.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scripts/live/feed.h"
+#include "scripts/live/watches.h"
+#include "sync/picture_reader.h"
+#include "sync/tag_table.h"
+#include "sync/time.h"
+
+namespace tactus::live {
+
+class Station {
+ public:
+  static constexpr sync::Nanoseconds kFrame{50'000'000};  // design: 20 a second look smooth
+
+  // live: false when a log is shown. run_id: as of Feed.
+  Station(bool live, std::int64_t run_id, std::string title);
+
+  void open(int page) { watches_[page]; }
+  void close(int page) { watches_.erase(page); }
+  bool anybody() const { return !watches_.empty(); }
+  // What one page shows from now on; the sentence says which names are none, "": all are names.
+  std::string watch(int page, const std::vector<std::string>& names) { return watches_[page].set(names); }
+
+  bool wants(std::string_view channel) const;
+  void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
+  // A log was wound.
+  void clear();
+
+  // What a page gets first.
+  std::string hello(sync::HostTime now) const;
+  // The frame of each page; extra: members that all get.
+  std::map<int, std::string> frames(sync::HostTime now, const nlohmann::json& extra);
+  // The newest picture that nobody has taken yet, as JPEG.
+  std::optional<std::string> picture();
+  double picture_aspect() const { return aspect_; }
+  // When pictures came last.
+  std::optional<sync::HostTime> picture_came() const { return picture_came_; }
+
+  // The tagged variables that any page wants, as TAG_REQUEST names them.
+  std::vector<std::string> wanted_tags() const;
+  const Feed& feed() const { return feed_; }
+
+ private:
+  nlohmann::json tag_list() const;
+
+  bool live_;
+  std::string title_;
+  Feed feed_;
+  std::map<int, Watches> watches_;
+  sync::TagTable tags_;
+  std::size_t tags_told_ = 0;
+  sync::PictureReader pictures_;
+  std::optional<std::int32_t> wall_;
+  std::optional<std::string> picture_;
+  double aspect_ = 4.0 / 3;
+  std::optional<sync::HostTime> picture_came_;
+};
+
+}  // namespace tactus::live
