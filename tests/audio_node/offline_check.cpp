@@ -238,7 +238,7 @@ TEST_CASE("What is no log of a run is refused in one sentence that says what to 
     foreign.write(1, "ROBOT_STATE", data);
     foreign.flush();
   }
-  CHECK_THAT(refusal(folder.file("foreign.lcmlog")), Catch::Contains("which run"));
+  CHECK_THAT(refusal(folder.file("foreign.lcmlog")), Catch::Contains("holds no message of Tactus") && Catch::Contains("scripts/run"));
   const Done no_wav = render(folder, {"--log", folder.file("foreign.lcmlog")});
   CHECK(no_wav.status == 1);
   CHECK_THAT(no_wav.said, Catch::Contains("--wav"));

@@ -271,6 +271,7 @@ class Running:
     def __init__(self, begins_at, expected=True):
         self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False
         self.plan = types.SimpleNamespace(out="out")
+        self.page = None
 
     def monotonic(self):
         return self.now
