@@ -101,12 +101,12 @@ int main(int argc, char** argv) try {
   app.add_option("--once", once_s, "listens for so many seconds, prints the table and ends; status 1 when nothing was heard")->check(CLI::Range(0.1, 3600.0));
   app.add_option("--json", json_file, "with --once: the same figures as JSON")->needs("--once");
   sync::parse_or_exit(app, "spy", argc, argv);
-  if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
-    throw std::runtime_error("this is no terminal; give --once SECONDS for a table");
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
 
   sync::Bus bus(sync::Identity::fresh("spy", run_id), bus_options);
   bus.follow_clocks();
+  if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
+    throw std::runtime_error("this is no terminal; give --once SECONDS for a table");
   auto& lists = bus.queue<tag_list_t>(channels::kTagList, 256);
   auto& values = bus.queue<tag_values_t>(channels::kTagValues, 4096);
   sync::RecorderTap tap(bus_options);
