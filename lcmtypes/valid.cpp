@@ -102,8 +102,8 @@ bool sane(const playout_entry_t& e) {
          between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) && between(e.needs_ns, -1, kMaxDelay_ns);
 }
 bool sane(const map_def_t& d) {
-  return !d.from.empty() && d.from.size() <= 128 && printable(d.from) && !d.to.empty() && d.to.size() <= 128 &&
-         printable(d.to) && sane(d.gain) && sane(d.offset) && sane(d.low) && sane(d.high) && d.low <= d.high;
+  return !d.tag.empty() && d.tag.size() <= 128 && printable(d.tag) && !d.setting.empty() && d.setting.size() <= 128 &&
+         printable(d.setting) && sane(d.gain) && sane(d.offset) && sane(d.low) && sane(d.high) && d.low <= d.high;
 }
 bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);

@@ -1,5 +1,5 @@
-// The settings of a node while it runs: what is asked of them over the bus (SETTING), and what the scene's maps make of
-// tagged variables. A renderer's main has one and calls step() each tick.
+// The settings of a node while it runs: what is asked of them over the bus (SETTING), and what the scene's maps
+// make of tagged variables. A renderer's main has one and calls step() each tick.
 #pragma once
 
 #include <string>

@@ -2,8 +2,9 @@
 //
 //   const sync::InPhase phase(sync::Phase::kCollision);
 //
-// and costs one comparison while nobody wants to know. Which tick it is part of is a matter of the thread: the loop of a
-// process has its phases, threads beside it have none, and a library needs no argument for it and computes the same.
+// and costs one comparison while nobody wants to know. Which tick it is part of is a matter of the thread: the
+// loop of a process has its phases, threads beside it have none, and a library needs no argument for it and
+// computes the same.
 #pragma once
 
 #include <array>

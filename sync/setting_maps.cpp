@@ -14,13 +14,13 @@ void SettingMaps::set(const std::vector<map_def_t>& maps) {
   maps_.clear();
   const std::string prefix = node_ + ".";
   for (const map_def_t& def : maps)
-    if (def.to.starts_with(prefix) && maps_.size() < kMost)
-      maps_.push_back({.def = def, .setting = def.to.substr(prefix.size()), .said = {}});
+    if (def.setting.starts_with(prefix) && maps_.size() < kMost)
+      maps_.push_back({.def = def, .setting = def.setting.substr(prefix.size()), .said = {}});
 }
 
 tag_request_t SettingMaps::request() const {
   std::set<std::string> sources;
-  for (const Map& map : maps_) sources.insert(map.def.from);
+  for (const Map& map : maps_) sources.insert(map.def.tag);
   tag_request_t m{};
   m.header.sim_time_ns = -1;
   // More than fit are asked for all together.
@@ -34,8 +34,8 @@ void SettingMaps::push(const tag_values_t& m) {
   table_.read(m, [&](const TagTable::List& list, const tag_def_t& tag, std::int64_t, double value) {
     const std::size_t dot = list.node.size();
     for (Map& map : maps_)
-      if (map.def.from.size() == dot + 1 + tag.name.size() && map.def.from.starts_with(list.node) &&
-          map.def.from[dot] == '.' && map.def.from.ends_with(tag.name))
+      if (map.def.tag.size() == dot + 1 + tag.name.size() && map.def.tag.starts_with(list.node) &&
+          map.def.tag[dot] == '.' && map.def.tag.ends_with(tag.name))
         map.value = mapped(map.def, value), map.fresh = true;
   });
 }

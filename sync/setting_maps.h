@@ -1,5 +1,5 @@
-// Settings of a process that tagged variables drive (<tactus:map>): the grip that makes the picture slower, the speed that
-// makes the sound louder. Pure.
+// Settings of a process that tagged variables drive (<tactus:map>): the grip that makes the picture slower, the
+// speed that makes the sound louder. Pure.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ class SettingMaps {
   struct Change {
     std::string name, value;
   };
-  // Settings whose variable has another value than when they were handed out last. A variable that is silent leaves
-  // its setting where it is.
+  // Settings whose variable has another value than when they were handed out last. A variable that is silent
+  // leaves its setting where it is.
   std::vector<Change> take(HostTime now);
   // The setting cannot be changed: its maps rest until the next scene.
   void give_up(const std::string& name);

@@ -1,5 +1,5 @@
-// What TAG_LIST and TAG_VALUES tell together: for who shows, records or follows tagged variables. Pure; bounded whatever
-// arrives.
+// What TAG_LIST and TAG_VALUES tell together: for who shows, records or follows tagged variables. Pure; bounded
+// whatever arrives.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ class TagTable {
 
   void push(const tag_list_t& m);
 
-  // take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each value that is one, row by row.
-  // time_ns: CLOCK_MONOTONIC of the sender. What no list tells is counted.
+  // take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each value that is one, row by
+  // row. time_ns: CLOCK_MONOTONIC of the sender. What no list tells is counted.
   template <class Take>
   void read(const tag_values_t& m, Take&& take) {
     const auto known = lists_.find({m.header.incarnation, m.list});

@@ -35,9 +35,10 @@ class Tags {
   // std::invalid_argument with one sentence when the name is taken or is none, or there are too many.
   void add(std::string name, std::string unit, Getter getter, double rate_Hz = 0);
   template <class Number>
-    requires std::integral<Number> || std::floating_point<Number>
+  requires std::integral<Number> || std::floating_point<Number>
   void add(std::string name, std::string unit, const Number* variable, double rate_Hz = 0) {
-    add(std::move(name), std::move(unit), [variable] { return static_cast<double>(*variable); }, rate_Hz);
+    add(
+        std::move(name), std::move(unit), [variable] { return static_cast<double>(*variable); }, rate_Hz);
   }
 
   // Somebody wants values: only then is it worth to compute what is only tagged.

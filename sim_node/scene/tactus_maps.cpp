@@ -47,10 +47,10 @@ const sync::SettingRow& row_of(const LoadContext& context, const sdf::Element& e
 map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   map_def_t map{};
-  map.from = attributes.required_text("from");
-  map.to = attributes.required_text("to");
-  split(context, element, map.from, "from");
-  const sync::SettingRow& row = row_of(context, element, split(context, element, map.to, "to"));
+  map.tag = attributes.required_text("from");
+  map.setting = attributes.required_text("to");
+  split(context, element, map.tag, "from");
+  const sync::SettingRow& row = row_of(context, element, split(context, element, map.setting, "to"));
   map.gain = attributes.quantity("gain", "1", -kMost, kMost).value_or(1);
   const std::string unit = std::string_view(row.unit) == "count" ? "1" : row.unit;
   const double initial = sync::parse_quantity(row.initial, unit);

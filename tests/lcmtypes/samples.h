@@ -354,7 +354,7 @@ class Samples {
   void fill(setting_t& s) { s.node = name(), s.name = name(), s.value = name(); }
   void fill(body_def_t& b) { b.name = name(), b.tool = -1, b.mass_kg = real(0, 9), fill(b.pose); }
   void fill(map_def_t& d) {
-    d.from = "x" + name(), d.to = "y" + name(), d.gain = real(-9, 9), d.offset = real(-9, 9), d.low = real(-9, 0), d.high = real(0, 9);
+    d.tag = "x" + name(), d.setting = "y" + name(), d.gain = real(-9, 9), d.offset = real(-9, 9), d.low = real(-9, 0), d.high = real(0, 9);
   }
   void fill(scene_t& m) {
     m.name = name(), fill(m.gravity_m_s2), m.step_ns = 1'000'000;

@@ -12,7 +12,7 @@ namespace {
 map_def_t map(const std::string& from, const std::string& to, double gain = 1, double offset = 0,
               double low = -1e9, double high = 1e9) {
   map_def_t m{};
-  m.from = from, m.to = to, m.gain = gain, m.offset = offset, m.low = low, m.high = high;
+  m.tag = from, m.setting = to, m.gain = gain, m.offset = offset, m.low = low, m.high = high;
   return m;
 }
 HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }

@@ -300,8 +300,8 @@ TEST_CASE("A map drives a number that can be changed, within its bounds, and not
   const WorldDef w = load("<tactus:map from='haptic_node.force' to='visual_node.exposure' gain='2' offset='1' high='5'/>"
                           "<tactus:map from='sim_node.world.time' to='haptic_node_left.force_limit' low='500mN'/>");
   REQUIRE(w.maps.size() == 2);
-  CHECK(w.maps[0].from == "haptic_node.force");
-  CHECK(w.maps[0].to == "visual_node.exposure");
+  CHECK(w.maps[0].tag == "haptic_node.force");
+  CHECK(w.maps[0].setting == "visual_node.exposure");
   CHECK(w.maps[0].gain == 2);
   CHECK(w.maps[0].offset == 1);
   CHECK(w.maps[0].low == 0.01);
