@@ -17,6 +17,7 @@
 #include "sync/log_ages.h"
 #include "sync/node.h"
 #include "sync/printable.h"
+#include "sync/recorder_types.h"
 
 using namespace tactus;
 using nlohmann::json;
@@ -150,6 +151,8 @@ class Export {
 
   void add(const sync::LogEvent& event, sync::HostTime at, const sync::TableContext& context, sync::TagTable& tags) {
     const std::string name(event.channel);
+    // What a log says of its own types, and what LCM says to itself, is text of no type.
+    if (name == sync::kLogTypes || name == "LCM_SELF_TEST") return;
     const MessageType* type = type_of(event.data);
     if (!type) {
       ++foreign_;

@@ -44,6 +44,7 @@ TEST_CASE("The log of a run becomes tables that agree with what the run says of 
   REQUIRE_FALSE(schema.is_discarded());
   CHECK(schema["damaged_regions"] == 0);
   CHECK(schema["broken_messages"] == 0);
+  CHECK(schema["foreign_messages"] == 0);
 
   // What the run itself made of TOOL_STATE, message by message.
   const Rows own = read(run.out() / "haptic.csv");
