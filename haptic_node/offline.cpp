@@ -10,8 +10,7 @@ namespace tactus::haptic {
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
     : run_(options, {{options.trace, "--trace"}}, rate_Hz, clock),
       trace_(options.trace, "--trace"),
-      track_(options.log, {run_.feed().run_id(), run_.feed().clock(), nullptr}, run_.feed().begin(),
-             run_.feed().end()) {
+      track_(run_.feed()) {
   trace_.write(sync::haptic_csv_names());
 }
 

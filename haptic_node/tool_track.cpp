@@ -1,7 +1,5 @@
 #include "haptic_node/tool_track.h"
 
-#include <algorithm>
-#include <tactus/log_info_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
 #include "lcmtypes/channels.h"
@@ -23,30 +21,21 @@ DeviceState device_of(const tool_state_t& m) {
 
 }  // namespace
 
-ToolTrack::ToolTrack(const std::string& log, sync::OwnClock own, sync::HostTime begin, sync::HostTime end)
-    : file_(log), scanner_(file_.bytes()), own_(own), begin_(begin), end_(end) {}
-
 void ToolTrack::follow(int tool) {
   tool_ = tool;
-  scanner_ = sync::LogScanner(file_.bytes());
-  simulation_ = sync::SimFollower(own_);
+  events_.emplace(feed_.from_begin());
+  simulation_ = sync::SimFollower(own());
   incarnation_ = 0;
 }
 
 std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
-  for (sync::LogEvent e; scanner_.next(e);) {
-    if (e.channel == channels::kLogInfo && realtime_offset_ns_ == 0)
-      if (const auto info = sync::decode<log_info_t>(e.data.data(), e.data.size()))
-        realtime_offset_ns_ = info->realtime_offset_ns;
-    if (e.channel != channels::kToolState && e.channel != channels::kTouchModel) continue;
-    constexpr std::int64_t kMost_us = 4'000'000'000'000'000;  // as LogFeed: in ns it is still a number
-    const auto arrival =
-        sync::host_time(std::clamp(e.timestamp_us, -kMost_us, kMost_us) * 1000 - realtime_offset_ns_);
+  sync::LogEvent e;
+  for (sync::HostTime arrival{}; events_ && events_->next(e, arrival);) {
     if (e.channel == channels::kTouchModel) {
       const auto m = sync::decode<touch_model_t>(e.data.data(), e.data.size());
       if (m && m->tool == tool_) simulation_.follow(m->header, m->clock, arrival);
-      continue;
     }
+    if (e.channel != channels::kToolState) continue;
     const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
     if (!m || m->tool != tool_) continue;
     if (const auto tick = tick_of(*m, arrival); tick && tick->at > after) return tick;
@@ -55,11 +44,10 @@ std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
 }
 
 std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::HostTime arrival) {
-  if (arrival < begin_ - kMostUnderWay || arrival > end_) return std::nullopt;
   RecordedTick tick;
   tick.published_ns = m.header.publish_time_ns;
   tick.seq = m.header.seq;
-  tick.at = m.header.clock == own_.clock ? began(m.header) : arrival;
+  tick.at = m.header.clock == feed_.clock() ? began(m.header) : arrival;
   if (tick.at < arrival - kMostUnderWay || tick.at > arrival + kMostUnderWay) return std::nullopt;
   if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
     return std::nullopt;

@@ -1,14 +1,12 @@
-// The ticks of a tool as the log of a run tells them: when each was, and where the hand was in it. Pure but for
-// the mapping of the file.
+// The ticks of a tool as the log of a run tells them: when each was, and where the hand was in it. Pure.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <tactus/tool_state_t.hpp>
 
 #include "haptic_node/devices/device.h"
-#include "sync/log_reader.h"
+#include "sync/log_feed.h"
 #include "sync/sim_follower.h"
 
 namespace tactus::haptic {
@@ -30,9 +28,8 @@ class ToolTrack {
   // A tick takes no longer: what says that it began earlier before it was told of is not its beginning.
   static constexpr sync::Nanoseconds kLongestTick{1'000'000};
 
-  // own: of the recorder; begin, end: of the run on it. A sender with another clock is read by arrival. Throws
-  // std::runtime_error with one sentence when there is no such file.
-  ToolTrack(const std::string& log, sync::OwnClock own, sync::HostTime begin, sync::HostTime end);
+  // A sender with another clock than the recorder's is read by arrival. feed: outlives this.
+  explicit ToolTrack(const sync::LogFeed& feed) : feed_(feed) {}
 
   // From its beginning, those of this tool.
   void follow(int tool);
@@ -43,13 +40,12 @@ class ToolTrack {
   std::optional<RecordedTick> tick_of(const tool_state_t& m, sync::HostTime arrival);
   sync::HostTime began(const header_t& header) const;
 
-  sync::MappedFile file_;
-  sync::LogScanner scanner_;
-  sync::OwnClock own_;
-  sync::HostTime begin_, end_;
+  sync::OwnClock own() const { return {feed_.run_id(), feed_.clock(), nullptr}; }
+
+  const sync::LogFeed& feed_;
+  std::optional<sync::DatedEvents> events_;
   int tool_ = -1;
-  sync::SimFollower simulation_{own_};
-  std::int64_t realtime_offset_ns_ = 0;
+  sync::SimFollower simulation_{own()};
   std::int64_t incarnation_ = 0;
   sync::HostTime heard_{};  // of that
 };

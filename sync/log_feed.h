@@ -39,6 +39,13 @@ class LogFeed {
   // All has been handed over, and `after` has passed since.
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
 
+  // All once more from the beginning, for who looks ahead. Refers to this.
+  DatedEvents from_begin() const {
+    DatedEvents events(file_.bytes(), origin_, &ages_);
+    events.start_at(0, begin_);
+    return events;
+  }
+
   HostTime begin() const { return begin_; }
   HostTime end() const { return end_; }
   // Of the whole log.

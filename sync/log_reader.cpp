@@ -1,12 +1,14 @@
 #include "sync/log_reader.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <stdexcept>
 
@@ -99,6 +101,35 @@ bool LogScanner::next(LogEvent& event) {
   return false;
 }
 
+namespace {
+
+// The newest mapping, for say_cut.
+std::atomic<const std::uint8_t*> mapped_begin{nullptr}, mapped_end{nullptr};
+
+// What is touched behind the end of a file that was cut after it had been mapped is SIGBUS, which kills without a
+// word.
+void say_cut(int, siginfo_t* info, void*) {
+  const auto* at = static_cast<const std::uint8_t*>(info->si_addr);
+  if (at < mapped_begin.load() || at >= mapped_end.load()) {
+    signal(SIGBUS, SIG_DFL);  // not ours: it comes again, and does what it does
+    return;
+  }
+  static constexpr char text[] = "the log was cut while it was read; give a copy that nobody writes to\n";
+  const ssize_t said = write(STDERR_FILENO, text, sizeof text - 1);
+  _exit(said < 0 ? 2 : 1);
+}
+
+void tell_of_cuts(std::span<const std::uint8_t> bytes) {
+  mapped_begin = bytes.data();
+  mapped_end = bytes.data() + bytes.size();
+  struct sigaction action {};
+  action.sa_sigaction = say_cut;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGBUS, &action, nullptr);
+}
+
+}  // namespace
+
 MappedFile::MappedFile(const std::string& path) {
   const auto refuse = [&](int fd) {
     const std::string why = strerror(errno);
@@ -115,6 +146,7 @@ MappedFile::MappedFile(const std::string& path) {
     if (start == MAP_FAILED) refuse(fd);
     madvise(start, size, MADV_SEQUENTIAL);
     bytes_ = {static_cast<const std::uint8_t*>(start), size};
+    tell_of_cuts(bytes_);
   }
   close(fd);
 }

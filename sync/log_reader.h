@@ -56,7 +56,8 @@ class LogScanner {
   std::int64_t damaged_bytes_ = 0;
 };
 
-// The bytes of a whole file, mapped, so that a log of any length takes no memory of its own.
+// The bytes of a whole file, mapped, so that a log of any length takes no memory of its own. Whoever cuts the file
+// short meanwhile ends this process, with one sentence on stderr and status 1.
 class MappedFile {
  public:
   // Throws std::runtime_error with one sentence.

@@ -41,7 +41,8 @@ std::size_t seek_log(std::span<const std::uint8_t> log, std::int64_t timestamp_u
   std::size_t low = 0, high = log.size();
   while (high - low > kNearEnough) {
     const std::size_t middle = low + (high - low) / 2;
-    const auto stamp = stamp_near(log, middle);
+    // Not beyond what is still in question: a hole of many GB would be read once for every probe in it.
+    const auto stamp = stamp_near(log.first(high), middle);
     (!stamp || *stamp >= timestamp_us ? high : low) = middle;
   }
   return low;

@@ -78,6 +78,7 @@ std::string Offline::finish(double rendered_s, HostTime clock) {
   const double took_s = to_seconds(clock - began_);
   std::ostringstream text;
   text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as time)";
+  if (!feed_.recovered().empty()) text << "\n" << feed_.recovered();
   if (feed_.damaged_regions() > 0)
     text << "\nskipped damage of the log: " << feed_.damaged_regions() << " regions, " << feed_.damaged_bytes()
          << " bytes";

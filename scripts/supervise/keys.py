@@ -77,7 +77,11 @@ class Orders:
             pipe = os.open(self.control, os.O_WRONLY | os.O_NONBLOCK)
         except OSError:
             return  # it is not there yet, or not any more
-        with os.fdopen(pipe, "w") as file:
-            print(order, file=file)
+        try:
+            os.write(pipe, f"{order}\n".encode())
+        except OSError:
+            pass  # it has just gone, or reads no more: nobody waits for it
+        finally:
+            os.close(pipe)
 
 

@@ -140,10 +140,12 @@ TEST_CASE("A profile degrades what is felt of a log, and that of the run holds o
 
   SECTION("touch models that are held back by 20 ms are felt 20 ticks later, and events are told as late") {
     const std::string late = R"(<profile name="late"><degrade modality="haptic" delay="20ms"/></profile>)";
-    const auto table = cells_of(of.trace({"--degrade", of.write("late.xml", late), "--presented", of.file("p.csv")}));
+    const auto table =
+        cells_of(of.trace({"--degrade", of.write("late.xml", late), "--presented", of.file("p.csv")}));
     const auto events = cells_of(RenderedLog::bytes(of.file("p.csv")));
     REQUIRE(events.size() == 2);
-    const auto hit = std::find_if(events.begin(), events.end(), [](const auto& row) { return row.at(2) == "transient"; });
+    const auto hit =
+        std::find_if(events.begin(), events.end(), [](const auto& row) { return row.at(2) == "transient"; });
     REQUIRE(hit != events.end());
     CHECK(std::stoll(hit->at(3)) == kLogBegins_ns + 200'000'000 + 20'000'000);
     // The floor comes with the first model that is let through.
@@ -166,7 +168,31 @@ TEST_CASE("Ticks that were never recorded are not felt, and those before and aft
   CHECK(std::stoll(rows.back().at(24)) == 1999);
 }
 
-TEST_CASE("A log that nobody's hand is in, a tool that there is not and a log of no run are refused in one sentence") {
+TEST_CASE("A log that lost its first event, LOG_INFO, is felt again, too, and says that it is without it") {
+  const RenderedLog of("haptic_node");
+  const std::string felt = live(of.file("whole.lcmlog"));
+  std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
+  const std::string sync = bytes.substr(0, 4);
+  const std::size_t second = bytes.find(sync, 4);
+  REQUIRE(bytes.substr(0, second).find("LOG_INFO") != std::string::npos);
+  of.write("run.lcmlog", bytes.substr(second));
+  const Rendered done = of.render({"--log", of.file("run.lcmlog"), "--trace", of.file("trace.csv")});
+  CAPTURE(done.said);
+  REQUIRE(done.status == 0);
+  CHECK_THAT(done.said, Catch::Contains("LOG_INFO"));
+  const auto rows = cells_of(RenderedLog::bytes(of.file("trace.csv")));
+  const auto all = cells_of(felt);
+  REQUIRE(rows.size() > 1990);
+  // Where the beginning is is known to a latency only; the forces are of the same ticks.
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& same = all.at(static_cast<std::size_t>(std::stoll(rows[i].at(24))));
+    for (std::size_t cell = 11; cell < 14; ++cell)
+      REQUIRE(std::stod(rows[i].at(cell)) == Approx(std::stod(same.at(cell))).margin(1e-3));
+  }
+}
+
+TEST_CASE(
+    "A log that nobody's hand is in, a tool that there is not and a log of no run are refused in one sentence") {
   const RenderedLog of("haptic_node");
   const auto refusal = [&](std::vector<std::string> words) {
     words.insert(words.end(), {"--trace", of.file("x.csv")});

@@ -1,6 +1,11 @@
 #include "sync/log_reader.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <set>
 
@@ -55,8 +60,8 @@ TEST_CASE("A log that is cut off anywhere yields every event before the cut") {
   const Log log(2);
   const std::span<const std::uint8_t> bytes(log.state->bytes);
   for (std::size_t cut = 0; cut < bytes.size(); cut += 37) {
-    const auto whole = static_cast<std::size_t>(
-        std::upper_bound(log.begins.begin(), log.begins.end(), cut) - log.begins.begin());
+    const auto whole =
+        static_cast<std::size_t>(std::upper_bound(log.begins.begin(), log.begins.end(), cut) - log.begins.begin());
     LogScanner scanner(bytes.first(cut));
     std::size_t found = 0;
     for (LogEvent e; scanner.next(e);) ++found;
@@ -111,4 +116,30 @@ TEST_CASE("Any bytes at all are read to their end") {
 TEST_CASE("A log that cannot be read is refused with its name") {
   CHECK_THROWS_WITH(MappedFile("/nowhere/run.lcmlog"), Catch::Contains("/nowhere/run.lcmlog"));
   CHECK_THROWS_WITH(MappedFile("/tmp"), Catch::Contains("directory"));
+}
+
+TEST_CASE("A log that is cut while it is read ends its reader with one sentence, and not by a signal") {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / ("cut_" + std::to_string(getpid()));
+  std::ofstream(path) << std::string(1 << 20, 'x');
+  int said[2];
+  REQUIRE(pipe(said) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(said[1], STDERR_FILENO);
+    const MappedFile file(path);
+    std::filesystem::resize_file(path, 100);
+    std::int64_t sum = 0;
+    for (const std::uint8_t byte : file.bytes()) sum += byte;
+    _exit(sum == 0 ? 42 : 43);
+  }
+  close(said[1]);
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  char text[256] = {};
+  CHECK(read(said[0], text, sizeof text - 1) > 0);
+  close(said[0]);
+  std::filesystem::remove(path);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 1);
+  CHECK_THAT(text, Catch::Contains("cut while it was read"));
 }
