@@ -14,6 +14,7 @@
 
 #include "sync/decode.h"
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 #include "sync/playout/comparison.h"
 #include "sync/playout/policy.h"
@@ -50,7 +51,7 @@ std::vector<sync::TraceEvent> logged_trace(const std::vector<std::string>& logs)
   std::vector<std::int64_t> order;
   std::map<std::int64_t, sync::TraceEvent> events;
   for (const std::string& path : logs) {
-    const sync::MappedFile file(path);
+    const sync::MappedLog file(path);
     sync::LogScanner scanner(file.bytes());
     for (sync::LogEvent e; scanner.next(e);) {
       const auto observe = [&]<class Message>(const char* channel, Message*) {
@@ -97,7 +98,7 @@ int main(int argc, char** argv) try {
   std::vector<std::string> logs;
   std::string json, fixed = "40ms";
   unsigned seed = 1;
-  app.add_option("LOG", logs, "logs of runs; none: a made trace")->check(CLI::ExistingFile);
+  app.add_option("LOG", logs, "logs of runs, or their folders; none: a made trace")->check(CLI::ExistingPath);
   app.add_option("--fixed", fixed, "delay of the fixed aligner")->capture_default_str();
   app.add_option("--seed", seed, "of the made trace")->capture_default_str();
   app.add_option("--json", json, "write the table here too");

@@ -11,6 +11,7 @@
 #include "sync/decode.h"
 #include "sync/export_csv.h"
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 
 using namespace tactus;
@@ -44,14 +45,14 @@ int main(int argc, char** argv) try {
   CLI::App app{"Makes tables of what the hand and the skin felt from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
   app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
   sync::parse_or_exit(app, "export_csv", argc, argv);
 
   Table haptic(out + "/haptic.csv", sync::haptic_csv_names());
   Table thermal(out + "/thermal.csv", sync::thermal_csv_names());
   for (const std::string& path : logs) {
-    const sync::MappedFile file(path);
+    const sync::MappedLog file(path);
     sync::LogScanner scanner(file.bytes());
     for (sync::LogEvent event; scanner.next(event);) {
       if (event.channel == channels::kToolState) haptic.add<tool_state_t>(event);

@@ -14,6 +14,7 @@
 #include "sync/decode.h"
 #include "sync/export_events.h"
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 
 using namespace tactus;
@@ -22,7 +23,7 @@ int main(int argc, char** argv) try {
   CLI::App app{"Makes tables of contact events, presentations, media clocks and clock maps from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
   app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
   sync::parse_or_exit(app, "export_events", argc, argv);
 
@@ -37,7 +38,7 @@ int main(int argc, char** argv) try {
   std::set<std::int64_t> seen;
   std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
   for (const std::string& path : logs) {
-    const sync::MappedFile file(path);
+    const sync::MappedLog file(path);
     sync::LogScanner scanner(file.bytes());
     for (sync::LogEvent e; scanner.next(e);) {
       if (e.channel == channels::kContactEvents)

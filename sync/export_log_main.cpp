@@ -15,6 +15,7 @@
 #include "sync/channel_table.h"
 #include "sync/dated_events.h"
 #include "sync/log_ages.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 #include "sync/printable.h"
 #include "sync/recorder_types.h"
@@ -91,7 +92,7 @@ class Export {
       : wishes_(wishes), wanted_(wishes.channels.empty() ? ".*" : wishes.channels, std::regex::extended | std::regex::optimize) {}
 
   void read(const std::string& path) {
-    const sync::MappedFile file(path);
+    const sync::MappedLog file(path);
     const sync::LogOrigin origin = sync::origin_of(file.bytes());
     if (!origin.known)
       throw std::runtime_error(path + " holds no message of ours; give the run.lcmlog of a run");
@@ -197,7 +198,7 @@ class Export {
 int main(int argc, char** argv) try {
   CLI::App app{"Makes a table of every channel of a log, for pandas, R, MATLAB, PlotJuggler."};
   Wishes wishes;
-  app.add_option("LOG", wishes.logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
+  app.add_option("LOG", wishes.logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
   app.add_option("--out", wishes.out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
   app.add_option("--channels", wishes.channels, "regular expression that the whole name of a channel matches; default: all");
   app.add_option("--since", wishes.since_s, "from this second of the log on");

@@ -14,6 +14,7 @@
 #include "sync/log_ages.h"
 #include "sync/log_origin.h"
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 
 namespace tactus::sync {
 
@@ -59,7 +60,7 @@ class LogFeed {
   const std::string& recovered() const { return origin_.recovered; }
 
  private:
-  MappedFile file_;
+  MappedLog file_;
   std::set<std::string, std::less<>> left_out_;
   LogScanner whole_;
   LogAges ages_;

@@ -1,13 +1,53 @@
 #include "sync/log_parts.h"
 
+#include <charconv>
 #include <filesystem>
+#include <map>
 
 namespace tactus::sync {
 
+namespace {
+
+std::string name_of(int number) {
+  return number == 1 ? "run.lcmlog" : "run." + std::to_string(number) + ".lcmlog";
+}
+
+// 0: that is no part.
+int number_of(const std::string& name) {
+  if (name == name_of(1)) return 1;
+  int number = 0;
+  if (name.rfind("run.", 0) != 0 ||
+      std::from_chars(name.data() + 4, name.data() + name.size(), number).ec != std::errc())
+    return 0;
+  return number > 1 && name == name_of(number) ? number : 0;
+}
+
+// By number.
+std::map<int, std::string> parts_by_number(const std::string& dir) {
+  std::map<int, std::string> parts;
+  std::error_code unreadable;
+  for (std::filesystem::directory_iterator i(dir, unreadable), end; !unreadable && i != end;
+       i.increment(unreadable))
+    if (const int number = number_of(i->path().filename().string()); number > 0)
+      parts[number] = i->path().string();
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::string> log_parts_in(const std::string& dir) {
+  std::vector<std::string> paths;
+  for (const auto& [number, path] : parts_by_number(dir)) paths.push_back(path);
+  return paths;
+}
+
 std::unique_ptr<LogSink> LogParts::open() {
-  const std::filesystem::path folder(dir_);
+  if (next_ == 0) {
+    const auto there = parts_by_number(dir_);
+    next_ = there.empty() ? 1 : there.rbegin()->first + 1;
+  }
   std::filesystem::path path;
-  do path = folder / (next_ == 1 ? "run.lcmlog" : "run." + std::to_string(next_) + ".lcmlog");
+  do path = std::filesystem::path(dir_) / name_of(next_);
   while (++next_, std::filesystem::exists(path));
   auto sink = std::make_unique<FileSink>(path.string());
   parts_.push_back({path.string()});

@@ -1,17 +1,20 @@
-// The files of one recording: DIR/run.lcmlog, or the next name that is free, and when it is split run.2.lcmlog,
-// run.3.lcmlog,
-// ... Each begins with a head of its own, so that it replays alone.
+// The files of one recording: DIR/run.lcmlog, or the number behind those that are there, and when it is split
+// run.2.lcmlog, run.3.lcmlog, ... Each begins with a head of its own, so that it replays alone.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sync/log_writer.h"
 #include "sync/time.h"
 
 namespace tactus::sync {
+
+// The parts in a folder, in the order of their numbers.
+std::vector<std::string> log_parts_in(const std::string& dir);
 
 // 0: no limit.
 struct LogLimits {
@@ -27,7 +30,7 @@ class LogParts {
  public:
   LogParts(std::string dir, const LogLimits& limits) : dir_(std::move(dir)), limits_(limits) {}
 
-  // A new file, and where it lies. Throws as FileSink does.
+  // A new file, which overwrites nothing. Throws as FileSink does.
   std::unique_ptr<LogSink> open();
   const std::string& path() const { return parts_.back().path; }
   // Removes the oldest parts beyond the limits, never the one that is written; the size of that one is given.
@@ -43,7 +46,7 @@ class LogParts {
   };
   std::string dir_;
   LogLimits limits_;
-  int next_ = 1;
+  int next_ = 0;  // 0: not known yet
   std::deque<Part> parts_;
   std::int64_t removed_ = 0;
 };

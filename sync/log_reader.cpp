@@ -1,16 +1,8 @@
 #include "sync/log_reader.h"
 
-#include <fcntl.h>
-#include <signal.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
-#include <stdexcept>
 
 namespace tactus::sync {
 namespace {
@@ -78,8 +70,17 @@ void LogScanner::skip_to(std::size_t at) {
 
 void LogScanner::start_at(std::size_t at) { at_ = next_event_after(std::min(at, bytes_.size()), bytes_.size()); }
 
+void LogScanner::pass_border() {
+  const std::size_t border = (at_ + kLogPartBytes - 1) / kLogPartBytes * kLogPartBytes;
+  LogEvent ignored;
+  if (border == at_ || !event_at(border, ignored)) return;
+  const auto between = bytes_.subspan(at_, border - at_);
+  if (std::all_of(between.begin(), between.end(), [](std::uint8_t b) { return b == 0; })) at_ = border;
+}
+
 bool LogScanner::next(LogEvent& event) {
   while (at_ < bytes_.size()) {
+    if (bytes_[at_] == 0) pass_border();
     if (!event_at(at_, event)) {
       skip_to(next_event_after(at_ + 1, bytes_.size()));
       continue;
@@ -99,60 +100,6 @@ bool LogScanner::next(LogEvent& event) {
     return true;
   }
   return false;
-}
-
-namespace {
-
-// The newest mapping, for say_cut.
-std::atomic<const std::uint8_t*> mapped_begin{nullptr}, mapped_end{nullptr};
-
-// What is touched behind the end of a file that was cut after it had been mapped is SIGBUS, which kills without a
-// word.
-void say_cut(int, siginfo_t* info, void*) {
-  const auto* at = static_cast<const std::uint8_t*>(info->si_addr);
-  if (at < mapped_begin.load() || at >= mapped_end.load()) {
-    signal(SIGBUS, SIG_DFL);  // not ours: it comes again, and does what it does
-    return;
-  }
-  static constexpr char text[] = "the log was cut while it was read; give a copy that nobody writes to\n";
-  const ssize_t said = write(STDERR_FILENO, text, sizeof text - 1);
-  _exit(said < 0 ? 2 : 1);
-}
-
-void tell_of_cuts(std::span<const std::uint8_t> bytes) {
-  mapped_begin = bytes.data();
-  mapped_end = bytes.data() + bytes.size();
-  struct sigaction action {};
-  action.sa_sigaction = say_cut;
-  action.sa_flags = SA_SIGINFO;
-  sigaction(SIGBUS, &action, nullptr);
-}
-
-}  // namespace
-
-MappedFile::MappedFile(const std::string& path) {
-  const auto refuse = [&](int fd) {
-    const std::string why = strerror(errno);
-    if (fd >= 0) close(fd);
-    throw std::runtime_error("cannot read " + path + " (" + why + "); give the path of a log");
-  };
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status {};
-  if (fd < 0 || fstat(fd, &status) != 0) refuse(fd);
-  if (S_ISDIR(status.st_mode)) errno = EISDIR, refuse(fd);
-  if (status.st_size > 0) {
-    const auto size = static_cast<std::size_t>(status.st_size);
-    void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
-    if (start == MAP_FAILED) refuse(fd);
-    madvise(start, size, MADV_SEQUENTIAL);
-    bytes_ = {static_cast<const std::uint8_t*>(start), size};
-    tell_of_cuts(bytes_);
-  }
-  close(fd);
-}
-
-MappedFile::~MappedFile() {
-  if (!bytes_.empty()) munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
 }
 
 }  // namespace tactus::sync

@@ -1,4 +1,4 @@
-// Reads an LCM event log and goes on after damage. Pure but for the mapping of the file.
+// Reads an LCM event log and goes on after damage. Pure.
 //
 // Format (LCM, docs/content/log-file-format.md), big-endian: u32 sync word, i64 number, i64 time stamp in us, i32
 // length of the channel, i32 length of the data, channel, data. There is no checksum, so damage inside an event's
@@ -7,13 +7,15 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace tactus::sync {
 
 inline constexpr std::uint32_t kLogSync = 0xEDA1DA01;
 inline constexpr std::size_t kLogEventHeaderBytes = 28;
+// Where several files are read as one log (sync/mapped_log.h), each begins at a multiple of this. Design: the
+// largest page of memory that Linux has on our machines, so that a file can be mapped there.
+inline constexpr std::size_t kLogPartBytes = 65536;
 
 // One event; the views live as long as the bytes that it was read from.
 struct LogEvent {
@@ -48,27 +50,14 @@ class LogScanner {
   bool event_at(std::size_t at, LogEvent& event) const;
   std::size_t next_event_after(std::size_t at, std::size_t until) const;
   void skip_to(std::size_t at);
+  // Over the zeros between two parts of a recording.
+  void pass_border();
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;
   std::int64_t events_ = 0;
   std::int64_t damaged_regions_ = 0;
   std::int64_t damaged_bytes_ = 0;
-};
-
-// The bytes of a whole file, mapped, so that a log of any length takes no memory of its own. Whoever cuts the file
-// short meanwhile ends this process, with one sentence on stderr and status 1.
-class MappedFile {
- public:
-  // Throws std::runtime_error with one sentence.
-  explicit MappedFile(const std::string& path);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  std::span<const std::uint8_t> bytes() const { return bytes_; }
-
- private:
-  std::span<const std::uint8_t> bytes_;
 };
 
 }  // namespace tactus::sync

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "lcmtypes/channels.h"
 #include "sync/log_ages.h"
 #include "sync/log_origin.h"
 #include "sync/log_reader.h"
+#include "sync/recorder_types.h"
 
 namespace tactus::sync {
 namespace {
@@ -15,11 +17,19 @@ constexpr std::size_t kLooks = 9;
 // What is read on instead of cut in half once more.
 constexpr std::size_t kNearEnough = 1 << 16;
 
-std::vector<std::int64_t> stamps_from(std::span<const std::uint8_t> log, std::size_t at, std::size_t most) {
+// The head of a part is stamped before what the part before it ends with.
+bool of_a_head(const LogEvent& e) {
+  return e.channel == channels::kLogInfo || e.channel == kLogTypes || e.channel == channels::kSceneManifest ||
+         e.channel == channels::kAssetChunk;
+}
+
+std::vector<std::int64_t> stamps_from(std::span<const std::uint8_t> log, std::size_t at, std::size_t most,
+                                      bool with_heads = true) {
   LogScanner scanner(log);
   scanner.start_at(at);
   std::vector<std::int64_t> stamps;
-  for (LogEvent e; stamps.size() < most && scanner.next(e);) stamps.push_back(bounded_us(e.timestamp_us));
+  for (LogEvent e; stamps.size() < most && scanner.next(e);)
+    if (with_heads || !of_a_head(e)) stamps.push_back(bounded_us(e.timestamp_us));
   return stamps;
 }
 
@@ -32,7 +42,7 @@ std::int64_t median(std::vector<std::int64_t> v) {
 }  // namespace
 
 std::optional<std::int64_t> stamp_near(std::span<const std::uint8_t> log, std::size_t at) {
-  const std::vector<std::int64_t> stamps = stamps_from(log, at, kLooks);
+  const std::vector<std::int64_t> stamps = stamps_from(log, at, kLooks, false);
   if (stamps.empty()) return std::nullopt;
   return median(stamps);
 }

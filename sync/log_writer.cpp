@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <filesystem>
 #include <stdexcept>
 
 #include "sync/log_reader.h"
@@ -79,14 +78,6 @@ void LogWriter::flush() {
     if (!trouble_.empty()) return;
     waiting_bytes_ -= blocks_.front().size();
     blocks_.pop_front();
-  }
-}
-
-std::string new_log_path(const std::string& dir) {
-  const std::filesystem::path folder(dir);
-  for (int i = 1;; ++i) {
-    const auto path = folder / (i == 1 ? "run.lcmlog" : "run." + std::to_string(i) + ".lcmlog");
-    if (!std::filesystem::exists(path)) return path.string();
   }
 }
 

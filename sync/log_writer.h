@@ -66,8 +66,4 @@ class LogWriter {
   std::string trouble_;
 };
 
-// dir/run.lcmlog, or dir/run.2.lcmlog, dir/run.3.lcmlog, ... when those before exist: a restarted recorder
-// overwrites nothing.
-std::string new_log_path(const std::string& dir);
-
 }  // namespace tactus::sync

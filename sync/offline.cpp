@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sync/export_events.h"
+#include "sync/log_parts.h"
 
 namespace tactus::sync {
 
@@ -32,9 +33,12 @@ Offline::Offline(const OfflineOptions& options, std::vector<Written> written, do
   if (!options.presented.empty()) written.push_back({options.presented, "--presented"});
   // Also by another path or a link.
   std::error_code none;
+  std::vector<std::string> parts = log_parts_in(options.log);
+  parts.push_back(options.log);
   for (const Written& w : written)
     for (const std::string& path : {w.path, w.path + ".part"})
-      if (std::filesystem::equivalent(options.log, path, none))
+      if (std::any_of(parts.begin(), parts.end(),
+                      [&](const std::string& part) { return std::filesystem::equivalent(part, path, none); }))
         throw std::runtime_error(path + " is the log itself, which would be lost; choose another " + w.option);
   if (options.presented.empty()) return;
   presented_ = std::make_unique<WholeFile>(options.presented, "--presented");

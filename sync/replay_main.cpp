@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "sync/kernel_drops.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 #include "sync/printable.h"
 #include "sync/replay.h"
@@ -94,7 +95,7 @@ int main(int argc, char** argv) try {
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
-  const sync::MappedFile file(log);
+  const sync::MappedLog file(log);
   const sync::LogOrigin origin = sync::origin_of(file.bytes());
   if (!origin.known && !wishes.verbatim && !only_describe)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/node.h"
 #include "sync/summary.h"
 
@@ -40,7 +42,7 @@ int main(int argc, char** argv) try {
   sync::SummaryOptions options;
   std::vector<std::string> logs, restarts;
   std::string out;
-  app.add_option("LOG", logs, "logs of one run, in order")->required()->check(CLI::ExistingFile);
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
   app.add_option("--out", out, "file for the summary as JSON");
   app.add_option("--nodes", options.nodes, "nodes that must be alive at the end: a,b,c")->delimiter(',');
   app.add_option("--seconds", options.seconds, "length of the run");
@@ -54,7 +56,7 @@ int main(int argc, char** argv) try {
 
   sync::RunSummary summary(options);
   for (const std::string& path : logs) {
-    const sync::MappedFile file(path);
+    const sync::MappedLog file(path);
     sync::LogScanner scanner(file.bytes());
     for (sync::LogEvent event; scanner.next(event);) summary.add(event);
     summary.end_of_log(scanner.damaged_regions());

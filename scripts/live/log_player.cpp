@@ -9,7 +9,7 @@
 namespace tactus::live {
 
 LogPlayer::LogPlayer(const std::string& path)
-    : file_(std::make_unique<sync::MappedFile>(path)), bytes_(file_->bytes()), whole_(bytes_), scanner_(bytes_) {
+    : file_(std::make_unique<sync::MappedLog>(path)), bytes_(file_->bytes()), whole_(bytes_), scanner_(bytes_) {
   try {
     begin();
   } catch (const std::runtime_error& e) {

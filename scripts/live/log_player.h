@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/summary_clock.h"
 #include "sync/time.h"
 
@@ -54,7 +55,7 @@ class LogPlayer {
   };
   static constexpr sync::Nanoseconds kPlaceEach{500'000'000};
 
-  std::unique_ptr<sync::MappedFile> file_;
+  std::unique_ptr<sync::MappedLog> file_;
   std::span<const std::uint8_t> bytes_;
   sync::LogScanner whole_, scanner_;
   sync::SummaryClock whole_clock_, clock_;

@@ -18,6 +18,7 @@ SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
+RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/recorder_main.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -45,6 +46,7 @@ class Plan:
     settings: dict  # node: list of "name=value"
     world: str = "sim_node"  # the process that says what happens: the simulation, or replay
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
+    recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: how long its files get
     live: int = None  # port of the live page, 0: any that is free; None: there is none
 
     def nodes(self):
@@ -78,6 +80,9 @@ def parse(words, here):
     parser.add_argument("--degrade")
     for option in PLAYOUT:
         parser.add_argument(f"--{option}")
+    for option in RECORDING:
+        parser.add_argument("--" + option.replace("_", "-"))
+    parser.add_argument("--tags", action="append", default=[])
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--live")
     parser.add_argument("--listen", action="store_true")
@@ -112,7 +117,7 @@ def parse(words, here):
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
                 devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
                 degrade=profile(here, a.degrade), playout=playout(a),
-                window=a.window, live=live_port(a.live), listen=a.listen, realtime=a.realtime,
+                window=a.window, recorder=recording(a), live=live_port(a.live), listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several))
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
@@ -197,6 +202,20 @@ def playout(a):
     return words
 
 
+def recording(a):
+    """The options for the recorder."""
+    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/recorder_main.cpp
+    given = {name: number("--" + name.replace("_", "-"), value, *bounds[name], "", whole=name == "keep")
+             for name in RECORDING if (value := getattr(a, name)) is not None}
+    splits = "split_mb" in given or "split_minutes" in given
+    if "keep" in given and not splits:
+        raise Refusal("--keep needs --split-mb or --split-minutes: it says how many files of the recording stay")
+    if splits and given.get("max_mb", 1e9) < 2 * given.get("split_mb", 0):
+        raise Refusal("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written")
+    words = [word for name, value in given.items() for word in ("--" + name.replace("_", "-"), f"{value:g}")]
+    return words + [word for pattern in a.tags for word in ("--tags", pattern)]
+
+
 def out_folder(here, text):
     """Where the results go; it is not made yet."""
     path = here / text if text else here / "out" / time.strftime("%Y-%m-%d_%H-%M-%S")
@@ -204,7 +223,7 @@ def out_folder(here, text):
         path = path.with_name(path.name + "+")
     if path.exists() and not path.is_dir():
         raise Refusal(f"recorder: --out {path} is a file; name a folder")
-    if (path / "run.lcmlog").exists():
+    if path.is_dir() and any(path.glob("run*.lcmlog")):
         raise Refusal(f"recorder: --out {path} already holds a run; name another folder or remove that one")
     existing = path
     while not existing.exists():

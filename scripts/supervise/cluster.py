@@ -33,7 +33,7 @@ def commands(plan, run_id, git):
     common = ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime,
               "--out", str(plan.out)]
     own = {
-        "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git],
+        "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git, *plan.recorder],
         "haptic_node": device_words(plan, ""),
         # A run makes no noise unless it is asked to; with --listen the node finds the card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],

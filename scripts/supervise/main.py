@@ -86,15 +86,14 @@ def watch_over(running, seconds, stop):
 def sum_up(plan, git, lost, restarts, warnings):
     """Writes summary.json and the CSVs from the log. lost: the nodes that are not expected at its end. Returns what went
     wrong, a sentence each."""
-    logs = [str(path) for path in sorted(plan.out.glob("run*.lcmlog"), key=lambda p: p.stat().st_mtime)]
-    if not logs:
+    if not any(plan.out.glob("run*.lcmlog")):
         return [f"recorder: {plan.out}/run.lcmlog was not written; see {plan.out}/logs/recorder.log"]
     kept = [name for name in plan.nodes() if name not in lost]
-    summarise = [str(cluster.BIN / "summarise"), *logs, "--out", str(plan.out / "summary.json"), "--nodes", ",".join(kept),
+    summarise = [str(cluster.BIN / "summarise"), str(plan.out), "--out", str(plan.out / "summary.json"), "--nodes", ",".join(kept),
                  "--seconds", f"{plan.seconds:g}", "--scene", str(plan.scene), "--seed", str(plan.seed), "--git", git,
                  *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
                  *(word for sentence in warnings for word in ("--warning", sentence))]
-    exports = [[str(cluster.BIN / name), *logs, "--out", str(plan.out)] for name in ("export_csv", "export_events")]
+    exports = [[str(cluster.BIN / name), str(plan.out), "--out", str(plan.out)] for name in ("export_csv", "export_events")]
     # All results are written before any of them is shown. A second Ctrl-C does not reach these programs.
     all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
                 for words in (summarise, *exports)]

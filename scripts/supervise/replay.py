@@ -57,7 +57,7 @@ def parse(words, here):
             raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
     a = parser.parse_args(words)
     here = pathlib.Path(here)
-    log = here / a.log / "run.lcmlog" if (here / a.log).is_dir() else here / a.log
+    log = here / a.log  # of a folder replay itself takes all parts
     says = described(log)
     others = hands.processes(says["tools"])
     known = (*SENSES, *others, "sync_node")

@@ -4,7 +4,9 @@
 #include <fstream>
 #include <tactus/world_state_t.hpp>
 
+#include "sync/log_reader.h"
 #include "sync/log_writer.h"
+#include "sync/mapped_log.h"
 #include "tests/cluster/run_log.h"
 #include "tests/cluster/running.h"
 
@@ -36,7 +38,7 @@ std::vector<std::string> options_of_replay(const std::filesystem::path& log, std
 
 // What a log holds, but for what only says that somebody tried its network.
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const std::filesystem::path& path) {
-  sync::MappedFile file(path);
+  sync::MappedLog file(path);
   sync::LogScanner scanner(file.bytes());
   std::vector<std::pair<std::string, std::vector<std::uint8_t>>> out;
   for (sync::LogEvent e; scanner.next(e);)

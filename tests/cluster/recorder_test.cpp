@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "sync/log_header.h"
+#include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 #include "sync/pacing.h"
 #include "tests/cluster/run_log.h"
 #include "tests/cluster/running.h"
@@ -37,7 +39,7 @@ struct Sender {
 };
 
 std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
-  sync::MappedFile file(log);
+  sync::MappedLog file(log);
   sync::LogScanner scanner(file.bytes());
   std::vector<std::int64_t> numbers;
   for (sync::LogEvent e; scanner.next(e);)

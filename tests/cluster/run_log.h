@@ -8,6 +8,7 @@
 
 #include "sync/decode.h"
 #include "sync/log_reader.h"
+#include "sync/mapped_log.h"
 
 namespace tactus::cluster {
 
@@ -39,7 +40,7 @@ class RunLog {
   }
 
  private:
-  sync::MappedFile file_;
+  sync::MappedLog file_;
 };
 
 // The value that a share q of x is not above; 0: there is none.

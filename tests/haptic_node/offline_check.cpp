@@ -5,6 +5,7 @@
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/session.h"
 #include "sync/export_csv.h"
+#include "sync/log_reader.h"
 #include "tests/audio_node/recorded_run.h"
 #include "tests/haptic_node/world.h"
 #include "tests/rendered_log.h"
@@ -189,6 +190,27 @@ TEST_CASE("A log that lost its first event, LOG_INFO, is felt again, too, and sa
     for (std::size_t cell = 11; cell < 14; ++cell)
       REQUIRE(std::stod(rows[i].at(cell)) == Approx(std::stod(same.at(cell))).margin(1e-3));
   }
+}
+
+TEST_CASE("A recording in parts is felt again from its folder as if it were one file") {
+  const RenderedLog of("haptic_node");
+  const std::string felt = live(of.file("whole.lcmlog"));
+  const std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
+  std::vector<std::size_t> begins;
+  sync::LogScanner scanner({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  std::size_t head = 0;
+  for (sync::LogEvent e; begins.push_back(scanner.at()), scanner.next(e);)
+    if (head == 0 && e.channel == channels::kTouchModel) head = begins.back();
+  REQUIRE(head > 0);
+  std::filesystem::create_directory(of.file("parts"));
+  const std::size_t third = begins[begins.size() / 3], half = begins[begins.size() / 2];
+  of.write("parts/run.lcmlog", bytes.substr(0, third));
+  of.write("parts/run.2.lcmlog", bytes.substr(0, head) + bytes.substr(third, half - third));
+  of.write("parts/run.10.lcmlog", bytes.substr(0, head) + bytes.substr(half));
+  CHECK((of.trace({}, "parts") == felt));
+  const Rendered over = of.render({"--log", of.file("parts"), "--trace", of.file("parts/run.2.lcmlog")});
+  CHECK(over.status == 1);
+  CHECK_THAT(over.said, Catch::Contains("is the log itself"));
 }
 
 TEST_CASE(

@@ -97,9 +97,9 @@ class Words(unittest.TestCase):
             self.parse(*words)
         return str(refused.exception)
 
-    def test_a_folder_stands_for_the_log_in_it(self):
+    def test_a_folder_stands_for_all_parts_of_the_recording_in_it(self):
         plan, stay, _ = replay.parse([".", "--stay"], self.folder)
-        self.assertEqual(pathlib.Path(plan.replay[0]), self.folder / "." / "run.lcmlog")
+        self.assertEqual(pathlib.Path(plan.replay[0]), self.folder)
         self.assertTrue(stay)
 
     def test_each_sense_is_live_unless_it_is_left_out(self):

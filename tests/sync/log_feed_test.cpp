@@ -53,7 +53,7 @@ std::string log_in(const Folder& folder) {
 std::string misdated_log_in(const Folder& folder, const std::function<std::int64_t(int)>& later_us) {
   const std::string path = log_in(folder);
   std::vector<LogEvent> events;
-  const MappedFile file(path);
+  const MappedLog file(path);
   LogScanner scanner(file.bytes());
   for (LogEvent event; scanner.next(event);) events.push_back(event);
   LogWriter writer(std::make_unique<FileSink>(folder.path + "/misdated.lcmlog"));

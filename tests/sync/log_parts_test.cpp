@@ -27,12 +27,12 @@ struct TemporaryFolder {
 
 }  // namespace
 
-TEST_CASE("Parts of a log are numbered on, and overwrite nothing") {
+TEST_CASE("Parts of a log are numbered on behind those that are there, and overwrite nothing") {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "run.2.lcmlog") << "x";
   LogParts parts(folder.path, {});
   for (int i = 0; i < 3; ++i) parts.open();
-  CHECK(folder.files() == std::set<std::string>{"run.lcmlog", "run.2.lcmlog", "run.3.lcmlog", "run.4.lcmlog"});
+  CHECK(folder.files() == std::set<std::string>{"run.2.lcmlog", "run.3.lcmlog", "run.4.lcmlog", "run.5.lcmlog"});
   CHECK(std::filesystem::file_size(folder.path / "run.2.lcmlog") == 1);
 }
 
@@ -64,4 +64,17 @@ TEST_CASE("Parts together never exceed the largest size, and the one that is wri
   }
   parts.prune(5000);
   CHECK(folder.files() == std::set<std::string>{"run.10.lcmlog"});
+}
+
+TEST_CASE("The parts in a folder are those that a recorder names so, in the order of their numbers") {
+  const TemporaryFolder folder;
+  for (const char* name : {"run.10.lcmlog", "run.9.lcmlog", "run.lcmlog", "run.2.lcmlog", "run.1.lcmlog",
+                           "run.02.lcmlog", "run.2.lcmlog.part", "run.x.lcmlog", "run.-3.lcmlog",
+                           "run.99999999999.lcmlog", "other.lcmlog", "run.3.lcmlogs"})
+    std::ofstream(folder.path / name) << "x";
+  std::vector<std::string> names;
+  for (const std::string& path : log_parts_in(folder.path))
+    names.push_back(std::filesystem::path(path).filename());
+  CHECK(names == std::vector<std::string>{"run.lcmlog", "run.2.lcmlog", "run.9.lcmlog", "run.10.lcmlog"});
+  CHECK(log_parts_in(folder.path / "none").empty());
 }

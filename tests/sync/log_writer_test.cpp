@@ -61,8 +61,7 @@ TEST_CASE("What a full disk refuses waits up to a bound, beyond which it is coun
 
 TEST_CASE("The stock reader reads what the writer wrote") {
   TemporaryFolder folder;
-  const std::string path = new_log_path(folder.path.string());
-  CHECK(std::filesystem::path(path).filename() == "run.lcmlog");
+  const std::string path = folder.path / "run.lcmlog";
   {
     LogWriter writer(std::make_unique<FileSink>(path));
     for (int i = 0; i < 1000; ++i) {
@@ -84,11 +83,8 @@ TEST_CASE("The stock reader reads what the writer wrote") {
   CHECK(log.readNextEvent() == nullptr);
 }
 
-TEST_CASE("A restarted recorder overwrites nothing") {
+TEST_CASE("A file that is there is not overwritten") {
   TemporaryFolder folder;
   std::ofstream(folder.path / "run.lcmlog") << "x";
-  CHECK(std::filesystem::path(new_log_path(folder.path.string())).filename() == "run.2.lcmlog");
-  std::ofstream(folder.path / "run.2.lcmlog") << "x";
-  CHECK(std::filesystem::path(new_log_path(folder.path.string())).filename() == "run.3.lcmlog");
   CHECK_THROWS_WITH(FileSink((folder.path / "run.lcmlog").string()), Catch::Contains("run.lcmlog"));
 }

@@ -1,0 +1,82 @@
+// A run that is recorded in parts.
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/channels.h"
+#include "sync/log_parts.h"
+#include "tests/cluster/run_log.h"
+#include "tests/cluster/run_script.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+using nlohmann::json;
+
+namespace {
+
+std::size_t lines_of(const std::filesystem::path& path) {
+  const std::string text = contents(path);
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST_CASE("A run that is recorded in parts has the results of all of them, and is rendered again from its folder or from one") {
+  RunScript run;
+  run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "2", "--out", run.out()});
+  const int status = run.finish(150);
+  INFO(run.processes.said("run"));
+  REQUIRE(status == 0);
+  const std::vector<std::string> parts = sync::log_parts_in(run.out());
+  REQUIRE(parts.size() >= 3);
+
+  // The results of the run are of all parts: every tick of the hand is there, once.
+  std::set<std::int64_t> ticks;
+  std::size_t heard = 0;
+  for (const std::string& part : parts) {
+    const sync::MappedLog log(part);
+    sync::LogScanner scanner(log.bytes());
+    bool first = true;
+    for (sync::LogEvent e; scanner.next(e); first = false) {
+      if (first) CHECK(e.channel == channels::kLogInfo);
+      if (e.channel != channels::kToolState) continue;
+      const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
+      REQUIRE(m);
+      ticks.insert(m->header.seq);
+      ++heard;
+    }
+    CHECK(scanner.damaged_regions() == 0);
+  }
+  CHECK(ticks.size() == heard);
+  CHECK(static_cast<std::size_t>(*ticks.rbegin() - *ticks.begin()) + 1 == heard);
+  CHECK(lines_of(run.out() / "haptic.csv") == heard + 1);
+
+  const auto felt = [&](const std::filesystem::path& log, const std::string& name) {
+    const auto trace = run.folder.path() / name;
+    run.output_of({(programs() / "haptic_node").string(), "--log", log, "--trace", trace});
+    return lines_of(trace) - 1;
+  };
+  CHECK(felt(run.out(), "all.csv") >= heard - 50);  // those before the world has begun are not felt
+  const std::size_t second = felt(parts[1], "second.csv");
+  CHECK(second > 100);
+  CHECK(second < heard / 2);
+
+  // Played as one, from an instant in the last part.
+  const json says = json::parse(run.output_of({(programs() / "replay").string(), run.out(), "--describe"}), nullptr, false);
+  REQUIRE_FALSE(says.is_discarded());
+  CHECK(says["length_s"] > 5);
+}
+
+TEST_CASE("Of a run that keeps its newest parts the results are of those, and the others are gone") {
+  RunScript run;
+  run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "1", "--keep", "2", "--tags", "none",
+             "--out", run.out()});
+  const int status = run.finish(150);
+  INFO(run.processes.said("run"));
+  CHECK(status == 0);
+  const std::vector<std::string> parts = sync::log_parts_in(run.out());
+  CHECK(parts.size() == 2);
+  CHECK_FALSE(std::filesystem::exists(run.out() / "run.lcmlog"));
+  const std::size_t ticks = lines_of(run.out() / "haptic.csv");
+  CHECK(ticks > 100);
+  CHECK(ticks < 5000);
+  CHECK_FALSE(json::parse(contents(run.out() / "summary.json"), nullptr, false).is_discarded());
+}
