@@ -102,8 +102,9 @@ bool sane(const playout_entry_t& e) {
          between(e.soa_ns, -kMaxDelay_ns, kMaxDelay_ns) && between(e.needs_ns, -1, kMaxDelay_ns);
 }
 bool sane(const map_def_t& d) {
-  return !d.tag.empty() && d.tag.size() <= 128 && printable(d.tag) && !d.setting.empty() && d.setting.size() <= 128 &&
-         printable(d.setting) && sane(d.gain) && sane(d.offset) && sane(d.low) && sane(d.high) && d.low <= d.high;
+  return !d.tag.empty() && d.tag.size() <= 128 && printable(d.tag) && !d.setting.empty() &&
+         d.setting.size() <= 128 && printable(d.setting) && sane(d.gain) && sane(d.offset) && sane(d.low) &&
+         sane(d.high) && d.low <= d.high;
 }
 bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
@@ -255,7 +256,7 @@ bool valid(const degradation_t& m) {
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
   // A turn takes a minute at the most.
-  return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || between(m.lockstep_Hz, 1.0 / 60, 1e4));
+  return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || (m.lockstep_Hz >= 1.0 / 60 && m.lockstep_Hz <= 1e4));
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
 bool valid(const setting_change_t& m) {
@@ -266,7 +267,8 @@ bool valid(const setting_reply_t& m) {
 }
 bool valid(const tag_list_t& m) {
   const auto tag = [](const tag_def_t& t) {
-    return name(t.name) && t.name.size() <= 48 && name(t.unit) && t.unit.size() <= 16 && sane_not_negative(t.rate_Hz);
+    return name(t.name) && t.name.size() <= 48 && name(t.unit) && t.unit.size() <= 16 &&
+           sane_not_negative(t.rate_Hz);
   };
   return sane(m.header) && name(m.node) && m.list > 0 && between(m.total, 0, 1024) && m.first >= 0 &&
          m.tag_count >= 0 && m.first + m.tag_count <= m.total && std::all_of(m.tags.begin(), m.tags.end(), tag);
@@ -302,7 +304,9 @@ bool valid(const game_state_t& m) {
   return sane(m.header) && sane(m.clock) && between(m.won, 0, 1) && between(m.won_ns, -1, kMaxTime_ns) &&
          between(m.count, 0, 16) && all_sane(m.holes);
 }
-bool valid(const log_info_t& m) { return sane(m.header) && sane_not_negative(m.seconds) && m.live_from_ns >= 0; }
+bool valid(const log_info_t& m) {
+  return sane(m.header) && sane_not_negative(m.seconds) && between(m.live_from_ns, 0, kMaxTime_ns);
+}
 bool valid(const media_clock_t& m) {
   return sane(m.header) && !m.medium.empty() && m.index >= 0 && m.host_time_ns >= 0 &&
          between(m.reason, media_clock_t::START, media_clock_t::UNDERFLOW);

@@ -12,6 +12,8 @@
 namespace tactus::sync {
 namespace {
 
+constexpr std::int64_t kMostStamp_ns = 4'000'000'000'000'000'000;  // the difference of two still is a number
+
 std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < 8 && i < data.size(); ++i) value = value << 8 | data[i];
@@ -21,12 +23,16 @@ std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
 }  // namespace
 
 std::int64_t bounded_us(std::int64_t timestamp_us) {
-  constexpr std::int64_t kMost_us = 4'000'000'000'000'000;
-  return std::clamp(timestamp_us, -kMost_us, kMost_us);
+  return std::clamp(timestamp_us, -kMostStamp_ns / 1000, kMostStamp_ns / 1000);
+}
+
+HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_ns) {
+  const std::int64_t offset_ns = std::clamp(realtime_offset_ns, -kMostStamp_ns, kMostStamp_ns);
+  return host_time(std::clamp(bounded_us(timestamp_us) * 1000 - offset_ns, -kMostStamp_ns, kMostStamp_ns));
 }
 
 HostTime LogOrigin::time(std::int64_t timestamp_us) const {
-  return host_time(bounded_us(timestamp_us) * 1000 - info.realtime_offset_ns);
+  return time_of_stamp(timestamp_us, info.realtime_offset_ns);
 }
 
 void OriginFinder::observe(const LogEvent& event) {

@@ -28,6 +28,8 @@ struct LogOrigin {
 
 // A stamp that any arithmetic in ns can bear: within some 127 years of 1970.
 std::int64_t bounded_us(std::int64_t timestamp_us);
+// What a stamp is by the recorder's CLOCK_MONOTONIC (lcmtypes/log_info_t.lcm); within the same bounds.
+HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_ns);
 
 // By the beginning of a log, without reading all of it.
 LogOrigin origin_of(std::span<const std::uint8_t> log);

@@ -5,6 +5,7 @@
 
 #include "sync/decode.h"
 #include "sync/log_header.h"
+#include "sync/log_origin.h"
 
 namespace tactus::sync {
 
@@ -74,9 +75,9 @@ void RunSummary::add(const LogEvent& e) {
   const auto header = peek_header(e.data.data(), e.data.size());
   if (!time_known_ && header) {  // a log of the stock lcm-logger: what came first came at once
     time_known_ = true;
-    realtime_offset_ns_ = e.timestamp_us * 1000 - header->publish_time_ns;
+    realtime_offset_ns_ = bounded_us(e.timestamp_us) * 1000 - header->publish_time_ns;
   }
-  const HostTime now = clock_.observe(host_time(e.timestamp_us * 1000 - realtime_offset_ns_));
+  const HostTime now = clock_.observe(time_of_stamp(e.timestamp_us, realtime_offset_ns_));
   // What the recorder put at the head did not cross the bus. The log counts in microseconds.
   if (to_ns(now) / 1000 < live_from_ns_ / 1000) return;
   observe_silence(now);
@@ -105,7 +106,8 @@ void RunSummary::add(const LogEvent& e) {
     match(m);
     if (!info_ || m.header.run_id == info_->header.run_id) observe(m, now);
   });
-  feed.template operator()<clock_map_t>(channels::kClockMap, [&](const clock_map_t& m) { maps_->observe(m, now); });
+  feed.template operator()<clock_map_t>(channels::kClockMap,
+                                        [&](const clock_map_t& m) { maps_->observe(m, now); });
   feed.template operator()<contact_events_t>(channels::kContactEvents, match);
   feed.template operator()<presented_t>(channels::kPresented, match);
   feed.template operator()<playout_t>(channels::kPlayout, match);

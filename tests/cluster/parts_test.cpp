@@ -19,9 +19,12 @@ std::size_t lines_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("A run that is recorded in parts has the results of all of them, and is rendered again from its folder or from one") {
+TEST_CASE(
+    "A run that is recorded in parts has the results of all of them, and is rendered again from its folder or "
+    "from one") {
   RunScript run;
-  run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "2", "--out", run.out()});
+  run.start(
+      {tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "2", "--out", run.out()});
   const int status = run.finish(150);
   INFO(run.processes.said("run"));
   REQUIRE(status == 0);
@@ -60,15 +63,16 @@ TEST_CASE("A run that is recorded in parts has the results of all of them, and i
   CHECK(second < heard / 2);
 
   // Played as one, from an instant in the last part.
-  const json says = json::parse(run.output_of({(programs() / "replay").string(), run.out(), "--describe"}), nullptr, false);
+  const json says =
+      json::parse(run.output_of({(programs() / "replay").string(), run.out(), "--describe"}), nullptr, false);
   REQUIRE_FALSE(says.is_discarded());
   CHECK(says["length_s"] > 5);
 }
 
 TEST_CASE("Of a run that keeps its newest parts the results are of those, and the others are gone") {
   RunScript run;
-  run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "1", "--keep", "2", "--tags", "none",
-             "--out", run.out()});
+  run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "1", "--keep", "2",
+             "--tags", "none", "--out", run.out()});
   const int status = run.finish(150);
   INFO(run.processes.said("run"));
   CHECK(status == 0);

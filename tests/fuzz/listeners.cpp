@@ -1,0 +1,90 @@
+// Any bytes, read as a log whose messages everybody hears who listens to a whole bus: the summary, the tables, the
+// spy, the live page, and what puts pages and pieces together again.
+#include <cstdlib>
+
+#include "scripts/live/station.h"
+#include "sync/channel_table.h"
+#include "sync/contact_stream.h"
+#include "sync/export_events.h"
+#include "sync/log_origin.h"
+#include "sync/picture_reader.h"
+#include "sync/scene_exchange.h"
+#include "sync/spy/channels.h"
+#include "sync/spy/screen.h"
+#include "sync/summary.h"
+#include "sync/watch_table.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr std::int64_t kRun = 7;
+
+// Of those that the reader is for.
+template <class Message, class Use>
+void as(const LogEvent& e, const char* channel, Use&& use) {
+  if (e.channel != channel) return;
+  if (const auto m = decode<Message>(e.data.data(), e.data.size())) use(*m);
+}
+
+struct Listeners {
+  LogOrigin origin;
+  RunSummary summary{SummaryOptions{}};
+  TableContext tables{origin};
+  TagTable tags;
+  spy::Channels channels{{kRun, 4711, nullptr}};
+  spy::Screen screen;
+  live::Station station{false, kRun, "log"};
+  ContactStream contacts{{kRun, 4711, nullptr}};
+  PictureReader pictures;
+  Bus bus{Identity{"fuzz", 1, 1, kRun, 4711}, BusOptions{.memory = true}};
+  SceneReceiver scene{bus};
+  std::size_t written = 0;
+
+  void hear(const LogEvent& e, HostTime now) {
+    summary.add(e);
+    tables.learn(e);
+    if (const MessageType* type = type_on(std::string(e.channel))) {
+      written += long_rows(tables, *type, e, now).size();
+      written += WideColumns(*type).row(tables, e, now).size();
+    }
+    written += tag_rows(tags, tables, e, now).size();
+    MessageBatch batch;
+    if (batch.add(now, {e.channel, e.data}, std::size_t{1} << 24)) channels.push(batch[0]);
+    station.take(e.channel, e.data, now);
+    as<tag_list_t>(e, channels::kTagList, [&](const auto& m) { screen.push(m); });
+    as<tag_values_t>(e, channels::kTagValues, [&](const auto& m) { screen.push(m, now); });
+    as<contact_events_t>(e, channels::kContactEvents, [&](const auto& m) { contacts.push(m, now); });
+    as<contact_frame_t>(e, channels::kContacts, [&](const auto& m) { contacts.push(m, now); });
+    as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.take(m); });
+    bus.hear(e.channel, e.data, now);
+    scene.poll(now);
+    if (const auto map = contacts.map(now)) {
+      contacts.take_events(map->to_sim(now));
+      contacts.state_at(map->to_sim(now));
+      contacts.integral(map->to_sim(now - Nanoseconds(10'000'000)), map->to_sim(now), 0);
+    }
+  }
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto all = std::make_unique<Listeners>();
+  all->station.open(1);
+  all->station.watch(1, {"TOOL_STATE:force_N.z", "sim_node.work.solve"});
+  LogScanner scanner({data, size});
+  HostTime now = host_time(1'000'000'000);
+  for (LogEvent e; scanner.next(e);) all->hear(e, now += Nanoseconds(1'000'000));
+  all->summary.end_of_log(scanner.damaged_regions());
+  if (to_json(all->summary).empty() || to_text(all->summary).empty()) std::abort();
+  all->screen.look(all->channels, now);
+  for (const spy::Key key : {spy::Key::kNone, spy::Key::kEnter, spy::Key::kDown, spy::Key::kTags}) {
+    all->screen.press(key);
+    if (all->screen.draw(all->channels, now, 80, 24).size() > 24) std::abort();
+  }
+  all->station.frames(now, nlohmann::json::object());
+  if (all->station.hello(now).empty()) std::abort();
+  return 0;
+}

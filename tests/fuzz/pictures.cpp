@@ -1,0 +1,26 @@
+// Any bytes, read as a picture of a surface and as a map of heights: refused, or as many pixels as it says.
+#include <cstdlib>
+#include <stdexcept>
+
+#include "lcmtypes/height_map.h"
+#include "visual_node/scene_view/raster.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto raster = tactus::visual::read_raster({data, size});
+    if (raster.width < 1 || raster.height < 1 ||
+        raster.rgba.size() != 4u * static_cast<unsigned>(raster.width * raster.height))
+      std::abort();
+  } catch (const std::runtime_error&) {
+  }
+  try {
+    const auto map = tactus::read_height_map({data, size});
+    if (map.columns < 1 || map.rows < 1 ||
+        map.levels.size() != static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows))
+      std::abort();
+    for (const std::uint16_t level : map.levels)
+      if (level > map.white) std::abort();
+  } catch (const std::runtime_error&) {
+  }
+  return 0;
+}

@@ -1,0 +1,19 @@
+// Any bytes, read as measured ears (SOFA, which is HDF5): refused with a sentence, or ears whose figures are
+// finite. What libmysofa itself makes of them is its own affair: its code is not instrumented.
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "audio_node/spatial/sofa.h"
+#include "tests/fuzz/file_of.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const tactus::fuzz::FileOf file("ears.sofa");
+  file.write(data, size);
+  try {
+    tactus::audio::load_sofa(file.path());
+  } catch (const std::runtime_error& e) {
+    if (*e.what() == 0) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,62 @@
+// Any text, read as each of the small texts that people write: tables of materials, modes, loudspeakers, walls and
+// motions, string frames, devices, plots, overlays and quantities. Each is refused with a sentence or read.
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+#include "audio_node/spatial/layout.h"
+#include "haptic_node/devices/make_device.h"
+#include "haptic_node/devices/motion_file.h"
+#include "haptic_node/devices/spidar/frame_file.h"
+#include "lcmtypes/tool_device.h"
+#include "sim_node/scene/materials.h"
+#include "sim_node/scene/measured_modes.h"
+#include "sync/csv.h"
+#include "sync/playout/policy.h"
+#include "sync/settings.h"
+#include "visual_node/lens/wall.h"
+#include "visual_node/overlay/kinds.h"
+#include "visual_node/overlay/plot_spec.h"
+
+namespace {
+
+// A complaint is a std::exception with a sentence; anything else ends this.
+template <class Read>
+void try_to(Read&& read) {
+  try {
+    read();
+  } catch (const std::runtime_error& e) {
+    if (*e.what() == 0) std::abort();
+  } catch (const std::invalid_argument& e) {
+    if (*e.what() == 0) std::abort();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tactus;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try_to([&] { sim::parse_materials(text); });
+  try_to([&] { sim::parse_measured_modes(text); });
+  try_to([&] { audio::parse_layout(text, "fuzz.csv"); });
+  try_to([&] { visual::parse_room(text, "fuzz.csv"); });
+  try_to([&] { haptic::parse_frame(text, "fuzz.json"); });
+  try_to([&] {
+    std::istringstream in(text);
+    haptic::read_motion(in, "fuzz.csv");
+  });
+  try_to([&] { parse_tool_device(text); });
+  try_to([&] { visual::parse_overlays(text); });
+  try_to([&] { visual::parse_plot(text); });
+  std::vector<std::string> trouble;
+  visual::parse_plots(text, trouble);
+  try_to([&] {
+    if (!std::isfinite(sync::parse_quantity(text, "s"))) std::abort();
+  });
+  try_to([&] { sync::parse_duration(text); });
+  sync::csv_cells(text);
+  if (const auto number = sync::csv_number(text); number && !std::isfinite(*number)) std::abort();
+  return 0;
+}
