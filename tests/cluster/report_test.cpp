@@ -53,6 +53,7 @@ TEST_CASE(
     CHECK(made["logs"][i]["contacts"] == own["contacts"]);
     for (const auto& [pair, figures] : own["asynchrony_ms"].items()) {
       INFO(pair);
+      if (figures["n"] == 0) continue;
       REQUIRE(made["logs"][i]["asynchrony_ms"].contains(pair));
       CHECK(made["logs"][i]["asynchrony_ms"][pair]["n"] == figures["n"]);
       CHECK(std::abs(made["logs"][i]["asynchrony_ms"][pair]["p50"].get<double>() - figures["p50"].get<double>()) <
