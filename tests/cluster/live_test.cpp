@@ -222,7 +222,7 @@ std::map<std::string, double> rates(const RunLog& log, const Span& span) {
 }
 
 void check_nobody_notices(const RunLog& log, const Marks& marks) {
-  const auto before = rates(log, marks.between("clear", "freeze"));
+  const auto before = rates(log, marks.between("filled", "degrade"));
   for (const auto& [from, to] : {std::pair{"freeze", "frozen"}, std::pair{"killed", "over"}}) {
     auto during = rates(log, marks.between(from, to));
     for (const char* node :

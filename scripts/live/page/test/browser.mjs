@@ -48,8 +48,8 @@ export class Browser {
   }
   click(selector) { return this.page.$eval(selector, (e) => e.click()); }
   async add(name) {
-    await this.page.$eval("#choose", (e) => { e.value = ""; });
-    await this.page.type("#choose", name);
+    await this.page.focus("#choose");
+    await this.page.keyboard.sendCharacter(name);
     await this.page.keyboard.press("Enter");
   }
   // The senses in the order of their lanes.

@@ -40,7 +40,7 @@ try {
   await it.slide("#seek", Math.round(30 * length_s) / 100);
   await until("marks of events are there again", async () => (await it.marks()).world > 0 || it.marks());
 
-  await it.page.select("#speed", "8");
+  await it.page.select("#speed", "16");
   await it.click("#play");
   await until("it comes to its end", async () => { const [at, all] = await place(); return all - at < 0.2 || [at, all]; });
   fs.writeFileSync(seenFile, JSON.stringify(seen));

@@ -120,12 +120,12 @@ try {
   const before_MB = server_MB();
   mark("freeze");
   it.signal("SIGSTOP");
-  await wait(4000);
+  await wait(3000);
   mark("frozen");
   const frozen_MB = server_MB();
   it.signal("SIGKILL");
   mark("killed");
-  await wait(4000);
+  await wait(3000);
   const after_MB = server_MB();
   mark("over");
   // Queues are bounded by 4 MiB a page and what the kernel takes; anything that grew with time would be far beyond.
