@@ -189,7 +189,7 @@ void show_cluster(const Options& o) {
   }
   bool streaming = false, looked_on = false;
   sync::HostTime opened{}, next_scene{};
-  std::int64_t told = 0;  // generation of the profile that `degradation` shows
+  std::int64_t told = -1;  // generation of the profile that `degradation` shows
   nlohmann::json degradation = live::told_of("");
   while (!stop) {
     server.turn([&](const live::BrowserMessage& m) {
@@ -229,9 +229,10 @@ void show_cluster(const Options& o) {
     const auto world = controls.world(now);
     nlohmann::json extra{{"world", {{"known", world.known}, {"sim_s", world.sim_s}, {"rate", world.rate}}},
                          {"profile", std::to_string(controls.profile() ? controls.profile()->hash : 0)}};
-    if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : 0; generation != told) {
+    if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : -1; generation != told) {
       told = generation;
       degradation = live::told_of(controls.profile()->text);
+      next_scene = now;  // at once
     }
     // Again once a second, for who has just come.
     if (controls.scene() != nullptr && now >= next_scene) {

@@ -136,10 +136,14 @@ void check_profiles(const RunLog& log, const Marks& marks) {
   };
   const degradation_t worse = newest_in({marks.at("cleared") - 60'000 * kMs, marks.at("clear")});
   INFO(worse.text);
-  REQUIRE(worse.pages == 1);
+  REQUIRE(worse.pages == 1);  // shorter than a datagram
   std::map<std::string, sync::Rule> rules;
   for (const sync::Rule& r : sync::parse_profile(worse.text, "of the sliders").rules) rules[r.modality] = r;
-  CHECK(rules.size() == 3);
+  CHECK(rules.size() == 4);
+  // What was in force before stays, also what no slider shows.
+  REQUIRE(rules["thermal"].delay);
+  CHECK(rules["thermal"].delay->delay_s == Approx(0.03));
+  CHECK(rules["thermal"].jitter);
   REQUIRE(rules["audio"].delay);
   CHECK(rules["audio"].delay->delay_s == Approx(0.08));
   REQUIRE(rules["visual"].rate);
@@ -257,7 +261,11 @@ TEST_CASE(
     "log is shown again") {
   require_what_the_browser_needs();
   RunScript run;
-  run.start({tapping_scene(), "--live", "--device", "external:live", "--seconds", "90", "--out", run.out()});
+  const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";
+  std::ofstream(profile)
+      << R"(<profile name="late warmth"><degrade modality="thermal" delay="30ms" jitter="5ms normal"/></profile>)";
+  run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "90",
+             "--out", run.out()});
   const std::string address = address_of(run.processes, "run");
   INFO(run.processes.said("run"));
   REQUIRE_FALSE(address.empty());

@@ -78,12 +78,15 @@ try {
     await until(`the graph of ${name} fills`, async () => (await it.drawn(name)) > 20 || it.drawn(name));
   if (screenshot) await it.page.screenshot({ path: screenshot });
 
-  // A sense worse and better.
+  // A sense worse and better. The sliders begin where the profile is that the run was started with.
+  await until("the slider of warmth stands where the profile in force has it", async () =>
+    (await it.page.$eval("#thermal-delay", (e) => e.value)) === "30" && /late warmth/.test(await it.text("#inforce")) || it.text("#inforce"));
   await it.slide("#audio-delay", 80);
   await it.slide("#visual-rate", 3); // the fourth of its places: 10 Hz
   await it.slide("#haptic-loss", 50);
   mark("degrade");
-  await until("all senses have taken the profile", async () => (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
+  await until("all senses have taken the profile", async () =>
+    /changed in the live page/.test(await it.text("#inforce")) && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
   mark("degraded");
   await it.click("#clear");
   mark("clear");
