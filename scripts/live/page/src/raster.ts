@@ -3,13 +3,15 @@ import { Event, Presentation, colourOf, element, make } from "./messages";
 
 const SPAN_S = 10;
 const MOST = 6000;
+// Of presentation_t.outcome; 0 and 1: presented.
+const DROPPED_LATE = 2, DROPPED_BY_PROFILE = 3, INAUDIBLE = 4;
 
 export class Raster {
   private events: Event[] = [];
   private presented: Presentation[] = [];
   constructor() {
     const legend = element("rasterlegend");
-    legend.append(make("span", "quiet", "world: │ begin  ◆ hit  · end    senses: │ presented  × dropped"));
+    legend.append(make("span", "quiet", "world: │ begin  ◆ hit  · end    senses: │ presented  ○ inaudible  × dropped"));
   }
   clear(): void { this.events = []; this.presented = []; }
   take(events: Event[] = [], presented: Presentation[] = []): void {
@@ -50,9 +52,9 @@ export class Raster {
       const i = lanes.indexOf(modality);
       if (i < 0 || t < now - SPAN_S || t > now) continue;
       const y = (i + 0.5) * lane, at = x(t);
-      g.fillStyle = outcome <= 1 ? colourOf(modality) : "#f08a7c";
+      g.fillStyle = outcome === DROPPED_LATE || outcome === DROPPED_BY_PROFILE ? "#f08a7c" : colourOf(modality);
       if (outcome <= 1) g.fillRect(at, y - (part === 1 ? 0.2 : 0.35) * lane, 1.5 * scale, (part === 1 ? 0.4 : 0.7) * lane);
-      else g.fillText("×", at - 4 * scale, y);
+      else g.fillText(outcome === INAUDIBLE ? "○" : "×", at - 4 * scale, y);
     }
   }
 }

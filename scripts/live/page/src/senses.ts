@@ -50,8 +50,14 @@ export class Senses {
   private pair(p: Pair): HTMLElement {
     const div = make("div", "pair");
     div.append(make("span", "", `${p.a} → ${p.b}`), document.createElement("canvas"), make("span", "value", `${p.p50_ms.toFixed(1)} ms`));
-    div.title = `${p.n} events: 5 % ${p.p05_ms.toFixed(1)} ms, 50 % ${p.p50_ms.toFixed(1)} ms, 95 % ${p.p95_ms.toFixed(1)} ms; ${p.beyond_least < 0 ? "no threshold is published" : p.beyond_least + " beyond the least threshold"}`;
+    div.title = `${p.n} events: 5 % ${p.p05_ms.toFixed(1)} ms, 50 % ${p.p50_ms.toFixed(1)} ms, 95 % ${p.p95_ms.toFixed(1)} ms; ${p.beyond_least < 0 ? "no threshold is published" : p.beyond_least + " beyond the least threshold"}${this.sources(p)}`;
     return div;
+  }
+  // What is published of a pair, in both directions: the studies disagree, so none of them is the truth.
+  private sources(p: Pair): string {
+    const of = (earlier: string, later: string) => this.thresholds.filter((t) => t.earlier === earlier && t.later === later)
+      .map((t) => `\n${later} after ${earlier}, ${t.ms} ms: ${t.what} (${t.source})`);
+    return [...of(p.a, p.b), ...of(p.b, p.a)].join("");
   }
   private range(earlier: string, later: string): [number, number] | undefined {
     const of = this.thresholds.filter((t) => t.earlier === earlier && t.later === later).map((t) => t.ms);

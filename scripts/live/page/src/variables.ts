@@ -81,7 +81,7 @@ export class Variables {
       card.plot = new uPlot({
         width: Math.max(200, card.box.clientWidth - 18), height: 96, cursor: { show: false }, legend: { show: false },
         scales: { x: { time: false } },
-        axes: [{ ...quiet, size: 22, values: (_u: uPlot, ticks: number[]) => ticks.map((t) => `${t.toFixed(0)} s`) }, { ...quiet, size: 62, space: 24, values: (_u: uPlot, ticks: number[]) => ticks.map((v) => Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(6))) }],
+        axes: [{ ...quiet, size: 22, splits: () => [-20, -15, -10, -5, 0], values: (_u: uPlot, ticks: number[]) => ticks.map((t) => `${t.toFixed(0)} s`) }, { ...quiet, size: 62, space: 24, values: (_u: uPlot, ticks: number[]) => ticks.map((v) => Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(6))) }],
         series: [{}, ...card.series.map((_, k) => ({ stroke: COLOURS[k % COLOURS.length]!, width: 1.5, spanGaps: true, points: { show: false } }))],
       }, [[], ...card.series.map(() => [])], card.body);
     } else if (card.kind === "bar") {
