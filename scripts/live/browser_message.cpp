@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <tactus/sim_command_t.hpp>
 
@@ -71,6 +70,7 @@ DegradeThus degrade(const json& j) {
   if (senses == j.end() || !senses->is_object() || senses->size() > kMostSenses)
     throw std::invalid_argument("the page sent no sliders, or too many; load it again");
   DegradeThus d;
+  d.clear = flag(j, "clear");
   for (const auto& [name, s] : senses->items()) {
     if (name.empty() || name.size() > 64 || !is_sense(name) || !s.is_object())
       throw std::invalid_argument("the page sent sliders of what is no sense; load it again");
@@ -95,21 +95,6 @@ BrowserMessage parse_browser_message(std::string_view bytes) {
   if (kind == "play") return LogPlay{flag(j, "play"), number(j, "rate", 0.1, 16)};
   if (kind == "seek") return LogSeek{number(j, "to_s", 0, 1e7)};
   throw std::invalid_argument("the page asks for what this server does not know; load it again");
-}
-
-std::string profile_of(const std::map<std::string, Sliders>& senses) {
-  std::ostringstream xml;
-  xml << "<profile name=\"live page\">";
-  for (const auto& [name, s] : senses) {
-    if (!(s.delay_ms > 0 || s.rate_Hz > 0 || s.loss > 0)) continue;
-    xml << "<degrade modality=\"" << name << '"';
-    if (s.delay_ms > 0) xml << " delay=\"" << s.delay_ms << "ms\"";
-    if (s.rate_Hz > 0) xml << " rate=\"" << s.rate_Hz << "Hz\"";
-    if (s.loss > 0) xml << " loss=\"" << s.loss * 100 << "%\"";
-    xml << "/>";
-  }
-  xml << "</profile>";
-  return xml.str();
 }
 
 }  // namespace tactus::live

@@ -27,6 +27,7 @@ struct Command {
 };
 struct DegradeThus {
   std::map<std::string, Sliders> senses;
+  bool clear = false;  // all else of the profile in force goes, too
 };
 struct HandAt {
   double x = 0, y = 0;  // place in the picture, -1 .. 1 from left to right and from below to above
@@ -47,8 +48,5 @@ inline constexpr std::size_t kMostBrowserBytes = 8192;
 
 // Throws std::invalid_argument with one sentence.
 BrowserMessage parse_browser_message(std::string_view text);
-
-// The profile that the sliders ask for, as XML; it degrades nothing when they all stand at 0.
-std::string profile_of(const std::map<std::string, Sliders>& senses);
 
 }  // namespace tactus::live

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/vectors.h"
+#include "scripts/live/sliders.h"
 #include "sync/asking.h"
 #include "sync/identity.h"
 #include "sync/printable.h"
@@ -33,6 +34,7 @@ Controls::Controls(sync::Bus& bus, Tell tell)
       setting_replies_(bus.queue<setting_reply_t>(channels::kSettingReply, 64)),
       frames_(bus.queue<contact_frame_t>(channels::kContacts, 1024)),
       tools_(bus.queue<tool_state_t>(channels::kToolState, 256)),
+      degradations_(bus.queue<degradation_t>(channels::kDegradation, 256)),
       scene_(bus),
       simulation_(bus.clocks()) {}
 
@@ -47,18 +49,18 @@ void Controls::command(const Command& command, sync::HostTime now) {
 
 void Controls::degrade(const DegradeThus& sliders, std::int64_t realtime_ns, sync::HostTime now) {
   sync::ProfileInForce p;
-  p.text = profile_of(sliders.senses);
-  sync::parse_profile(p.text, "the page's sliders");
+  p.text = slid(in_force_ && !sliders.clear ? in_force_->text : "", sliders.senses);
   p.hash = sync::fnv1a_64(p.text.data(), p.text.size());
-  p.generation = realtime_ns;
+  p.generation = in_force_ ? std::max(realtime_ns, in_force_->generation + 1) : realtime_ns;
   if (const auto map = simulation_.map(now)) p.start = std::max(sync::SimTime{}, map->to_sim(now));
-  profile_ = p;
+  profile_ = in_force_ = p;
   profile_until_ = now + kProfile;
   profile_next_ = now;
 }
 
 void Controls::hand(const HandAt& at, double aspect, sync::HostTime now) {
-  if (scene() == nullptr) throw std::invalid_argument("the scene is not known yet; take hold of the tool in a moment");
+  if (scene() == nullptr)
+    throw std::invalid_argument("the scene is not known yet; take hold of the tool in a moment");
   if (scene()->tools.empty()) throw std::invalid_argument("this scene has no tool to hold; run one that has");
   std::optional<Eigen::Vector3d> where;
   if (tool_) where = to_eigen(tool_->device.position_m);
@@ -104,6 +106,11 @@ void Controls::step(sync::HostTime now) {
   }
   while (auto m = tools_.pop())
     if (ours(m->message.header) && m->message.tool == 0) tool_ = std::move(m->message);
+  while (const auto m = degradations_.pop())
+    if (ours(m->message.header))
+      if (auto heard = profiles_.take(m->message);
+          heard && (!in_force_ || heard->generation >= in_force_->generation))
+        in_force_ = std::move(heard);
   if (scene_.poll(now)) ++scenes_;
   while (const auto m = replies_.pop()) {
     if (!command_ || !ours(m->message.header) || m->message.id != command_->question.id) continue;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
 #include <tactus/setting_change_t.hpp>
 #include <tactus/setting_reply_t.hpp>
 #include <tactus/sim_command_t.hpp>
@@ -44,8 +45,8 @@ class Controls {
     bool known = false;
   };
   World world(sync::HostTime now) const;
-  // Of the profile that was sent last; 0: none.
-  std::int64_t profile_hash() const { return profile_ ? profile_->hash : 0; }
+  // The profile in force, whoever sent it; none: none was heard of.
+  const std::optional<sync::ProfileInForce>& profile() const { return in_force_; }
   const scene_t* scene() const { return scene_.scene(); }
   // Of the scene that is there now; grows with each.
   int scenes() const { return scenes_; }
@@ -62,6 +63,7 @@ class Controls {
   sync::Queue<setting_reply_t>& setting_replies_;
   sync::Queue<contact_frame_t>& frames_;
   sync::Queue<tool_state_t>& tools_;
+  sync::Queue<degradation_t>& degradations_;
   sync::SceneReceiver scene_;
   sync::SimFollower simulation_;
   Hand hand_;
@@ -69,7 +71,8 @@ class Controls {
   std::optional<sim_clock_t> clock_;
   std::optional<Asked<sim_command_t>> command_;
   std::optional<Asked<setting_change_t>> setting_;
-  std::optional<sync::ProfileInForce> profile_;
+  sync::ProfileReceiver profiles_;
+  std::optional<sync::ProfileInForce> in_force_, profile_;
   sync::HostTime profile_until_{}, profile_next_{};
   tag_request_t tags_{};
   std::optional<sync::HostTime> tags_next_;

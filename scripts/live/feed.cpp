@@ -105,7 +105,7 @@ json Feed::health(sync::HostTime now) const {
     const node_health_t& h = n.health;
     std::int64_t gaps = 0;
     for (const input_health_t& i : h.inputs) gaps += i.gaps;
-    out.push_back({{"node", sync::printable(name)}, {"modality", sync::printable(h.modality)}, {"state", h.state},
+    out.push_back({{"node", sync::printable(name)}, {"source", h.header.source}, {"modality", sync::printable(h.modality)}, {"state", h.state},
                    {"lost", now - n.arrival > kLostAfter}, {"note", sync::printable(h.note)}, {"rate_Hz", h.rate_Hz},
                    {"nominal_Hz", h.nominal_rate_Hz}, {"missed", h.missed_ticks}, {"ticks", h.ticks},
                    {"rendered", h.contacts_rendered}, {"profile", std::to_string(h.profile)},

@@ -17,6 +17,7 @@
 
 #include "scripts/live/controls.h"
 #include "scripts/live/log_player.h"
+#include "scripts/live/sliders.h"
 #include "scripts/live/station.h"
 #include "scripts/live/web_server.h"
 #include "sync/node.h"
@@ -73,6 +74,7 @@ class Server {
         web_(o.listen_fd >= 0 ? o.listen_fd : live::listen_on(o.bind, o.http_port),
              {{"/", read_file(o.page, "index.html", "text/html; charset=utf-8")},
               {"/main.js", read_file(o.page, "main.js", "text/javascript; charset=utf-8")},
+              {"/icon.svg", read_file(o.page, "icon.svg", "image/svg+xml")},
               {"/main.css", read_file(o.page, "main.css", "text/css; charset=utf-8")}},
              o.token, o.bind == "127.0.0.1",
              {[this](int page) { opened_.push_back(page); }, [this](int page) { station_.close(page); pages_.erase(page); },
@@ -187,6 +189,8 @@ void show_cluster(const Options& o) {
   }
   bool streaming = false, looked_on = false;
   sync::HostTime opened{}, next_scene{};
+  std::int64_t told = 0;  // generation of the profile that `degradation` shows
+  nlohmann::json degradation = live::told_of("");
   while (!stop) {
     server.turn([&](const live::BrowserMessage& m) {
       const sync::HostTime now = sync::host_now();
@@ -224,9 +228,14 @@ void show_cluster(const Options& o) {
     controls.step(now);
     const auto world = controls.world(now);
     nlohmann::json extra{{"world", {{"known", world.known}, {"sim_s", world.sim_s}, {"rate", world.rate}}},
-                         {"profile", std::to_string(controls.profile_hash())}};
+                         {"profile", std::to_string(controls.profile() ? controls.profile()->hash : 0)}};
+    if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : 0; generation != told) {
+      told = generation;
+      degradation = live::told_of(controls.profile()->text);
+    }
     // Again once a second, for who has just come.
     if (controls.scene() != nullptr && now >= next_scene) {
+      extra["degradation"] = degradation;
       extra["scene"] = scene_of(*controls.scene());
       if (server.show(now, extra)) next_scene = now + sync::from_seconds(1);
       continue;

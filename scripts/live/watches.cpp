@@ -16,14 +16,18 @@ std::string Watches::set(const std::vector<std::string>& names) {
       if (colon != std::string::npos) {
         w.channel = name.substr(0, colon);
         const MessageType* type = type_on(w.channel);
-        if (type == nullptr) throw std::invalid_argument("there is no channel " + w.channel + "; choose one from the list");
+        if (type == nullptr)
+          throw std::invalid_argument("there is no channel " + w.channel + "; choose one from the list");
         w.path.emplace(*type, std::string_view(name).substr(colon + 1));
+        if (!type->fields.empty() && type->fields.front().name == "header")
+          w.source.emplace(*type, "header.source");
         if (w.path->is_text()) throw std::invalid_argument(name + " is text; choose a number");
       }
     } catch (const std::invalid_argument& e) {
       wrong = e.what();
       w.channel = "";
       w.path.reset();
+      w.source.reset();
       w.name = "";  // keeps its number, and never has a value
     }
     next.push_back(std::move(w));
@@ -38,26 +42,36 @@ bool Watches::wants(std::string_view channel) const {
   return false;
 }
 
-void Watches::keep(Watch& w, sync::HostTime time, double value) {
+Watches::Curve* Watches::curve(Watch& w, std::int32_t source) {
+  for (Curve& c : w.curves)
+    if (c.source == source) return &c;
+  if (w.curves.size() >= kMostSenders) return nullptr;
+  return &w.curves.emplace_back(Curve{source, {}, {}});
+}
+
+void Watches::keep(Curve& c, sync::HostTime time, double value) {
   if (!std::isfinite(value)) return;
-  const bool back = w.newest && time < *w.newest;  // a log that was wound back
-  if (w.newest && !back && time - *w.newest < kThinnest) return;
-  if (w.waiting.size() >= kMostWaiting) return;
-  w.newest = time;
-  w.waiting.push_back({time, value});
+  const bool back = c.newest && time < *c.newest;  // a log that was wound back
+  if (c.newest && !back && time - *c.newest < kThinnest) return;
+  c.newest = time;
+  c.waiting.push_back({time, value});
+  if (c.waiting.size() > kMostWaiting) c.waiting.pop_front();
 }
 
 void Watches::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
   for (Watch& w : watches_) {
     if (!w.path || w.channel != channel) continue;
-    if (w.newest && arrival >= *w.newest && arrival - *w.newest < kThinnest) continue;
-    if (const auto value = w.path->number(bytes)) keep(w, arrival, *value);
+    const auto source = w.source ? w.source->number(bytes) : 0.0;
+    if (!source) continue;
+    Curve* c = curve(w, static_cast<std::int32_t>(*source));
+    if (c == nullptr || (c->newest && arrival >= *c->newest && arrival - *c->newest < kThinnest)) continue;
+    if (const auto value = w.path->number(bytes)) keep(*c, arrival, *value);
   }
 }
 
 void Watches::take_tag(const std::string& name, sync::HostTime time, double value) {
   for (Watch& w : watches_)
-    if (!w.path && w.name == name) keep(w, time, value);
+    if (!w.path && w.name == name) keep(*curve(w, 0), time, value);
 }
 
 std::vector<std::string> Watches::tags() const {
@@ -70,9 +84,11 @@ std::vector<std::string> Watches::tags() const {
 nlohmann::json Watches::values() {
   nlohmann::json out = nlohmann::json::array();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
-    for (const Value& v : watches_[i].waiting)
-      out.push_back({i, sync::to_seconds(v.time.time_since_epoch()), v.value});
-    watches_[i].waiting.clear();
+    for (Curve& c : watches_[i].curves) {
+      for (const Value& v : c.waiting)
+        out.push_back({i, sync::to_seconds(v.time.time_since_epoch()), v.value, c.source});
+      c.waiting.clear();
+    }
   }
   return out;
 }

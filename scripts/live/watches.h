@@ -1,7 +1,9 @@
-// The variables that one page shows: their values between two frames, thinned out to what a screen can show. Pure; bounded.
+// The variables that one page shows: their values between two frames, of each sender by itself (two hands both
+// send TOOL_STATE), thinned out to what a screen can show. Pure; bounded.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -18,10 +20,14 @@ class Watches {
  public:
   // Design: no screen shows more values of one curve in one second than 200.
   static constexpr sync::Nanoseconds kThinnest{5'000'000};
-  static constexpr std::size_t kMostWaiting = 64;  // values of one variable for one frame; more are left out
+  // Values of one curve for one frame, the newest: what lies before a place in a log comes at once when the log is wound there,
+  // LogPlayer::kBefore of it.
+  static constexpr std::size_t kMostWaiting = 600;
+  // Curves of one variable; of more senders the values are left out. Design: as many colours can be told apart.
+  static constexpr std::size_t kMostSenders = 8;
 
-  // Instead of those before. A name that is none is left out; the sentence says why, "": all are names. "CHANNEL:path" is a
-  // field, anything else "node.tag".
+  // Instead of those before. A name that is none is left out; the sentence says why, "": all are names.
+  // "CHANNEL:path" is a field, anything else "node.tag".
   std::string set(const std::vector<std::string>& names);
 
   bool wants(std::string_view channel) const;
@@ -30,7 +36,7 @@ class Watches {
   void take_tag(const std::string& name, sync::HostTime time, double value);
   std::vector<std::string> tags() const;
 
-  // [[number of the variable, s, value], ...] since the last call.
+  // [[number of the variable, s, value, header.source of its sender; 0: of a tag], ...] since the last call.
   nlohmann::json values();
 
  private:
@@ -38,13 +44,19 @@ class Watches {
     sync::HostTime time;
     double value;
   };
+  struct Curve {
+    std::int32_t source = 0;
+    std::optional<sync::HostTime> newest;
+    std::deque<Value> waiting;
+  };
   struct Watch {
     std::string name, channel;  // channel empty: a tag
-    std::optional<FieldPath> path;
-    std::optional<sync::HostTime> newest;
-    std::vector<Value> waiting;
+    std::optional<FieldPath> path, source;
+    std::vector<Curve> curves;
   };
-  static void keep(Watch& w, sync::HostTime time, double value);
+  // Null when there are too many.
+  static Curve* curve(Watch& w, std::int32_t source);
+  static void keep(Curve& c, sync::HostTime time, double value);
   std::vector<Watch> watches_;
 };
 

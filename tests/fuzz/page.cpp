@@ -5,6 +5,7 @@
 
 #include "scripts/live/browser_message.h"
 #include "scripts/live/origin.h"
+#include "scripts/live/sliders.h"
 #include "sync/degradation/profile.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const live::BrowserMessage m = live::parse_browser_message(text);
     if (const auto* sliders = std::get_if<live::DegradeThus>(&m))
-      if (sync::parse_profile(live::profile_of(sliders->senses), "page").rules.size() > sliders->senses.size())
+      if (sync::parse_profile(live::slid("", sliders->senses), "page").rules.size() > sliders->senses.size())
         std::abort();
     if (const auto* hand = std::get_if<live::HandAt>(&m))
       if (!(hand->x >= -1 && hand->x <= 1 && hand->push_m >= -1 && hand->push_m <= 1)) std::abort();

@@ -14,7 +14,7 @@ const send = (m: object): void => connection.send(m);
 const variables = new Variables((names) => send({ t: "watch", names }));
 const senses = new Senses(), raster = new Raster();
 const picture = new Picture(send);
-const sliders = new Sliders((s) => send({ t: "degrade", senses: s }));
+const sliders = new Sliders((senses, clear) => send({ t: "degrade", senses, clear }));
 
 let toastTimer = 0;
 function toast(text: string, good: boolean): void {
@@ -28,7 +28,7 @@ function common(m: Common): void {
   now_s = m.now;
   at_ms = performance.now();
   if (m.tags) variables.catalog(undefined, m.tags);
-  if (m.health) { senses.takeHealth(m.health, profile); if (live) sliders.modalities(senses.modalities()); }
+  if (m.health) { variables.senders(m.health); senses.takeHealth(m.health, profile); if (live) sliders.modalities(senses.modalities()); }
   if (m.report) senses.takeReport(m.report);
 }
 function hello(m: Hello): void {
@@ -50,6 +50,7 @@ function frame(m: Frame): void {
   if (m.wound) { variables.clear(); senses.clear(); raster.clear(); }
   if (m.profile) profile = m.profile;
   common(m);
+  if (m.degradation) sliders.inForce(m.degradation);
   if (m.values) variables.take(m.values);
   raster.take(m.events, m.presented);
   if (m.presented) senses.presented(m.presented);

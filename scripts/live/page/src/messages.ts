@@ -2,18 +2,23 @@
 export interface Named { name: string; unit: string; about: string }
 export interface Threshold { earlier: string; later: string; ms: number; what: string; source: string }
 export interface NodeHealth {
-  node: string; modality: string; state: number; lost: boolean; note: string; rate_Hz: number; nominal_Hz: number; missed: number;
+  node: string; source: number; modality: string; state: number; lost: boolean; note: string; rate_Hz: number; nominal_Hz: number; missed: number;
   ticks: number; rendered: number; profile: string; realtime: number; gaps: number; tick_max_us: number; wake_max_us: number;
 }
 export interface Sense { modality: string; owed: number; presented: number; lost: number; dropped: number; late: number }
 export interface Pair { a: string; b: string; n: number; p05_ms: number; p50_ms: number; p95_ms: number; beyond_least: number }
 export type Event = [time_s: number, kind: number, body_a: number, body_b: number, speed_m_s: number];
 export type Presentation = [time_s: number, modality: string, part: number, outcome: number, latency_ms: number | null];
+// source: who sent it (header.source); 0: whoever has the tag.
+export type Value = [variable: number, time_s: number, value: number, source: number];
 export interface Common { now: number; health?: NodeHealth[]; report?: { senses: Sense[]; pairs: Pair[] }; tags?: Named[] }
+export interface Slid { delay_ms: number; rate_Hz: number; loss: number }
+// The profile in force; more: that it says of a sense what no slider shows.
+export interface Degradation { name: string; senses: Record<string, Slid & { more: boolean }> }
 export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: Named[] }
 export interface Frame extends Common {
-  t: "frame"; values?: [number, number, number][]; events?: Event[]; presented?: Presentation[]; left_out?: number; wound?: boolean;
-  world?: { known: boolean; sim_s: number; rate: number }; profile?: string;
+  t: "frame"; values?: Value[]; events?: Event[]; presented?: Presentation[]; left_out?: number; wound?: boolean;
+  world?: { known: boolean; sim_s: number; rate: number }; profile?: string; degradation?: Degradation;
   scene?: { name: string; bodies: string[]; tools: string[] };
   pages?: { open: number; dropped: number; refused: number };
   log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number };

@@ -1,44 +1,78 @@
-// Delay, rate and loss of each sense; the server makes a profile of them.
-import { colourOf, element, make } from "./messages";
+// Delay, rate and loss of each sense. They begin where the profile in force has them; the server changes in it what a slider
+// changes, and keeps the rest.
+import { Degradation, Slid, colourOf, element, make } from "./messages";
 
-interface Setting { delay_ms: number; rate_Hz: number; loss: number }
 // Rates on a scale that a slider can show; the last: as it comes.
 const RATES = [1, 2, 5, 10, 15, 20, 30, 60, 120, 250, 500, 0];
+// What is told of the profile in force may be older than what has just been sent.
+const SETTLE_MS = 1500;
+const nearest = (rate_Hz: number): number => {
+  if (rate_Hz === 0) return RATES.length - 1;
+  const far = RATES.map((r) => (r ? Math.abs(Math.log(r / rate_Hz)) : Infinity));
+  return far.indexOf(Math.min(...far));
+};
+const words = {
+  delay: (s: Slid) => `${+s.delay_ms.toFixed(1)} ms`,
+  rate: (s: Slid) => (s.rate_Hz ? `${+s.rate_Hz.toFixed(1)} Hz` : "full"),
+  loss: (s: Slid) => `${+(s.loss * 100).toFixed(1)} %`,
+};
 
 export class Sliders {
-  private settings = new Map<string, Setting>();
+  private settings = new Map<string, Slid>();
+  private more = new Set<string>();  // senses of which the profile says what no slider shows
   private timer = 0;
-  constructor(private send: (senses: Record<string, Setting>) => void) {
+  private touched_ms = -Infinity;
+  private told = "";
+  constructor(private send: (senses: Record<string, Slid>, clear: boolean) => void) {
     element("clear").addEventListener("click", () => {
+      clearTimeout(this.timer);
       for (const m of this.settings.keys()) this.settings.set(m, { delay_ms: 0, rate_Hz: 0, loss: 0 });
+      this.more.clear();
+      this.touch();
       this.build();
-      this.send(Object.fromEntries(this.settings));
+      this.send(Object.fromEntries(this.settings), true);
     });
   }
   modalities(names: string[]): void {
     const fresh = names.filter((n) => !this.settings.has(n));
     if (!fresh.length) return;
     for (const n of fresh) this.settings.set(n, { delay_ms: 0, rate_Hz: 0, loss: 0 });
+    this.told = "";  // what is in force is shown of them too, once it is told again
     this.build();
   }
+  inForce(d: Degradation): void {
+    element("inforce").textContent = d.name ? `in force: ${d.name}` : "";
+    const text = JSON.stringify(d.senses);
+    if (text === this.told || performance.now() < this.touched_ms + SETTLE_MS) return;
+    this.told = text;
+    this.more = new Set(Object.entries(d.senses).filter(([, s]) => s.more).map(([m]) => m));
+    for (const m of this.settings.keys()) {
+      const { delay_ms, rate_Hz, loss } = d.senses[m] ?? { delay_ms: 0, rate_Hz: 0, loss: 0 };
+      this.settings.set(m, { delay_ms, rate_Hz, loss });
+    }
+    this.build();
+  }
+  private touch(): void { this.touched_ms = performance.now(); this.told = ""; }
   private changed(): void {
+    this.touch();
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => this.send(Object.fromEntries(this.settings)), 150);  // once the hand rests
+    this.timer = window.setTimeout(() => this.send(Object.fromEntries(this.settings), false), 150);  // once the hand rests
   }
   private build(): void {
     element("sliders").replaceChildren(...[...this.settings.keys()].sort().map((m) => {
-      const s = this.settings.get(m)!, box = make("div", "sense"), name = make("span", "name", m);
+      const s = this.settings.get(m)!, box = make("div", "sense"), name = make("span", "name", this.more.has(m) ? `${m} +` : m);
       name.style.color = colourOf(m);
+      if (this.more.has(m)) name.title = "the profile in force says more of this sense than these sliders show; it stays";
       box.append(name,
-        this.slider(`${m}-delay`, "delay", 0, 500, 5, s.delay_ms, (v) => { s.delay_ms = v; return `${v} ms`; }),
-        this.slider(`${m}-rate`, "rate", 0, RATES.length - 1, 1, RATES.indexOf(s.rate_Hz), (v) => { s.rate_Hz = RATES[v]!; return s.rate_Hz ? `${s.rate_Hz} Hz` : "full"; }),
-        this.slider(`${m}-loss`, "loss", 0, 100, 1, s.loss * 100, (v) => { s.loss = v / 100; return `${v} %`; }));
+        this.slider(`${m}-delay`, "delay", 500, 5, s.delay_ms, words.delay(s), (v) => { s.delay_ms = v; return words.delay(s); }),
+        this.slider(`${m}-rate`, "rate", RATES.length - 1, 1, nearest(s.rate_Hz), words.rate(s), (v) => { s.rate_Hz = RATES[v]!; return words.rate(s); }),
+        this.slider(`${m}-loss`, "loss", 100, 1, s.loss * 100, words.loss(s), (v) => { s.loss = v / 100; return words.loss(s); }));
       return box;
     }));
   }
-  private slider(id: string, title: string, least: number, most: number, step: number, value: number, set: (v: number) => string): HTMLElement {
-    const label = document.createElement("label"), shown = make("b", "", set(value)), input = document.createElement("input");
-    Object.assign(input, { type: "range", id, min: String(least), max: String(most), step: String(step) });
+  private slider(id: string, title: string, most: number, step: number, value: number, text: string, set: (v: number) => string): HTMLElement {
+    const label = document.createElement("label"), shown = make("b", "", text), input = document.createElement("input");
+    Object.assign(input, { type: "range", id, min: "0", max: String(most), step: String(step) });
     input.value = String(value);
     input.addEventListener("input", () => { shown.textContent = set(Number(input.value)); this.changed(); });
     label.append(title, shown, input);

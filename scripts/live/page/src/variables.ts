@@ -1,15 +1,19 @@
 // Cards of variables: a graph over time, a bar or text, as one chooses.
 import uPlot from "uplot";
-import { Named, element, figure, make } from "./messages";
+import { Named, NodeHealth, Value, element, figure, make } from "./messages";
 
 const SPAN_S = 20;
 const MOST = 24;
 type Kind = "graph" | "bar" | "text";
-interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; times: number[]; values: number[]; least: number; most: number; plot?: uPlot }
+// What one sender says of a variable: two hands both send TOOL_STATE.
+interface Series { source: number; times: number[]; values: number[] }
+interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; least: number; most: number; plot?: uPlot }
+const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // as many as the server tells apart
 
 export class Variables {
   private cards: Card[] = [];
   private units = new Map<string, string>();
+  private nodes = new Map<number, string>();
   private known: Named[] = [];
   private tags: Named[] = [];
   constructor(private watch: (names: string[]) => void) {
@@ -32,6 +36,7 @@ export class Variables {
       return option;
     }));
   }
+  senders(health: NodeHealth[]): void { for (const h of health) this.nodes.set(h.source, h.node); }
   restore(): void {
     let kept: [string, Kind][] = [["TOOL_STATE:force_N.z", "graph"], ["TOOL_STATE:proxy.position_m.z", "graph"], ["THERMAL_STATE:skin_degC", "text"]];
     try {
@@ -59,7 +64,7 @@ export class Variables {
     head.append(make("span", "name", name), value, select, remove);
     head.firstElementChild!.setAttribute("title", name);
     box.append(head, body);
-    const card: Card = { name, kind, box, body, value, times: [], values: [], least: Infinity, most: -Infinity };
+    const card: Card = { name, kind, box, body, value, series: [], least: Infinity, most: -Infinity };
     select.addEventListener("change", () => { card.kind = select.value as Kind; this.build(card); this.changed(); });
     remove.addEventListener("click", () => { card.plot?.destroy(); box.remove(); this.cards = this.cards.filter((c) => c !== card); this.changed(); });
     element("cards").append(box);
@@ -77,8 +82,8 @@ export class Variables {
         width: Math.max(200, card.box.clientWidth - 18), height: 96, cursor: { show: false }, legend: { show: false },
         scales: { x: { time: false } },
         axes: [{ ...quiet, size: 22, values: (_u: uPlot, ticks: number[]) => ticks.map((t) => `${t.toFixed(0)} s`) }, { ...quiet, size: 62, space: 24, values: (_u: uPlot, ticks: number[]) => ticks.map((v) => Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(6))) }],
-        series: [{}, { stroke: "#7aa7e0", width: 1.5, points: { show: false } }],
-      }, [[], []], card.body);
+        series: [{}, ...card.series.map((_, k) => ({ stroke: COLOURS[k % COLOURS.length]!, width: 1.5, spanGaps: true, points: { show: false } }))],
+      }, [[], ...card.series.map(() => [])], card.body);
     } else if (card.kind === "bar") {
       const bar = make("div", "bar");
       bar.append(make("i"), make("em"));
@@ -86,39 +91,64 @@ export class Variables {
       card.body.lastElementChild!.append(make("span"), make("span"));
     } else card.body.append(make("div", "big value"));
   }
-  clear(): void { for (const c of this.cards) { c.times = []; c.values = []; c.least = Infinity; c.most = -Infinity; } }
-  take(values: [number, number, number][]): void {
-    for (const [i, t, v] of values) {
+  clear(): void { for (const c of this.cards) { for (const s of c.series) { s.times = []; s.values = []; } c.least = Infinity; c.most = -Infinity; } }
+  take(values: Value[]): void {
+    for (const [i, t, v, source] of values) {
       const c = this.cards[i];
       if (!c) continue;
-      c.times.push(t); c.values.push(v);
+      let s = c.series.find((of) => of.source === source);
+      if (!s) {
+        if (c.series.length >= COLOURS.length) continue;
+        c.series.push((s = { source, times: [], values: [] }));
+        this.build(c);
+      }
+      s.times.push(t); s.values.push(v);
       c.least = Math.min(c.least, v); c.most = Math.max(c.most, v);
     }
   }
   draw(now: number): void {
     for (const c of this.cards) {
-      const first = c.times.findIndex((t) => t >= now - SPAN_S);
-      if (first > 200 || (first < 0 && c.times.length > 1)) { const n = first < 0 ? c.times.length - 1 : first; c.times.splice(0, n); c.values.splice(0, n); }
-      const unit = this.units.get(c.name) ?? "", last = c.values[c.values.length - 1];
-      const text = last === undefined ? "–" : `${figure(last)}${unit && unit !== "1" ? " " + unit : ""}`;
-      c.value.textContent = c.kind === "text" ? "" : text;
-      if (c.kind === "text") c.body.firstElementChild!.textContent = text;
-      else if (c.plot) {
-        c.plot.batch(() => {
-          c.plot!.setData([c.times.map((t) => t - now), c.values], false);
-          c.plot!.setScale("x", { min: -SPAN_S, max: 0 });
-          let lo = Infinity, hi = -Infinity;
-          for (let i = Math.max(0, c.times.findIndex((t) => t >= now - SPAN_S)); i < c.values.length; ++i) { lo = Math.min(lo, c.values[i]!); hi = Math.max(hi, c.values[i]!); }
-          if (hi >= lo) { const room = (hi - lo) * 0.08 || Math.abs(hi) * 0.05 || 1e-3; c.plot!.setScale("y", { min: lo - room, max: hi + room }); }
-        });
-      } else if (last !== undefined) {
-        const lo = Math.min(0, c.least), hi = Math.max(0, c.most), span = hi - lo || 1;
-        const at = (x: number) => `${(100 * (x - lo)) / span}%`;
-        const bar = c.body.firstElementChild!.firstElementChild as HTMLElement, zero = c.body.firstElementChild!.lastElementChild as HTMLElement;
-        bar.style.left = at(Math.min(0, last)); bar.style.width = `${(100 * Math.abs(last)) / span}%`; zero.style.left = at(0);
-        const ends = c.body.lastElementChild!;
-        ends.firstElementChild!.textContent = figure(lo); ends.lastElementChild!.textContent = figure(hi);
+      for (const s of c.series) {
+        const first = s.times.findIndex((t) => t >= now - SPAN_S);
+        if (first > 200 || (first < 0 && s.times.length > 1)) { const n = first < 0 ? s.times.length - 1 : first; s.times.splice(0, n); s.values.splice(0, n); }
       }
+      const unit = this.units.get(c.name) ?? "", lasts = c.series.map((s) => s.values[s.values.length - 1]).filter((v) => v !== undefined);
+      c.box.dataset.values = String(c.series.reduce((n, s) => n + s.values.length, 0));
+      c.box.dataset.series = String(c.series.length);
+      this.show(c, lasts, unit && unit !== "1" ? " " + unit : "");
+      if (c.plot) this.plot(c, now);
+      else if (c.kind === "bar" && lasts.length) this.bar(c, lasts[0]!);
     }
+  }
+  // The newest values as text, each with the colour of its curve when several send it.
+  private show(c: Card, lasts: number[], unit: string): void {
+    const box = (c.kind === "text" ? c.body.firstElementChild : c.value) as HTMLElement;
+    if (c.kind === "text") c.value.textContent = "";
+    if (lasts.length < 2) { box.textContent = lasts.length ? figure(lasts[0]!) + unit : "–"; box.title = ""; return; }
+    box.replaceChildren(...lasts.map((v, k) => {
+      const span = make("span", "one", figure(v) + (k === lasts.length - 1 ? unit : ""));
+      span.style.color = COLOURS[k % COLOURS.length]!;
+      span.title = this.nodes.get(c.series[k]!.source) ?? "a sender that says nothing of its health";
+      return span;
+    }));
+  }
+  private plot(c: Card, now: number): void {
+    let lo = Infinity, hi = -Infinity;
+    for (const s of c.series)
+      for (let i = s.times.length; i-- > 0 && s.times[i]! >= now - SPAN_S;) { lo = Math.min(lo, s.values[i]!); hi = Math.max(hi, s.values[i]!); }
+    c.plot!.batch(() => {
+      const own: uPlot.AlignedData[] = c.series.map((s) => [s.times.map((t) => t - now), s.values]);
+      c.plot!.setData(own.length > 1 ? uPlot.join(own) : own[0] ?? [[]], false);
+      c.plot!.setScale("x", { min: -SPAN_S, max: 0 });
+      if (hi >= lo) { const room = (hi - lo) * 0.08 || Math.abs(hi) * 0.05 || 1e-3; c.plot!.setScale("y", { min: lo - room, max: hi + room }); }
+    });
+  }
+  private bar(c: Card, last: number): void {
+    const lo = Math.min(0, c.least), hi = Math.max(0, c.most), span = hi - lo || 1;
+    const at = (x: number) => `${(100 * (x - lo)) / span}%`;
+    const bar = c.body.firstElementChild!.firstElementChild as HTMLElement, zero = c.body.firstElementChild!.lastElementChild as HTMLElement;
+    bar.style.left = at(Math.min(0, last)); bar.style.width = `${(100 * Math.abs(last)) / span}%`; zero.style.left = at(0);
+    const ends = c.body.lastElementChild!;
+    ends.firstElementChild!.textContent = figure(lo); ends.lastElementChild!.textContent = figure(hi);
   }
 }

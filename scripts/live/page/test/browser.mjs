@@ -1,0 +1,106 @@
+// A headless Chromium with the page in it, and what the tests do there: as a person would, with mouse and keys.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import puppeteer from "puppeteer-core";
+
+export const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+// CLOCK_MONOTONIC, which stamps the messages too.
+export const now_ns = () => Number(process.hrtime.bigint());
+export const PATIENCE_MS = 20000; // liveness, not speed: the machine may be busy
+
+// Waits until it is true; the sentence says what never came.
+export async function until(what, ask, patience_ms = PATIENCE_MS) {
+  const end = Date.now() + patience_ms;
+  let last;
+  for (;;) {
+    try { last = await ask(); } catch (error) { last = error.message; }
+    if (last === true) return;
+    assert.ok(Date.now() < end, `it never came that ${what} (last: ${JSON.stringify(last)})`);
+    await wait(100);
+  }
+}
+
+export class Browser {
+  static async open(url) {
+    const it = new Browser();
+    it.errors = [];
+    it.browser = await puppeteer.launch({
+      executablePath: "/usr/bin/chromium", headless: true,
+      args: ["--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", ...(process.getuid() === 0 ? ["--no-sandbox"] : [])],
+    });
+    it.page = await it.browser.newPage();
+    await it.page.setViewport({ width: 1440, height: 1000 });
+    it.page.on("pageerror", (error) => it.errors.push(error.message));
+    it.page.on("console", (line) => { if (line.type() === "error") it.errors.push(line.text()); });
+    await it.page.goto(url);
+    return it;
+  }
+  text(selector) { return this.page.$eval(selector, (e) => e.innerText.trim()); }
+  has(selector) { return this.page.$(selector).then((e) => e !== null); }
+  pictures() { return this.page.$eval("#picture", (e) => Number(e.dataset.count ?? "0")); }
+  // As a finger leaves it there.
+  slide(selector, value) {
+    return this.page.$eval(selector, (e, v) => {
+      e.value = String(v);
+      e.dispatchEvent(new Event("input", { bubbles: true }));
+      e.dispatchEvent(new Event("change", { bubbles: true }));
+    }, value);
+  }
+  click(selector) { return this.page.$eval(selector, (e) => e.click()); }
+  async add(name) {
+    await this.page.focus("#choose");
+    await this.page.keyboard.sendCharacter(name);
+    await this.page.keyboard.press("Enter");
+  }
+  // The senses in the order of their lanes.
+  senses() { return this.page.$$eval("#senses tr[data-modality]", (rows) => rows.map((r) => r.dataset.modality)); }
+  // Pixels of marks in each lane of the event raster: nearer to the colour of the lane than to what lies behind it.
+  marks() {
+    return this.page.evaluate(() => {
+      const canvas = document.getElementById("raster"), rows = [...document.querySelectorAll("#senses tr[data-modality]")];
+      const rgb = (css) => { const c = document.createElement("canvas").getContext("2d"); c.fillStyle = css; c.fillRect(0, 0, 1, 1); return c.getImageData(0, 0, 1, 1).data; };
+      const lanes = [["world", "#9aa4b2"], ...rows.map((r) => [r.dataset.modality, r.firstElementChild.style.color])];
+      const scale = devicePixelRatio, lane = 24 * scale, left = Math.ceil(82 * scale), behind = rgb("#2b313b");
+      const far = (d, i, c) => (d[i] - c[0]) ** 2 + (d[i + 1] - c[1]) ** 2 + (d[i + 2] - c[2]) ** 2;
+      return Object.fromEntries(lanes.map(([name, css], n) => {
+        const own = rgb(css), d = canvas.getContext("2d").getImageData(left, n * lane, canvas.width - left, lane).data;
+        let count = 0;
+        for (let i = 0; i < d.length; i += 4) if (d[i + 3] > 100 && far(d, i, own) < far(d, i, behind)) ++count;
+        return [name, count];
+      }));
+    });
+  }
+  // Values that the graph of this variable holds.
+  drawn(name) { return this.page.$$eval(".card", (cards, wanted) => Number(cards.find((c) => c.dataset.name === wanted)?.dataset.values ?? "0"), name); }
+  value(name) { return this.page.$$eval(".card", (cards, wanted) => cards.find((c) => c.dataset.name === wanted)?.innerText ?? "", name); }
+  // Distinct colours of the first scale of asynchrony.
+  bands() {
+    return this.page.evaluate(() => {
+      const rgb = (css) => { const c = document.createElement("canvas").getContext("2d"); c.fillStyle = css; c.fillRect(0, 0, 1, 1); return [...c.getImageData(0, 0, 1, 1).data].join(); };
+      const wanted = [".band.least", ".band.largest"].map((s) => rgb(getComputedStyle(document.querySelector(s)).backgroundColor));
+      const seen = new Set();
+      for (const canvas of document.querySelectorAll(".pair canvas")) {
+        const d = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+        for (let i = 0; i < d.length; i += 4) seen.add([...d.slice(i, i + 4)].join());
+      }
+      return wanted.map((c) => seen.has(c));
+    });
+  }
+  // Every process of this browser: it and all its descendants.
+  processes() {
+    const children = new Map();
+    for (const name of fs.readdirSync("/proc").filter((n) => /^\d+$/.test(n))) {
+      try {
+        const stat = fs.readFileSync(`/proc/${name}/stat`, "utf8"), parent = Number(stat.slice(stat.lastIndexOf(")") + 2).split(" ")[1]);
+        children.set(parent, [...(children.get(parent) ?? []), Number(name)]);
+      } catch { /* ended meanwhile */ }
+    }
+    const all = [this.browser.process().pid];
+    for (let i = 0; i < all.length; ++i) all.push(...(children.get(all[i]) ?? []));
+    return all;
+  }
+  signal(number) {
+    for (const pid of this.processes()) try { process.kill(pid, number); } catch { /* ended meanwhile */ }
+  }
+  async close() { await this.browser.close(); }
+}

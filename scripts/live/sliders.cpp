@@ -1,0 +1,168 @@
+#include "scripts/live/sliders.h"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "sync/degradation/profile.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/printable.h"
+
+namespace tactus::live {
+namespace {
+
+using tinyxml2::XMLElement;
+
+constexpr const char* kEmpty = "<profile name=\"live page\"/>";
+constexpr const char* kChanged = ", changed in the live page";
+
+const std::string& or_empty(const std::string& profile) {
+  static const std::string empty = kEmpty;
+  return profile.empty() ? empty : profile;
+}
+
+bool has_value(const XMLElement& e, const char* name) { return e.Attribute(name) != nullptr; }
+
+// Whether it counts always and for all contacts.
+bool plain(const XMLElement& e) {
+  return !has_value(e, "from") && !has_value(e, "until") && !has_value(e, "bodies") && !has_value(e, "material");
+}
+
+XMLElement* first(XMLElement& root, const std::string& sense, const char* attribute) {
+  for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade"))
+    if (e->Attribute("modality", sense.c_str()) && plain(*e) && (attribute == nullptr || has_value(*e, attribute)))
+      return e;
+  return nullptr;
+}
+
+sync::Rule operator_of(const char* name, const XMLElement* e) {
+  sync::Rule rule;
+  if (e != nullptr) sync::parse_operator(rule, name, e->Attribute(name));
+  return rule;
+}
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(12);
+  text << value;
+  return text.str();
+}
+
+bool same(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * std::abs(a); }
+
+// An element that has lost its last operator would be no line of a profile.
+bool does_something(const XMLElement& e) {
+  for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
+    if (const std::string name = a->Name(); name != "modality" && name != "conceal") return true;
+  return false;
+}
+
+void set(XMLElement& root, const std::string& sense, const char* attribute, const std::string& value) {
+  XMLElement* e = first(root, sense, attribute);
+  if (value.empty()) {
+    if (e == nullptr) return;
+    e->DeleteAttribute(attribute);
+    if (!does_something(*e)) root.DeleteChild(e);
+    return;
+  }
+  if (e == nullptr) e = first(root, sense, nullptr);
+  if (e == nullptr) {
+    e = root.InsertNewChildElement("degrade");
+    e->SetAttribute("modality", sense.c_str());
+  }
+  e->SetAttribute(attribute, value.c_str());
+}
+
+void slide_delay(XMLElement& root, const std::string& sense, double delay_ms) {
+  const auto old = operator_of("delay", first(root, sense, "delay")).delay.value_or(sync::DelayDef{});
+  if (same(old.delay_s * 1e3, delay_ms)) return;
+  const char* kind = old.kind == sync::DelayKind::kNetwork ? " network" : "";
+  set(root, sense, "delay", delay_ms > 0 ? number(delay_ms) + "ms" + kind : "");
+}
+
+void slide_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
+  const auto old = operator_of("rate", first(root, sense, "rate")).rate.value_or(sync::RateDef{});
+  if (same(old.rate_Hz, rate_Hz)) return;
+  const bool fits = old.phase_s > 0 && old.phase_s * rate_Hz < 1;
+  set(root, sense, "rate",
+      rate_Hz > 0 ? number(rate_Hz) + "Hz" + (fits ? " phase=" + number(old.phase_s * 1e3) + "ms" : "") : "");
+}
+
+void slide_loss(XMLElement& root, const std::string& sense, double loss) {
+  const auto old = operator_of("loss", first(root, sense, "loss")).loss.value_or(sync::LossDef{});
+  if (same(old.share, loss)) return;
+  // More losses than bursts of that length allow come each by itself (sync/degradation/loss.h).
+  const bool fits = old.mean_burst >= 1 && old.mean_burst * (1 - loss) > loss;
+  set(root, sense, "loss",
+      loss > 0 ? number(loss * 100) + "%" + (fits ? " burst=" + number(old.mean_burst) : "") : "");
+}
+
+void parse(tinyxml2::XMLDocument& document, const std::string& profile) {
+  const std::string& text = or_empty(profile);
+  sync::parse_profile(text, "the profile in force");
+  document.Parse(text.data(), text.size());
+}
+
+}  // namespace
+
+std::map<std::string, Shown> shown_of(const std::string& profile) {
+  tinyxml2::XMLDocument document;
+  parse(document, profile);
+  XMLElement& root = *document.RootElement();
+  std::map<std::string, int> elements;
+  std::map<std::string, Shown> out;
+  for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade")) {
+    const std::string sense = e->Attribute("modality");
+    Shown& s = out[sense];
+    s.more = s.more || ++elements[sense] > 1 || !plain(*e);
+    for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a; a = a->Next())
+      if (const std::string name = a->Name();
+          name != "modality" && name != "delay" && name != "rate" && name != "loss")
+        s.more = true;
+  }
+  for (auto& [sense, s] : out) {
+    const auto delay = operator_of("delay", first(root, sense, "delay")).delay;
+    const auto rate = operator_of("rate", first(root, sense, "rate")).rate;
+    const auto loss = operator_of("loss", first(root, sense, "loss")).loss;
+    s.sliders = {delay ? delay->delay_s * 1e3 : 0, rate ? rate->rate_Hz : 0, loss ? loss->share : 0};
+  }
+  return out;
+}
+
+nlohmann::json told_of(const std::string& profile) {
+  nlohmann::json senses = nlohmann::json::object();
+  for (const auto& [sense, s] : shown_of(profile))
+    senses[sync::printable(sense)] = {{"delay_ms", s.sliders.delay_ms},
+                                      {"rate_Hz", s.sliders.rate_Hz},
+                                      {"loss", s.sliders.loss},
+                                      {"more", s.more}};
+  const std::string name = profile.empty() ? "" : sync::parse_profile(profile, "the profile in force").name;
+  return {{"name", sync::printable(name)}, {"senses", senses}};
+}
+
+std::string slid(const std::string& profile, const std::map<std::string, Sliders>& senses) {
+  tinyxml2::XMLDocument document;
+  parse(document, profile);
+  XMLElement& root = *document.RootElement();
+  for (const auto& [sense, s] : senses) {
+    slide_delay(root, sense, s.delay_ms);
+    slide_rate(root, sense, s.rate_Hz);
+    slide_loss(root, sense, s.loss);
+  }
+  const std::string name = root.Attribute("name") ? root.Attribute("name") : "";
+  if (!name.ends_with("live page")) root.SetAttribute("name", (name + kChanged).c_str());
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  document.Print(&printer);
+  std::string text = printer.CStr();
+  if (text.size() > sync::kMaxProfileBytes)
+    throw std::invalid_argument(
+        "the profile in force is too long to be changed by sliders; choose \"all well\", or give a shorter one");
+  sync::parse_profile(text, "the page's sliders");
+  return text;
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,297 @@
+// The live page in a real browser: what a person does there is done by scripts/live/page/test, and its effect is
+// read from the bus, that is from the log of the run.
+#include <nlohmann/json.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
+
+#include "lcmtypes/channels.h"
+#include "sync/degradation/profile.h"
+#include "sync/identity.h"
+#include "tests/cluster/run_log.h"
+#include "tests/cluster/run_script.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+using nlohmann::json;
+
+namespace {
+
+constexpr double kPatience_s = 60;  // liveness, not speed
+
+// The address that a program has printed; "": none came.
+std::string address_of(Processes& processes, const std::string& name) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience_s);
+  while (std::chrono::steady_clock::now() < end && processes.running(name)) {
+    const std::string said = processes.said(name);
+    const std::size_t from = said.find("http://127.0.0.1:");
+    if (from != std::string::npos && said.find('\n', from) != std::string::npos)
+      return said.substr(from, said.find_first_of(" \n", from) - from);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return "";
+}
+
+void require_what_the_browser_needs() {
+  INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
+  REQUIRE(std::filesystem::exists("/usr/bin/chromium"));
+  REQUIRE(std::filesystem::exists(repository() / "scripts/live/page/node_modules/puppeteer-core/package.json"));
+  REQUIRE(std::filesystem::exists(repository() / "scripts/live/page/dist/main.js"));
+}
+
+// Runs a test of scripts/live/page/test to its end.
+void in_browser(RunScript& run, const std::string& test, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"node", (repository() / "scripts/live/page/test" / test).string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  run.processes.spawn(test, command);
+  const int status = run.processes.wait_for_exit(test, 3 * kPatience_s);
+  INFO(run.processes.said(test));
+  INFO(run.processes.said("run"));
+  REQUIRE(status == 0);
+}
+
+// When the browser did what, CLOCK_MONOTONIC.
+struct Marks {
+  json times;
+  std::int64_t at(const std::string& name) const { return times.at(name).get<std::int64_t>(); }
+  Span between(const std::string& from, const std::string& to) const { return {at(from), at(to)}; }
+};
+
+constexpr std::int64_t kMs = 1'000'000;
+
+void check_commands(const RunLog& log) {
+  std::map<int, std::int64_t> asked;  // by kind: id
+  int steps = 0;
+  log.each<sim_command_t>(channels::kSimCommand, [&](const sim_command_t& m) {
+    asked[m.kind] = m.id;
+    if (m.kind == sim_command_t::STEP) steps = m.steps;
+  });
+  std::set<std::int64_t> done;
+  log.each<sim_reply_t>(channels::kSimReply, [&](const sim_reply_t& m) {
+    INFO(m.text);
+    CHECK(m.done == 1);
+    done.insert(m.id);
+  });
+  for (const int kind : {sim_command_t::PAUSE, sim_command_t::STEP, sim_command_t::RESUME, sim_command_t::RESET}) {
+    INFO("command " << kind);
+    REQUIRE(asked.contains(kind));
+    CHECK(done.contains(asked[kind]));
+  }
+  CHECK(steps == 25);
+}
+
+// Instants of the world that are told within a span.
+std::set<std::int64_t> instants(const RunLog& log, const Span& span) {
+  std::set<std::int64_t> out;
+  log.each<world_state_t>(channels::kWorldState, span,
+                          [&](const world_state_t& m) { out.insert(m.header.sim_time_ns); });
+  return out;
+}
+
+void check_world(const RunLog& log, const Marks& marks) {
+  const std::int64_t paused = marks.at("paused"), stepped = marks.at("stepped");
+  const auto before = instants(log, {paused - 200 * kMs, paused}),
+             after = instants(log, {stepped - 400 * kMs, stepped});
+  REQUIRE(before.size() == 1);
+  REQUIRE(after.size() == 1);
+  CHECK(*after.begin() - *before.begin() == 25 * kMs);  // 25 steps of 1 ms
+  CHECK(instants(log, {stepped + 200 * kMs, marks.at("reset")}).size() > 5);
+  // The balls, which have lain on the floor for long, are dropped again from 0.3 m and more.
+  double before_m = 0, after_m = 0;
+  log.each<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
+    const std::int64_t t = m.header.publish_time_ns;
+    for (const body_state_t& b : m.bodies) {
+      if (t > stepped && t < marks.at("reset")) before_m = std::max(before_m, b.position_m.z);
+      if (t > marks.at("reset") && t < marks.at("was_reset")) after_m = std::max(after_m, b.position_m.z);
+    }
+  });
+  CHECK(before_m < 0.1);
+  CHECK(after_m > 0.25);
+}
+
+void check_profile_taken(const RunLog& log, std::int64_t hash, std::int64_t at_ns) {
+  std::map<std::string, std::int64_t> knows;  // newest before that instant
+  log.each<node_health_t>(channels::kNodeHealth, [&](const node_health_t& m) {
+    if (!m.modality.empty() && m.header.publish_time_ns < at_ns) knows[m.modality] = m.profile;
+  });
+  for (const char* sense : {"haptic", "audio", "visual", "thermal"}) {
+    INFO(sense);
+    REQUIRE(knows.contains(sense));
+    CHECK(knows[sense] == hash);
+  }
+}
+
+void check_profiles(const RunLog& log, const Marks& marks) {
+  const auto newest_in = [&](const Span& span) {
+    degradation_t newest{};
+    log.each<degradation_t>(channels::kDegradation, span, [&](const degradation_t& m) {
+      if (m.generation >= newest.generation) newest = m;
+    });
+    return newest;
+  };
+  const degradation_t worse = newest_in({marks.at("cleared") - 60'000 * kMs, marks.at("clear")});
+  INFO(worse.text);
+  REQUIRE(worse.pages == 1);
+  std::map<std::string, sync::Rule> rules;
+  for (const sync::Rule& r : sync::parse_profile(worse.text, "of the sliders").rules) rules[r.modality] = r;
+  CHECK(rules.size() == 3);
+  REQUIRE(rules["audio"].delay);
+  CHECK(rules["audio"].delay->delay_s == Approx(0.08));
+  REQUIRE(rules["visual"].rate);
+  CHECK(rules["visual"].rate->rate_Hz == Approx(10));
+  REQUIRE(rules["haptic"].loss);
+  CHECK(rules["haptic"].loss->share == Approx(0.5));
+  check_profile_taken(log, worse.hash, marks.at("degraded"));
+
+  const degradation_t well = newest_in(marks.between("clear", "cleared"));
+  CHECK(sync::parse_profile(well.text, "of all well").rules.empty());
+  check_profile_taken(log, well.hash, marks.at("cleared"));
+}
+
+void check_hand(const RunLog& log, const Marks& marks) {
+  struct At {
+    std::int64_t t_ns;
+    vec3_t p;
+  };
+  std::vector<At> path;
+  double lowest_m = 10, highest_m = -10;
+  log.each<device_state_t>(channels::kDeviceState, [&](const device_state_t& m) {
+    CHECK(m.device == "live");
+    const auto& v = m.velocity_m_s;
+    CHECK(std::hypot(v.x, v.y, v.z) <= 1.0001);
+    path.push_back({m.header.publish_time_ns, m.pose.position_m});
+    lowest_m = std::min(lowest_m, m.pose.position_m.z);
+    highest_m = std::max(highest_m, m.pose.position_m.z);
+  });
+  REQUIRE(path.size() > 100);
+  CHECK(highest_m - lowest_m > 0.05);
+  // 1 m/s, and the lateness of two turns of the server's loop on a busy machine.
+  for (std::size_t i = 0, j = 0; j < path.size(); ++j) {
+    while (path[j].t_ns - path[i].t_ns > 100 * kMs) ++i;
+    const auto &a = path[i].p, &b = path[j].p;
+    const double far_m = std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);
+    CHECK(far_m <= static_cast<double>(path[j].t_ns - path[i].t_ns) * 1e-9 + 0.05);
+  }
+  CHECK(path.front().t_ns >= marks.at("hand"));
+  // The server lets go after 350 ms of silence.
+  CHECK(path.back().t_ns < marks.at("let_go") + 1000 * kMs);
+
+  double most_N = 0;
+  log.each<tool_state_t>(channels::kToolState, marks.between("hand", "let_go"), [&](const tool_state_t& m) {
+    most_N = std::max(most_N, std::hypot<double>(m.force_N.x, m.force_N.y, m.force_N.z));
+  });
+  CHECK(most_N > 0.5);  // the floor is felt through the mouse
+  std::map<int, int> states;
+  log.each<node_health_t>(channels::kNodeHealth, marks.between("freeze", "over"), [&](const node_health_t& m) {
+    if (m.node == "haptic_node") ++states[m.state];
+  });
+  CHECK(states[node_health_t::OUTPUT_LOST] > 0);
+}
+
+void check_tag(const RunLog& log, const Marks& marks) {
+  int asked = 0, before = 0;
+  log.each<tag_request_t>(channels::kTagRequest, [&](const tag_request_t& m) {
+    if (m.header.source != static_cast<std::int32_t>(sync::fnv1a_32("live_server"))) return;
+    const bool named =
+        std::find(m.patterns.begin(), m.patterns.end(), "sim_node.work.collision") != m.patterns.end();
+    asked += named;
+    before += named && m.header.publish_time_ns < marks.at("filled");
+  });
+  CHECK(asked > 3);
+  CHECK(before == 0);
+}
+
+// Ticks per second of each node, as NODE_HEALTH tells them.
+std::map<std::string, double> rates(const RunLog& log, const Span& span) {
+  std::map<std::string, std::pair<node_health_t, node_health_t>> ends;
+  log.each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
+    if (!ends.contains(m.node)) ends[m.node].first = m;
+    ends[m.node].second = m;
+  });
+  std::map<std::string, double> out;
+  for (const auto& [node, e] : ends) {
+    const double s = static_cast<double>(e.second.header.publish_time_ns - e.first.header.publish_time_ns) * 1e-9;
+    if (s > 0) out[node] = static_cast<double>(e.second.ticks - e.first.ticks) / s;
+  }
+  return out;
+}
+
+void check_nobody_notices(const RunLog& log, const Marks& marks) {
+  const auto before = rates(log, marks.between("filled", "degrade"));
+  for (const auto& [from, to] : {std::pair{"freeze", "frozen"}, std::pair{"killed", "over"}}) {
+    auto during = rates(log, marks.between(from, to));
+    for (const char* node :
+         {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
+      INFO(node << " while the browser is " << to);
+      REQUIRE(before.contains(node));
+      CHECK(during[node] > before.at(node) / 2);  // the machine may be busy
+      CHECK(during[node] < before.at(node) * 2);
+    }
+  }
+}
+
+// The instant of the world that was told last before a place in a log; -1: none.
+std::int64_t world_at(const std::filesystem::path& path, double at_s) {
+  sync::MappedLog file(path);
+  sync::LogScanner scanner(file.bytes());
+  std::optional<std::int64_t> first_us;
+  std::int64_t sim_ns = -1;
+  for (sync::LogEvent e; scanner.next(e);) {
+    if (!first_us) first_us = e.timestamp_us;
+    if (static_cast<double>(e.timestamp_us - *first_us) * 1e-6 > at_s) break;
+    if (e.channel == channels::kWorldState)
+      if (const auto m = sync::decode<world_state_t>(e.data.data(), e.data.size())) sim_ns = m->clock.sim_ns;
+  }
+  return sim_ns;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "What a person does in the live page is done on the bus, a frozen or killed browser changes nothing, and the "
+    "log is shown again") {
+  require_what_the_browser_needs();
+  RunScript run;
+  run.start({tapping_scene(), "--live", "--device", "external:live", "--seconds", "90", "--out", run.out()});
+  const std::string address = address_of(run.processes, "run");
+  INFO(run.processes.said("run"));
+  REQUIRE_FALSE(address.empty());
+  const std::filesystem::path marks_file = run.folder.path() / "marks.json",
+                              seen_file = run.folder.path() / "seen.json";
+  in_browser(run, "run.test.mjs", {address, marks_file});
+  run.processes.signal("run", SIGINT);
+  CHECK(run.finish(kPatience_s) >= 0);
+
+  const Marks marks{json::parse(contents(marks_file))};
+  const RunLog log(run.out());
+  check_hand(log, marks);
+  check_tag(log, marks);
+  check_profiles(log, marks);
+  check_commands(log);
+  check_world(log, marks);
+  check_nobody_notices(log, marks);
+
+  const std::filesystem::path recorded = run.out() / "run.lcmlog";
+  run.processes.spawn("open", {"env", "TACTUS_BIN=" + programs().string(),
+                               (repository() / "scripts/live/open").string(), recorded});
+  const std::string shown_at = address_of(run.processes, "open");
+  INFO(run.processes.said("open"));
+  REQUIRE_FALSE(shown_at.empty());
+  in_browser(run, "log.test.mjs", {shown_at, seen_file});
+  const json seen = json::parse(contents(seen_file));
+  REQUIRE(seen["places"].size() == 3);
+  for (const json& place : seen["places"]) {
+    const double to_s = place["to_s"].get<double>();
+    INFO(place.dump());
+    // Shown to four figures; the world is told 100 times a second, and a variable is thinned to 200.
+    const auto expected = static_cast<double>(world_at(recorded, to_s));
+    CHECK(place["sim_ns"].get<double>() == Approx(expected).margin(60e6));
+  }
+  run.processes.signal("open", SIGTERM);
+  CHECK(run.processes.wait_for_exit("open", kPatience_s) >= 0);
+}
