@@ -1,0 +1,128 @@
+#include "scripts/live/browser_message.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <stdexcept>
+#include <tactus/sim_command_t.hpp>
+
+using namespace tactus;
+using namespace tactus::live;
+
+namespace {
+
+const std::vector<std::string> kGood{
+    R"({"t":"watch","names":["TOOL_STATE:force_N.z","sim_node.work.collision"]})",
+    R"({"t":"command","what":"pause"})",
+    R"({"t":"command","what":"step","steps":25})",
+    R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":80,"rate_Hz":0,"loss":0.25}}})",
+    R"({"t":"hand","x":-0.5,"y":1,"push_m":0,"down":true})",
+    R"({"t":"play","play":true,"rate":2})",
+    R"({"t":"seek","to_s":12.5})",
+};
+
+// What a message may hold at the most, whatever was sent.
+void check_bounds(const BrowserMessage& m) {
+  if (const auto* w = std::get_if<WatchThese>(&m)) {
+    CHECK(w->names.size() <= kMostWatched);
+    for (const std::string& n : w->names) CHECK((!n.empty() && n.size() <= 192));
+  } else if (const auto* c = std::get_if<Command>(&m)) {
+    CHECK((c->kind >= sim_command_t::PAUSE && c->kind <= sim_command_t::RESET));
+    CHECK((c->steps >= 0 && c->steps <= 10'000));
+  } else if (const auto* d = std::get_if<DegradeThus>(&m)) {
+    CHECK(d->senses.size() <= 16);
+    for (const auto& [name, s] : d->senses) {
+      CHECK((s.delay_ms >= 0 && s.delay_ms <= 2000));
+      CHECK((s.rate_Hz == 0 || (s.rate_Hz >= 0.1 && s.rate_Hz <= 1000)));
+      CHECK((s.loss >= 0 && s.loss <= 1));
+    }
+  } else if (const auto* h = std::get_if<HandAt>(&m)) {
+    CHECK((std::abs(h->x) <= 1 && std::abs(h->y) <= 1 && std::abs(h->push_m) <= 1));
+  } else if (const auto* p = std::get_if<LogPlay>(&m)) {
+    CHECK((p->rate >= 0.1 && p->rate <= 16));
+  } else {
+    CHECK((std::get<LogSeek>(m).to_s >= 0 && std::get<LogSeek>(m).to_s <= 1e7));
+  }
+}
+
+// True: it was taken. Anything but one sentence ends the test.
+bool taken(const std::string& text) {
+  try {
+    check_bounds(parse_browser_message(text));
+    return true;
+  } catch (const std::invalid_argument& e) {
+    const std::string why = e.what();
+    CHECK(why.size() > 20);
+    CHECK(why.find(';') != std::string::npos);  // what is wrong; what to do
+    CHECK(why.find('\n') == std::string::npos);
+    return false;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Each message of a page is read as what it says") {
+  const auto watch = std::get<WatchThese>(parse_browser_message(kGood[0]));
+  CHECK(watch.names == std::vector<std::string>{"TOOL_STATE:force_N.z", "sim_node.work.collision"});
+  CHECK(std::get<Command>(parse_browser_message(kGood[1])).kind == sim_command_t::PAUSE);
+  const auto step = std::get<Command>(parse_browser_message(kGood[2]));
+  CHECK((step.kind == sim_command_t::STEP && step.steps == 25));
+  CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"resume"})")).kind == sim_command_t::RESUME);
+  CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"reset"})")).kind == sim_command_t::RESET);
+  const auto worse = std::get<DegradeThus>(parse_browser_message(kGood[3]));
+  REQUIRE(worse.senses.contains("audio"));
+  CHECK(worse.senses.at("audio").delay_ms == 80);
+  CHECK(worse.senses.at("audio").loss == 0.25);
+  CHECK_FALSE(worse.clear);
+  const auto hand = std::get<HandAt>(parse_browser_message(kGood[4]));
+  CHECK((hand.x == -0.5 && hand.y == 1 && hand.push_m == 0 && hand.down));
+  const auto play = std::get<LogPlay>(parse_browser_message(kGood[5]));
+  CHECK((play.play && play.rate == 2));
+  CHECK(std::get<LogSeek>(parse_browser_message(kGood[6])).to_s == 12.5);
+}
+
+TEST_CASE("What is no message of a page, or beyond its range, is refused with a sentence") {
+  for (const char* text :
+       {"", "null", "[]", "{}", "{\"t\":1}", R"({"t":"fly"})", R"({"t":"command"})", R"({"t":"command","what":"push"})",
+        R"({"t":"command","what":"set"})", R"({"t":"command","what":"step"})", R"({"t":"command","what":"step","steps":0})",
+        R"({"t":"command","what":"step","steps":10001})", R"({"t":"command","what":"step","steps":1e300})",
+        R"({"t":"hand","x":1.01,"y":0,"push_m":0,"down":true})", R"({"t":"hand","x":0,"y":0,"push_m":0,"down":1})",
+        R"({"t":"hand","x":"0","y":0,"push_m":0,"down":true})", R"({"t":"play","play":true,"rate":0})",
+        R"({"t":"seek","to_s":-1})", R"({"t":"seek","to_s":1e400})", R"({"t":"watch","names":"x"})",
+        R"({"t":"watch","names":[1]})", R"({"t":"watch","names":["a b"]})", R"({"t":"watch","names":["a\n"]})",
+        R"({"t":"degrade","clear":false,"senses":[]})", R"({"t":"degrade","senses":{}})",
+        R"({"t":"degrade","clear":false,"senses":{"a\"/>":{"delay_ms":1,"rate_Hz":0,"loss":0}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0.05,"loss":0}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":2001,"rate_Hz":0,"loss":0}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0}}})"}) {
+    INFO(text);
+    CHECK_FALSE(taken(text));
+  }
+  nlohmann::json many{{"t", "watch"}, {"names", nlohmann::json::array()}};
+  for (std::size_t i = 0; i <= kMostWatched; ++i) many["names"].push_back("n" + std::to_string(i));
+  CHECK_FALSE(taken(many.dump()));
+  CHECK_FALSE(taken(std::string(kMostBrowserBytes + 1, ' ')));
+  CHECK_FALSE(taken(std::string(kMostBrowserBytes, '[')));  // deep
+}
+
+TEST_CASE("10,000 mutated messages are taken within their bounds or refused with a sentence") {
+  std::mt19937 random(20);
+  const std::string letters = "{}[]\":,.-+eE0123456789truefalsnu\\ \x01\x7f\xc3\xff";
+  int good = 0, refused = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    std::string text = kGood[random() % kGood.size()];
+    for (auto changes = 1 + random() % 3; changes-- > 0;) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 4) {
+        case 0: text[at] = letters[random() % letters.size()]; break;
+        case 1: text.insert(at, 1, letters[random() % letters.size()]); break;
+        case 2: text.erase(at, 1 + random() % 3); break;
+        default: text.insert(at, text.substr(random() % text.size(), random() % 12));
+      }
+      if (text.empty()) text = "x";
+    }
+    ++(taken(text) ? good : refused);
+  }
+  CHECK(good > 100);  // both happen, or the mutations try nothing
+  CHECK(refused > 1000);
+}

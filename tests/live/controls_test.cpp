@@ -1,0 +1,156 @@
+// On a bus within this process: LCM's memq, no network; time is told by hand.
+#include "scripts/live/controls.h"
+
+#include <catch2/catch.hpp>
+
+#include "lcmtypes/channels.h"
+#include "sync/degradation/profile.h"
+#include "sync/identity.h"
+
+using namespace tactus;
+using namespace tactus::live;
+
+namespace {
+
+constexpr std::int64_t kRealtime_ns = 1'700'000'000'000'000'000;
+
+sync::BusOptions memory() {
+  sync::BusOptions options;
+  options.memory = true;
+  return options;
+}
+
+struct Page {
+  sync::Bus bus{sync::Identity::fresh("live_server", 9), memory()};
+  std::vector<std::pair<std::string, bool>> told;
+  Controls controls{bus, [this](const std::string& sentence, bool good) { told.emplace_back(sentence, good); }};
+  sync::Queue<sim_command_t>& commands = bus.queue<sim_command_t>(channels::kSimCommand, 100);
+  sync::Queue<degradation_t>& profiles = bus.queue<degradation_t>(channels::kDegradation, 100);
+  sync::Queue<tag_request_t>& tags = bus.queue<tag_request_t>(channels::kTagRequest, 100);
+  sync::HostTime now = sync::host_time(5'000'000'000);
+
+  void pass(double s) {
+    for (const sync::HostTime end = now + sync::from_seconds(s); now < end; now += sync::from_seconds(0.005)) {
+      bus.drain(now);
+      controls.step(now);
+    }
+    bus.drain(now);
+  }
+  template <class Message>
+  static std::vector<Message> all(sync::Queue<Message>& queue) {
+    std::vector<Message> out;
+    while (auto m = queue.pop()) out.push_back(m->message);
+    return out;
+  }
+  void in_force(const std::string& xml, std::int64_t generation) {
+    sync::ProfileInForce p;
+    p.text = xml;
+    p.hash = sync::fnv1a_64(xml.data(), xml.size());
+    p.generation = generation;
+    sync::send_profile(bus, p);
+    pass(0.02);
+    all(profiles);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A command is repeated until it is answered, with one number, and the answer is told") {
+  Page p;
+  p.controls.command({sim_command_t::STEP, 25}, p.now);
+  p.pass(0.45);
+  const auto sent = Page::all(p.commands);
+  REQUIRE(sent.size() == 5);  // at once, and each tenth of a second
+  for (const auto& m : sent) {
+    CHECK(m.id == sent[0].id);
+    CHECK((m.kind == sim_command_t::STEP && m.steps == 25));
+  }
+  sim_reply_t reply{};
+  reply.header.sim_time_ns = -1;
+  reply.id = sent[0].id + 1;  // of somebody else
+  reply.done = 1;
+  reply.text = "other";
+  p.bus.publish(channels::kSimReply, reply);
+  p.pass(0.01);
+  CHECK(p.told.empty());
+  reply.id = sent[0].id;
+  reply.text = "25 steps";
+  p.bus.publish(channels::kSimReply, reply);
+  p.pass(0.01);
+  CHECK(p.told == std::vector<std::pair<std::string, bool>>{{"25 steps", true}});
+  Page::all(p.commands);
+  p.pass(5);
+  CHECK(Page::all(p.commands).empty());
+  CHECK(p.told.size() == 1);
+}
+
+TEST_CASE("A command that nobody answers is given up after three seconds, with a sentence") {
+  Page p;
+  p.controls.command({sim_command_t::PAUSE, 0}, p.now);
+  p.pass(10);
+  CHECK(Page::all(p.commands).size() <= 31);
+  REQUIRE(p.told.size() == 1);
+  CHECK_THAT(p.told[0].first, Catch::Contains("no sim_node answers"));
+  CHECK_FALSE(p.told[0].second);
+}
+
+TEST_CASE("Sliders begin from the profile in force, and the newest profile is the one that is shown") {
+  Page p;
+  CHECK_FALSE(p.controls.profile());
+  p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" jitter="5ms"/></profile>)", kRealtime_ns + 50);
+  REQUIRE(p.controls.profile());
+  CHECK(p.controls.profile()->generation == kRealtime_ns + 50);
+
+  // A clock that was set back must not make what the page asks for the older one.
+  p.controls.degrade({{{"audio", {80, 0, 0}}}, false}, kRealtime_ns, p.now);
+  p.pass(0.05);
+  const auto sent = Page::all(p.profiles);
+  REQUIRE_FALSE(sent.empty());
+  CHECK(sent[0].generation > kRealtime_ns + 50);
+  const auto profile = sync::parse_profile(sent[0].text, "sent");
+  REQUIRE(profile.rules.size() == 2);
+  CHECK(profile.rules[0].jitter);
+  CHECK(profile.rules[1].delay->delay_s == Approx(0.08));
+  CHECK(p.controls.profile()->hash == sent[0].hash);
+
+  SECTION("all well takes all of it away") {
+    p.controls.degrade({{{"audio", {0, 0, 0}}}, true}, kRealtime_ns + 1000, p.now);
+    p.pass(0.05);
+    const auto well = Page::all(p.profiles);
+    REQUIRE_FALSE(well.empty());
+    CHECK(sync::parse_profile(well.back().text, "well").rules.empty());
+  }
+  SECTION("it is sent for two seconds, and then left to sync_node") {
+    p.pass(3);
+    CHECK(Page::all(p.profiles).size() < 25);
+    p.pass(3);
+    CHECK(Page::all(p.profiles).empty());
+  }
+  SECTION("what somebody else sends later holds") {
+    p.in_force(R"(<profile name="later"><degrade modality="haptic" off="true"/></profile>)", kRealtime_ns + 9999);
+    CHECK(p.controls.profile()->generation == kRealtime_ns + 9999);
+  }
+}
+
+TEST_CASE("Tags are asked for once a second as long as they are wanted") {
+  Page p;
+  p.controls.want_tags({"sim_node.work.collision"}, p.now);
+  p.pass(2.95);
+  const auto asked = Page::all(p.tags);
+  REQUIRE(asked.size() == 3);
+  for (const auto& m : asked) CHECK(m.patterns == std::vector<std::string>{"sim_node.work.collision"});
+  std::vector<std::string> many;
+  for (int i = 0; i < 17; ++i) many.push_back("node.tag" + std::to_string(i));
+  p.controls.want_tags(many, p.now);
+  p.pass(0.02);
+  CHECK(Page::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
+}
+
+TEST_CASE("Nobody takes hold of a tool before the scene is known") {
+  Page p;
+  CHECK_THROWS_WITH(p.controls.hand({0, 0, 0, false}, 1.33, p.now), Catch::Contains("not known yet"));
+  p.pass(0.1);
+  auto& devices = p.bus.queue<device_state_t>(channels::kDeviceState, 10);
+  p.pass(0.1);
+  CHECK_FALSE(devices.pop());
+}

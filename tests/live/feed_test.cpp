@@ -1,0 +1,152 @@
+#include "scripts/live/feed.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "tests/sync/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::live;
+using nlohmann::json;
+
+namespace {
+
+constexpr std::int64_t kRun = 7;
+constexpr std::int64_t kMs = 1'000'000;
+
+sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
+
+contact_events_t hit(std::int64_t id, double sim_ms, std::int64_t run = kRun) {
+  contact_events_t m{};
+  m.header = sync::header_of("sim_node", 1, id, 1, run);
+  // Simulated time 0 is at 10 s of the host.
+  m.clock.host_ns = 10'000'000'000;
+  m.clock.rate = 1;
+  m.pages = 1;
+  m.count = 1;
+  m.events.resize(1);
+  m.events[0].event_id = id;
+  m.events[0].kind = contact_event_t::HIT;
+  m.events[0].time_ns = static_cast<std::int64_t>(sim_ms * 1e6);
+  m.events[0].body_b = 1;
+  m.events[0].tool = -1;
+  m.events[0].normal.z = 1;
+  m.events[0].approach_speed_m_s = 0.5;
+  m.events[0].effective_mass_kg = 0.1;
+  return m;
+}
+presented_t heard(const std::string& modality, std::int64_t id, double host_ms, std::int32_t clock = 0) {
+  presented_t m{};
+  m.header = sync::header_of(modality + "_node", 1, id, 1);
+  m.header.clock = clock;
+  m.modality = modality;
+  m.count = 1;
+  m.reports.resize(1);
+  m.reports[0].event_id = id;
+  m.reports[0].presented_ns = m.reports[0].ready_ns = m.reports[0].scheduled_ns =
+      10'000 * kMs + static_cast<std::int64_t>(host_ms * 1e6);
+  return m;
+}
+node_health_t health(const std::string& node, std::int64_t run = kRun) {
+  node_health_t m{};
+  m.header = sync::header_of(node, 1, 0, 1, run);
+  m.node = node;
+  m.modality = "audio";
+  m.state = node_health_t::RUNNING;
+  m.tool = -1;
+  m.rate_Hz = m.nominal_rate_Hz = 375;
+  return m;
+}
+
+struct Fed {
+  Feed feed{kRun};
+  template <class Message>
+  void take(const char* channel, const Message& m, double s = 0) {
+    const auto bytes = sync::encode(m);
+    feed.take(channel, bytes, at(s));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("An event and what became of it are told once, with the latency between them") {
+  Fed f;
+  for (int copy = 0; copy < 3; ++copy) {  // events and reports are repeated on the bus
+    f.take(channels::kContactEvents, hit(1, 100));
+    f.take(channels::kPresented, heard("audio", 1, 130));
+  }
+  const json news = f.feed.news(at(1));
+  REQUIRE(news["events"].size() == 1);
+  CHECK(news["events"][0][0] == Approx(10.1));
+  CHECK(news["events"][0][1] == contact_event_t::HIT);
+  CHECK(news["events"][0][4] == Approx(0.5));
+  REQUIRE(news["presented"].size() == 1);
+  CHECK(news["presented"][0][0] == Approx(10.13));
+  CHECK(news["presented"][0][1] == "audio");
+  CHECK(news["presented"][0][4] == Approx(30));
+  CHECK_FALSE(f.feed.news(at(1.01)).contains("events"));
+}
+
+TEST_CASE("Times of two clocks are not compared: the presentation is drawn at its event, without a latency") {
+  Fed f;
+  f.take(channels::kContactEvents, hit(1, 100));
+  f.take(channels::kPresented, heard("audio", 1, 777'000, 42));
+  const json news = f.feed.news(at(1));
+  REQUIRE(news["presented"].size() == 1);
+  CHECK(news["presented"][0][0] == Approx(10.1));
+  CHECK(news["presented"][0][4].is_null());
+}
+
+TEST_CASE("Nodes are told with their health four times a second, and as lost when they are silent") {
+  Fed f;
+  f.take(channels::kNodeHealth, health("audio_node"), 0);
+  json first = f.feed.news(at(0.1));
+  REQUIRE(first["health"].size() == 1);
+  CHECK(first["health"][0]["node"] == "audio_node");
+  CHECK(first["health"][0]["source"] == static_cast<std::int32_t>(sync::fnv1a_32("audio_node")));
+  CHECK(first["health"][0]["lost"] == false);
+  CHECK_FALSE(f.feed.news(at(0.2)).contains("health"));
+  CHECK(f.feed.news(at(0.4)).contains("health"));
+  CHECK(f.feed.state(at(1.4))["health"][0]["lost"] == false);
+  CHECK(f.feed.state(at(1.6))["health"][0]["lost"] == true);
+  CHECK(f.feed.modalities() == std::set<std::string>{"audio"});
+  f.feed.clear();
+  CHECK(f.feed.state(at(2))["health"].empty());
+}
+
+TEST_CASE("Of another run nothing is told, and of a log all") {
+  Fed live, log{Feed(0)};
+  for (Fed* f : {&live, &log}) {
+    f->take(channels::kNodeHealth, health("audio_node", kRun + 1));
+    f->take(channels::kContactEvents, hit(1, 1, kRun + 1));
+  }
+  CHECK(live.feed.news(at(0)).empty());
+  CHECK(log.feed.news(at(0)).contains("health"));
+  CHECK(log.feed.state(at(0))["health"].size() == 1);
+}
+
+TEST_CASE("A flood is bounded and what is left out counted; hostile bytes are counted and tell nothing") {
+  Fed f;
+  for (int i = 0; i < 10'000; ++i) {
+    f.take(channels::kContactEvents, hit(i, i));
+    f.take(channels::kPresented, heard("audio", i, i + 30));
+  }
+  for (int i = 0; i < 200; ++i) f.take(channels::kNodeHealth, health("node_" + std::to_string(i)));
+  const json news = f.feed.news(at(0));
+  CHECK(news["events"].size() == Feed::kMostOfFrame);
+  CHECK(news["presented"].size() == Feed::kMostOfFrame);
+  CHECK(news["left_out"] == 2 * (10'000 - Feed::kMostOfFrame));
+  CHECK(news["health"].size() == Feed::kMostNodes);
+
+  std::mt19937 random(1);
+  const std::vector<std::vector<std::uint8_t>> good{sync::encode(hit(1, 1)), sync::encode(heard("audio", 1, 1)),
+                                                    sync::encode(health("audio_node"))};
+  const char* channels[]{channels::kContactEvents, channels::kPresented, channels::kNodeHealth};
+  for (std::size_t i = 0; i < 3000; ++i) {
+    auto bytes = good[i % 3];
+    bytes.resize(random() % bytes.size());
+    f.feed.take(channels[(i + i / 3) % 3], bytes, at(1));
+  }
+  CHECK(f.feed.bad() == 3000);
+  CHECK_NOTHROW(f.feed.news(at(2)).dump());
+}

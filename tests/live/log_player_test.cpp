@@ -1,0 +1,137 @@
+#include "scripts/live/log_player.h"
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <random>
+#include <tactus/log_info_t.hpp>
+
+#include "lcmtypes/channels.h"
+#include "tests/sync/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::live;
+
+namespace {
+
+constexpr std::int64_t kBegin_us = 1'700'000'000'000'000;
+constexpr int kEvents = 6000;  // one each 10 ms: a minute
+
+// A log whose events carry their number.
+std::shared_ptr<sync::MemorySink::State> minute() {
+  auto state = std::make_shared<sync::MemorySink::State>();
+  sync::LogWriter writer(std::make_unique<sync::MemorySink>(state));
+  for (int i = 0; i < kEvents; ++i) {
+    std::uint8_t bytes[sizeof i];
+    std::memcpy(bytes, &i, sizeof i);
+    writer.write(kBegin_us + 10'000 * static_cast<std::int64_t>(i), "NUMBER", bytes);
+  }
+  writer.flush();
+  return state;
+}
+
+struct Playing {
+  std::shared_ptr<sync::MemorySink::State> log = minute();
+  LogPlayer player{std::span<const std::uint8_t>(log->bytes)};
+  std::vector<int> heard;
+  Playing() {
+    while (player.read_on()) {
+    }
+  }
+  void advance(double s) {
+    player.advance(sync::from_seconds(s), [&](std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime) {
+      int i = -1;
+      if (channel == "NUMBER" && bytes.size() == sizeof i) std::memcpy(&i, bytes.data(), sizeof i);
+      heard.push_back(i);
+    });
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A log is played at its own speed, each event once and in order") {
+  Playing p;
+  CHECK(p.player.length_s() == Approx(59.99));
+  for (int i = 0; i < 200; ++i) p.advance(0.05);
+  REQUIRE(p.heard.size() == 1001);  // of the first ten seconds, with both ends
+  for (int i = 0; i < 1001; ++i) REQUIRE(p.heard[static_cast<std::size_t>(i)] == i);
+  CHECK(p.player.position_s() == Approx(10));
+
+  SECTION("and at eight times it") {
+    p.player.play(true, 8);
+    for (int i = 0; i < 20; ++i) p.advance(0.05);
+    CHECK(p.heard.size() == 1801);
+  }
+  SECTION("stopped it stands") {
+    p.player.play(false, 1);
+    for (int i = 0; i < 20; ++i) p.advance(0.05);
+    CHECK(p.heard.size() == 1001);
+    CHECK(p.player.position_s() == Approx(10));
+  }
+  SECTION("at its end it stands, with all events told") {
+    p.player.play(true, 16);
+    for (int i = 0; i < 200; ++i) p.advance(0.05);
+    CHECK(p.heard.size() == kEvents);
+    CHECK(p.player.position_s() == Approx(p.player.length_s()));
+  }
+}
+
+TEST_CASE("Wherever a log is wound to, it stands there, and what lay three seconds before is told first") {
+  Playing p;
+  p.player.play(false, 1);
+  std::mt19937 random(9);
+  for (int i = 0; i < 300; ++i) {
+    const double to_s = static_cast<double>(random() % 60'000) / 1000;
+    p.player.seek(to_s);
+    p.heard.clear();
+    p.advance(0.05);
+    REQUIRE(p.player.position_s() == Approx(std::min(to_s, p.player.length_s())));
+    REQUIRE_FALSE(p.heard.empty());
+    const int last = static_cast<int>(std::floor(std::min(to_s, p.player.length_s()) * 100 + 1e-6));
+    REQUIRE(p.heard.back() == last);
+    // From a place that was kept, at most half a second farther before.
+    const int from = last - 300;
+    REQUIRE(p.heard.front() <= std::max(0, from));
+    REQUIRE(p.heard.front() >= std::max(0, from - 52));
+    for (std::size_t k = 1; k < p.heard.size(); ++k) REQUIRE(p.heard[k] == p.heard[k - 1] + 1);
+  }
+  p.player.seek(1e7);
+  CHECK(p.player.position_s() == Approx(p.player.length_s()));
+  p.player.seek(-5);
+  CHECK(p.player.position_s() == 0);
+}
+
+TEST_CASE("A log is open at once, and its length grows while it is read through") {
+  const auto log = minute();
+  LogPlayer player{std::span<const std::uint8_t>(log->bytes)};
+  double before_s = 0;
+  do {
+    CHECK(player.length_s() >= before_s);
+    before_s = player.length_s();
+  } while (player.read_on());
+  CHECK(player.length_s() == Approx(59.99));
+}
+
+TEST_CASE("What is no log is refused with a sentence, and a damaged one is played around its damage") {
+  const std::vector<std::uint8_t> nothing, text(1000, 'x');
+  CHECK_THROWS_WITH(LogPlayer{std::span(nothing)}, Catch::Contains("no event"));
+  CHECK_THROWS_WITH(LogPlayer{std::span(text)}, Catch::Contains("no event"));
+  CHECK_THROWS_WITH(LogPlayer{std::string("/nowhere/run.lcmlog")}, Catch::Contains("/nowhere/run.lcmlog"));
+
+  std::mt19937 random(4);
+  for (int round = 0; round < 30; ++round) {
+    Playing p;
+    auto bytes = p.log->bytes;
+    for (int i = 0; i < 20; ++i) bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    LogPlayer player{std::span<const std::uint8_t>(bytes)};
+    while (player.read_on()) {
+    }
+    player.play(true, 16);
+    std::size_t heard = 0;
+    for (int i = 0; i < 100; ++i) {
+      if (i % 10 == 0) player.seek(static_cast<double>(random() % 60));
+      player.advance(sync::from_seconds(0.5), [&](std::string_view, std::span<const std::uint8_t>, sync::HostTime) { ++heard; });
+    }
+    CHECK(heard > 1000);
+    CHECK(player.position_s() <= player.length_s());
+  }
+}
