@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sync/kernel_drops.h"
 #include "sync/mapped_log.h"
 #include "sync/node.h"
 #include "sync/printable.h"
@@ -29,13 +28,29 @@ using namespace tactus;
 
 namespace {
 
-// Drops at all sockets of these two ports, whosever they are.
-std::int64_t drops_at(int port) {
-  std::ifstream file("/proc/self/net/udp");
-  std::stringstream table;
-  table << file.rdbuf();
-  return sync::drops_of_port(table.str(), port) + sync::drops_of_port(table.str(), port + 1);
-}
+// What the nodes that run say the kernel has dropped at their sockets since they were heard of first.
+class Drops {
+ public:
+  explicit Drops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
+  void listen() {
+    while (const auto m = healths_.pop()) {
+      const header_t& h = m->message.header;
+      if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMost && !nodes_.contains({h.source, h.incarnation}))) continue;
+      nodes_.try_emplace({h.source, h.incarnation}, m->message.kernel_drops, 0).first->second.second = m->message.kernel_drops;
+    }
+  }
+  std::int64_t sum() const {
+    std::int64_t sum = 0;
+    for (const auto& [node, drops] : nodes_) sum += drops.second - drops.first;
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  std::int64_t run_id_;
+  sync::Queue<node_health_t>& healths_;
+  std::map<std::pair<std::int32_t, std::int64_t>, std::pair<std::int64_t, std::int64_t>> nodes_;  // first and newest
+};
 
 std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Asset>& assets) {
   return std::find_if(assets.begin(), assets.end(), [](const sync::Asset& a) { return a.kind == asset_ref_t::SCENE; });
@@ -123,7 +138,7 @@ int main(int argc, char** argv) try {
   const int orders = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (!control.empty() && orders < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
   if (orders == STDIN_FILENO) fcntl(orders, F_SETFL, fcntl(orders, F_GETFL) | O_NONBLOCK);
-  const std::int64_t drops_before = drops_at(options.bus.port);
+  Drops drops(node.bus());
 
   sync::Lines lines;
   std::vector<std::uint8_t> message;
@@ -145,6 +160,7 @@ int main(int argc, char** argv) try {
   sync::HostTime next_note{};
   while (node.running() && !quit) {
     const sync::HostTime now = node.wait();
+    drops.listen();
     char bytes[512];
     for (ssize_t n; orders >= 0 && (n = read(orders, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
     for (std::string line; lines.take(line);) {
@@ -171,8 +187,7 @@ int main(int argc, char** argv) try {
     if (!told_over) std::cerr << "replay: over, " << note() << std::endl;
     told_over = true;
   }
-  const std::int64_t drops = drops_at(options.bus.port) - drops_before;
-  std::cerr << "replay: ends, " << note() << "; " << drops << " dropped by the kernel at receivers' sockets" << std::endl;
+  std::cerr << "replay: ends, " << note() << "; " << drops.sum() << " dropped by the kernel at the nodes' sockets" << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("replay", e);

@@ -5,10 +5,12 @@ import figures
 from words import figure as number
 from words import safe
 
-# Weber fractions of force: what is just noticeable lies between them; below the floor the tube keeps its width (as
-# scripts/renderings/compare.py).
+# Weber fractions of force: what is just noticeable lies between them; below the floor, where nobody measured, the tube keeps
+# its width (as scripts/renderings/compare.py).
 JND, FLOOR_N = (0.07, 0.10), 0.5
-FORCE_SOURCES = ("Jones 1989, Perception 18(5):681-687", "Pang, Tan and Durlach 1991, Perception & Psychophysics 49(6):531-540")
+FORCE_SOURCES = ("Pang, Tan and Durlach 1991, Perception & Psychophysics 49(6):531-540: roughly 7 % from 2.5 to 10 N, pinch grasp, five persons",
+                 "Raghu Prasad, Purswani and Manivannan 2013, Force JND for right index finger using contra lateral force matching paradigm, ICoRD'13: "
+                 "approximately 10 % from 2 to 5 N, six persons")
 MOST_TOOLS = 4
 
 
@@ -64,7 +66,7 @@ def of_tool(report, tool, first):
     more = (" The world is not the same in two runs with a person in them; " + "; ".join(told) + ".") if told else ""
     in_contact = float(np.mean(size > 1e-3)) * 100
     return report.gallery.keep(fig, f"force_{tool}", f"Tool {safe(tool)}{' (the first)' if first else ''}: force on the hand, largest {number(size.max())} N, felt in {number(in_contact)} % of the ticks. Shaded: "
-                               f"differences from it that are not noticed, by Weber fractions of 7 and 10 % {cited}, never narrower than at {FLOOR_N} N. Below: height of the device and of the "
+                               f"differences from it that are not noticed, by Weber fractions of 7 and 10 % {cited}, beyond the forces of those studies too, and never narrower than at {FLOOR_N} N (our choice). Below: height of the device and of the "
                                f"proxy that stays on the surface.{more}")
 
 

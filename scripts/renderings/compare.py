@@ -1,8 +1,9 @@
 """What changed from one rendering of a log to another, per sense. Arrays and rows in, one dictionary out; no file, no clock."""
 import numpy as np
 
-# Weber fractions of force: 7 to 10 % (Jones 1989; Pang, Tan and Durlach 1991). Below 0.5 N they grow, to 15 %: there the
-# tube keeps the width that it has at 0.5 N.
+# Weber fractions of force: 7 % (Pang, Tan and Durlach 1991, 2.5 to 10 N) to 10 % (Raghu Prasad, Purswani and Manivannan
+# 2013, 2 to 5 N). Small forces are told apart worse; nobody measured below: there the tube keeps the width that it has at 0.5 N
+# (design).
 FORCE_JND, FORCE_FLOOR_N = (0.07, 0.10), 0.5
 # Less is no force: what rounding leaves.
 NO_FORCE_N = 1e-3
