@@ -112,7 +112,7 @@ export class Variables {
         const first = s.times.findIndex((t) => t >= now - SPAN_S);
         if (first > 200 || (first < 0 && s.times.length > 1)) { const n = first < 0 ? s.times.length - 1 : first; s.times.splice(0, n); s.values.splice(0, n); }
       }
-      const unit = this.units.get(c.name) ?? "", lasts = c.series.map((s) => s.values[s.values.length - 1]).filter((v) => v !== undefined);
+      const unit = (this.units.get(c.name) ?? "").replace("degC", "°C"), lasts = c.series.map((s) => s.values[s.values.length - 1]).filter((v) => v !== undefined);
       c.box.dataset.values = String(c.series.reduce((n, s) => n + s.values.length, 0));
       c.box.dataset.series = String(c.series.length);
       this.show(c, lasts, unit && unit !== "1" ? " " + unit : "");
