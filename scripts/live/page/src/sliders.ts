@@ -43,6 +43,7 @@ export class Sliders {
   inForce(d: Degradation): void {
     element("inforce").textContent = d.name ? `in force: ${d.name}` : "";
     const text = JSON.stringify(d.senses);
+    element("inforce").dataset.senses = text;
     if (text === this.told || performance.now() < this.touched_ms + SETTLE_MS) return;
     this.told = text;
     this.more = new Set(Object.entries(d.senses).filter(([, s]) => s.more).map(([m]) => m));

@@ -85,6 +85,11 @@ try {
   await it.slide("#visual-rate", 3); // the fourth of its places: 10 Hz
   await it.slide("#haptic-loss", 50);
   mark("degrade");
+  // All three: the page sends once the hand rests, and on a busy machine it may seem to rest between two of them.
+  await until("the profile has all that the sliders ask for", async () => {
+    const s = JSON.parse(await it.page.$eval("#inforce", (e) => e.dataset.senses ?? "{}"));
+    return s.audio?.delay_ms === 80 && s.visual?.rate_Hz === 10 && s.haptic?.loss === 0.5 || s;
+  });
   await until("all senses have taken the profile", async () =>
     /changed in the live page/.test(await it.text("#inforce")) && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
   mark("degraded");
