@@ -125,7 +125,7 @@ TEST_CASE("Of another run nothing is told, and of a log all") {
   CHECK(log.feed.state(at(0))["health"].size() == 1);
 }
 
-TEST_CASE("A flood is bounded and what is left out counted; hostile bytes are counted and tell nothing") {
+TEST_CASE("A flood is bounded and what is left out counted, and hostile bytes are counted and tell nothing") {
   Fed f;
   for (int i = 0; i < 10'000; ++i) {
     f.take(channels::kContactEvents, hit(i, i));
