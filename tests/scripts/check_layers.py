@@ -29,6 +29,8 @@ MOST_LINES = 400
 SOURCES = (".h", ".cpp", ".c", ".lcm", ".py", ".cmake", ".glsl", ".vert", ".frag", ".sh")
 SKIPPED = {"build", "out", ".git", "__pycache__", "shared", "node_modules", "dist"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]')
+# The name of a test, over the lines that it takes. CMake's lists split it at a semicolon, and its halves name no test.
+TEST_NAME = re.compile(r'\bTEST_CASE\(\s*((?:"(?:[^"\\]|\\.)*"\s*)+)')
 UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX|HA" r"CK)\b")
 
 
@@ -61,12 +63,19 @@ def offences_of_include(inside, kind, header):
             yield f"<{header}>: {sentence}"
 
 
+def lines_before(lines, at):
+    return "\n".join(lines).count("\n", 0, at)
+
+
 def offences(root):
     for inside, path in source_files(root):
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
         if len(lines) > MOST_LINES:
             yield f"{inside}:{len(lines)}: longer than {MOST_LINES} lines; split it along its joints"
+        for name in TEST_NAME.finditer("\n".join(lines)):
+            if ";" in name.group(1) and inside.endswith(".cpp"):
+                yield f"{inside}:{lines_before(lines, name.start()) + 1}: a semicolon in the name of a test, which would never run; say it otherwise"
         for number, line in enumerate(lines, start=1):
             if UNFINISHED.search(line):
                 yield f"{inside}:{number}: unfinished work marked in the source"

@@ -42,6 +42,13 @@ class CheckLayers(unittest.TestCase):
                 self.assertEqual(1 if "EGL" not in line else len(found), len(found))
                 self.assertTrue(found and found[0].startswith(name + ":2: "), found)
 
+    def test_a_test_that_would_never_run_for_its_name_is_found(self):
+        for text in ('TEST_CASE("one; two") {', 'TEST_CASE(\n    "one "\n    "and; two", "[x]") {'):
+            found = self.found({"tests/sync/a_test.cpp": "\n" + text + "\n}\n"})
+            self.assertEqual(1, len(found))
+            self.assertTrue(found[0].startswith("tests/sync/a_test.cpp:2: "), found)
+        self.assertEqual([], self.found({"tests/sync/a_test.cpp": 'TEST_CASE("one, two") {\n  const char* s = "a;b";\n}\n'}))
+
     def test_a_long_file_is_found(self):
         self.assertEqual(1, len(self.found({"sync/a.cpp": "\n" * 401})))
         self.assertEqual([], self.found({"sync/a.cpp": "\n" * 400}))
