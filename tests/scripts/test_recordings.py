@@ -9,15 +9,7 @@ import unittest
 SUPERVISE = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "supervise"
 sys.path.insert(0, str(SUPERVISE))
 import arguments
-from refusal import Refusal
-
-
-def refusal_of(*words):
-    try:
-        arguments.parse(list(words), os.getcwd())
-    except Refusal as refusal:
-        return str(refusal)
-    return ""
+from test_supervise import refusal_of
 
 
 class Recordings(unittest.TestCase):

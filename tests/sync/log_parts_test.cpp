@@ -7,25 +7,9 @@
 #include <fstream>
 #include <set>
 
+#include "tests/sync/temporary_folder.h"
+
 using namespace tactus::sync;
-
-namespace {
-
-struct TemporaryFolder {
-  std::filesystem::path path;
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "tactus_XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path); }
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path)) names.insert(entry.path().filename());
-    return names;
-  }
-};
-
-}  // namespace
 
 TEST_CASE("Parts of a log are numbered on behind those that are there, and overwrite nothing") {
   const TemporaryFolder folder;

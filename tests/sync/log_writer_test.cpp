@@ -6,21 +6,13 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "tests/sync/memory_sink.h"
+#include "tests/sync/temporary_folder.h"
 
 using namespace tactus::sync;
 
 namespace {
 
 const std::vector<std::uint8_t> kData(100, 42);
-
-struct TemporaryFolder {
-  std::filesystem::path path;
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "tactus_XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path); }
-};
 
 }  // namespace
 

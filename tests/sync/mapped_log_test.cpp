@@ -11,21 +11,9 @@
 #include "sync/log_parts.h"
 #include "sync/log_reader.h"
 #include "sync/log_writer.h"
+#include "tests/sync/temporary_folder.h"
 
 using namespace tactus::sync;
-
-namespace {
-
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "tactus_XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
-
-}  // namespace
 
 TEST_CASE("A log that cannot be read is refused with its name") {
   CHECK_THROWS_WITH(MappedLog("/nowhere/run.lcmlog"), Catch::Contains("/nowhere/run.lcmlog"));
@@ -61,7 +49,7 @@ TEST_CASE("A log that is cut while it is read ends its reader with one sentence,
 TEST_CASE("A folder is read as one log of all its parts, in the order of their numbers") {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    const Folder folder;
+    const TemporaryFolder folder;
     LogParts parts(folder.path, {});
     const int count = 1 + static_cast<int>(random() % 12);  // run.10 comes behind run.9
     int written = 0;
@@ -86,7 +74,7 @@ TEST_CASE("A folder is read as one log of all its parts, in the order of their n
 }
 
 TEST_CASE("A part that fills its room to the last byte is followed by the next at once") {
-  const Folder folder;
+  const TemporaryFolder folder;
   LogParts parts(folder.path, {});
   for (int part = 0; part < 2; ++part) {
     LogWriter writer(parts.open());
