@@ -76,6 +76,14 @@ try {
   await it.add("WORLD_STATE:clock.sim_ns");
   for (const name of ["sim_node.work.collision", "WORLD_STATE:clock.sim_ns", "TOOL_STATE:force_N.z"])
     await until(`the graph of ${name} fills`, async () => (await it.drawn(name)) > 20 || it.drawn(name));
+  // The same as a bar and as text, and a graph again.
+  const card = '.card[data-name="sim_node.work.collision"]';
+  await it.page.select(`${card} select`, "bar");
+  await until("a bar has a length and its ends are named", () => it.page.$eval(card, (c) =>
+    Number.parseFloat(c.querySelector(".bar i")?.style.width) > 0 && [...c.querySelectorAll(".ends span")].every((e) => e.innerText !== "") || c.innerText));
+  await it.page.select(`${card} select`, "text");
+  await until("text is a number with its unit", () => it.page.$eval(card, (c) => /^\d[\d.]* us$/.test(c.querySelector(".big")?.innerText) || c.innerText));
+  await it.page.select(`${card} select`, "graph");
   if (screenshot) await it.page.screenshot({ path: screenshot });
 
   // A sense worse and better. The sliders begin where the profile is that the run was started with.
