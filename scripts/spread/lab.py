@@ -150,7 +150,7 @@ class Host:
         """As when its power fails; boot() again."""
         if self.process is None:
             return
-        signal_to(self.pid, signal.SIGKILL)
+        signal_to(self.pid or self.process.pid, signal.SIGKILL)
         self.process.wait()
         self.process.stdin.close()
         self.process.stdout.close()

@@ -20,6 +20,7 @@ WINDOW_S = 10
 FINISH = """#!/bin/sh
 # {name} died with exit code $1 (-1: by signal $2); runsv starts it again when this ends.
 [ -e ../../stopping ] && exit 0
+[ -e asked ] && rm asked && exit 0
 date +%s >>deaths
 since=$(($(date +%s) - {window}))
 recent=$(awk -v since="$since" '$1 >= since' deaths | wc -l)
