@@ -48,6 +48,9 @@ class CapturedStderr {
   int kept_, file_;
 };
 
+// Below SenderClock::kTolerance, above what it takes to read what has arrived.
+constexpr Nanoseconds kHeldUp{500'000};
+
 std::string joining(const Identity& id, const std::string& url) {
   return id.node + ": cannot join the bus at " + url + ": ";
 }
@@ -176,8 +179,14 @@ void Bus::follow_clocks() {
 void Bus::drain(HostTime now) {
   Connections& c = *connections_;
   c.now = now;
-  if (c.reader)
-    return c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) { c.hear(side, m); });
+  if (c.reader) {
+    const auto hear = [&](std::size_t side, const ChannelBytes& m) {
+      // Held up since `now` was read: what came meanwhile would seem to have arrived before it was sent.
+      if (const HostTime later = host_now(); later - c.now > kHeldUp) c.now = later;
+      c.hear(side, m);
+    };
+    return c.reader->read(kMaxDrain, hear);
+  }
   int left = kMaxDrain;
   while (left > 0 && c.realtime->handleTimeout(0) > 0) --left;
 }

@@ -86,8 +86,8 @@ def up(a, cluster):
     import results
     operator = operator_of(a, cluster)
     begin = time.monotonic()
-    away = operator.up(results.git_commit())
     remember(cluster.path)
+    away = operator.up(results.git_commit())
     if not operator.wait_for_world():
         raise Refusal("sim_node: its world has not begun after 10 minutes; see scripts/cluster logs sim_node")
     operator.say(f"{cluster.name} runs on {len(cluster.hosts) - len(away)} of {len(cluster.hosts)} hosts, {time.monotonic() - begin:.1f} s after the order")
