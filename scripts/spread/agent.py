@@ -215,6 +215,7 @@ def start(request):
     kept = record(request)
     members = [running(request, name) for name in request["names"]]
     write_record(request, {**kept, "here": list(dict.fromkeys([*kept["here"], *request["names"]]))})
+    members = [s for s in members if s.is_down()]
     before = {s.name: s.log.stat().st_size if s.log.exists() else 0 for s in members}
     for s in members:
         (s.path / "lost").unlink(missing_ok=True)

@@ -100,7 +100,9 @@ def down(a, cluster):
     if out.is_file() or out.is_dir() and any(out.iterdir()):
         raise Refusal(f"--out {out}: is there already; name another folder")
     operator = operator_of(a, cluster)
-    wrong = operator.down(out.absolute(), results.git_commit())
+    wrong, ran = operator.down(out.absolute())
+    if ran:
+        wrong += operator.sum_up(out.absolute(), results.git_commit(), **ran)
     if out.is_dir():
         operator.say(f"results in {out}")
     return wrong

@@ -1,5 +1,4 @@
 """What scripts/cluster can be told to do."""
-import json
 import os
 import pathlib
 import subprocess
@@ -10,6 +9,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "supervise"))
 import commands
+import results
 import shipment
 from arguments import SENSES
 from cluster_file import RECORDER, SYNC, WORLD
@@ -89,7 +89,7 @@ class Operator:
             self.insist(self.send(new, "files", own))
         placed = self.placement(self.ask_all("state", hosts)) if runs else {}
         wanted = {h: [n for n in self.cluster.of_host(h) if placed.get(n, h) == h] for h in hosts}
-        self.check(hosts, words, wanted)
+        self.check(new, words, wanted)
         if not runs:
             self.refuse_others(hosts, run_id)
         url = {"group": self.cluster.bus.group, "port": self.cluster.bus.port, "ttl": self.cluster.bus.ttl}
@@ -121,7 +121,8 @@ class Operator:
             packed = shipment.packed(self.files)
             self.say(f"installing this build ({len(packed) / 1e6:.0f} MB) on {', '.join(lacking)}")
             self.insist(self.send(lacking, "build", packed))
-        for host, answer in self.insist(self.ask_all("look", lacking or hosts, patience_s=15)).items():
+            looked |= self.insist(self.ask_all("look", lacking, patience_s=15))
+        for host, answer in ((h, looked[h]) for h in hosts):
             if answer["missing"]:
                 raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; install there: apt install {' '.join(packages(answer['missing']))}")
             if not answer["messages"]:
@@ -246,13 +247,14 @@ class Operator:
 
     # down
 
-    def down(self, out, git):
-        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each."""
+    def down(self, out):
+        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each, and for
+        sum_up() how long it ran, which nodes are not expected at its end and which were started again; None: nothing ran."""
         states = self.states()
         runs = {h: s["run"] for h, s in states.items() if not isinstance(s, Exception) and s["run"]}
         wrong = [str(s) + "; what runs there goes on until scripts/cluster down reaches it" for s in states.values() if isinstance(s, Exception)]
         if not runs:
-            return wrong or [f"nothing of {self.cluster.name} runs"]
+            return wrong or [f"nothing of {self.cluster.name} runs"], None
         nodes = {name: (h, node) for h, s in states.items() if h in runs for name, node in s["nodes"].items()}
         seconds = time.time() - min(kept["began"] for kept in runs.values())
         lost = [n for n, (_, node) in nodes.items() if node["lost"] or node["taken_down"]]
@@ -267,13 +269,15 @@ class Operator:
             wrong += [str(a)] if isinstance(a, Exception) else []
         wrong += self.gather(out, list(runs))
         restarts = {n: node["deaths"] for n, (_, node) in nodes.items() if node["deaths"]}
+        missing = [n for n in self.cluster.plan.nodes() if n not in nodes]
+        return wrong, {"seconds": seconds, "lost": {*lost, *missing}, "restarts": restarts}
+
+    def sum_up(self, out, git, seconds, lost, restarts):
+        """Summary and tables, as scripts/run makes them. Returns what went wrong, a sentence each."""
         for name, count in restarts.items():
             self.say(f"{name} died and was started again, {count} times" if count > 1 else f"{name} died once and was started again")
-        import results
-        self.cluster.plan.out = out
-        self.cluster.plan.seconds = seconds
-        missing = [n for n in self.cluster.plan.nodes() if n not in nodes]
-        return wrong + results.sum_up(self.cluster.plan, git, {*lost, *missing}, restarts, [])
+        self.cluster.plan.out, self.cluster.plan.seconds = out, seconds
+        return results.sum_up(self.cluster.plan, git, lost, restarts, [])
 
     def gather(self, out, hosts):
         """What the recorder's host has lies in the folder itself; what the others have in one of their names."""
