@@ -12,6 +12,7 @@
 #include <atomic>
 #include <iostream>
 
+#include "sync/bus_arguments.h"
 #include "sync/node.h"
 #include "sync/watch_table.h"
 
@@ -42,9 +43,7 @@ int main(int argc, char** argv) try {
   bool once = false, json = false;
   std::int64_t run_id = 0;
   double period_s = 1;
-  app.add_option("--group", bus_options.group, "multicast group of the bus")->capture_default_str();
-  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
-  app.add_option("--ttl", bus_options.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255));
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all")->envname("TACTUS_RUN_ID");
   app.add_flag("--once", once, "show one table and end; status 1 when no node was heard");
   app.add_flag("--json", json, "one line of JSON each time instead of the table");

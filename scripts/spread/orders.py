@@ -88,6 +88,7 @@ class Operator:
         if own_files(there):
             self.insist(self.send(new, "files", own))
         placed = self.placement(self.ask_all("state", hosts)) if runs else {}
+        self.end_doubles(runs)
         wanted = {h: [n for n in self.cluster.of_host(h) if placed.get(n, h) == h] for h in hosts}
         self.check(new, words, wanted)
         if not runs:
@@ -96,6 +97,17 @@ class Operator:
         self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
         self.start_all(hosts, wanted)
         return away
+
+    def end_doubles(self, runs):
+        """A host that could not be reached when its node was placed elsewhere still runs it: the later place holds."""
+        holders = {}
+        for host, kept in runs.items():
+            for name in kept["here"]:
+                holders.setdefault(name, []).append((kept.get("since", {}).get(name, 0.0), host))
+        for name, places in holders.items():
+            for _, host in sorted(places)[:-1]:
+                self.ask(host, "stop", patience_s=STOP_S, names=[name], leave=True, patience=3)
+                self.say(f"{name} ran on {host} too, from where it had been moved; it was ended there")
 
     def refuse_mixed(self, looked, hosts, runs):
         ours = shipment.messages()
@@ -209,7 +221,7 @@ class Operator:
         host = self.placement(states).get(node)
         if host is None:
             away = [h for h, s in states.items() if isinstance(s, Exception)]
-            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot)" if away else "; scripts/cluster up starts it"))
+            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot); --lost moves it all the same, and up ends it there later" if away else "; scripts/cluster up starts it"))
         return host
 
     def restart(self, node):
@@ -219,7 +231,7 @@ class Operator:
         self.ask(host, "start", patience_s=START_S, names=[node])
         self.say(f"{node} was started anew on {host}, {time.monotonic() - begin:.1f} s after it was asked to end")
 
-    def move(self, node, to, anew=False):
+    def move(self, node, to, anew=False, lost=False):
         if to not in self.cluster.hosts:
             raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
         if node.startswith(SYNC):
@@ -228,7 +240,9 @@ class Operator:
             raise Refusal(f"{node}: its recording lies on its host; end the run, place it elsewhere in the file and begin another")
         if node == WORLD and not anew:
             raise Refusal(f"{node}: elsewhere its world would begin anew; say so with --anew")
-        origin = self.where(node)
+        origin = None if lost else self.where(node)
+        if lost and any(node in s["nodes"] for s in self.states().values() if not isinstance(s, Exception)):
+            raise Refusal(f"{node}: its host can be reached; leave --lost away")
         if origin == to:
             raise Refusal(f"{node}: runs on {to} already")
         state = self.ask(to, "state")
@@ -236,14 +250,26 @@ class Operator:
             raise Refusal(f"{to}: nothing of the cluster runs there yet; first scripts/cluster up")
         self.identity = state["run"]["build"]
         begin = time.monotonic()
-        killed = self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
+        killed = [] if lost else self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
         try:
             self.ask(to, "start", patience_s=START_S, names=[node])
         except (Unreachable, Failed) as error:
             self.ask(to, "stop", patience_s=STOP_S, names=[node], leave=True)
-            self.ask(origin, "start", patience_s=START_S, names=[node])
-            raise Refusal(f"{node}: does not start on {to} ({error}); it runs on {origin} again") from None
-        self.say(f"{node} moved from {origin} to {to} in {time.monotonic() - begin:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+            if not lost:
+                self.ask(origin, "start", patience_s=START_S, names=[node])
+            raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
+        self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - begin:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+
+    def tell(self, words, files):
+        """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""
+        host = self.cluster.nodes[RECORDER].host
+        state = self.ask(host, "state")
+        if not state["run"]:
+            raise Refusal(f"nothing of {self.cluster.name} runs; scripts/cluster up starts it")
+        self.identity = state["run"]["build"]
+        bus = self.cluster.bus
+        words = ["@BUILD@/bin/" + words[0], *words[1:], "--group", bus.group, "--port", str(bus.port), "--ttl", str(bus.ttl), "--run-id", str(state["run"]["run_id"])]
+        return self.ask(host, "on_the_bus", patience_s=40, patience=30, words=words, files=files)
 
     # down
 

@@ -62,8 +62,8 @@ class Rehearsal:
             time.sleep(0.02)
         return None
 
-    def record(self, name, seconds):
-        """What the observer hears in so many seconds, as summary.json says it; the log stays in the folder."""
+    def record(self, name, seconds=None, until=None):
+        """What the observer hears in so many seconds, or until an event is set, as summary.json says it; the log stays in the folder."""
         out = self.folder / name
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
@@ -72,7 +72,10 @@ class Rehearsal:
                  "--ttl", "0", "--tags", "none", "--seconds", 1]
         with open(out / "observer.log", "w", encoding="utf-8") as log:
             observer = subprocess.Popen([str(w) for w in words], stderr=log, stdout=log)
-        time.sleep(seconds)
+        if until is None:
+            time.sleep(seconds)
+        else:
+            until.wait()
         observer.send_signal(signal.SIGINT)
         observer.wait(20)
         subprocess.run([BIN / "summarise", out, "--out", out / "summary.json"], capture_output=True, check=False)
