@@ -57,8 +57,8 @@ class Operator:
                 raise Refusal(str(answer))
         return answers
 
-    def states(self):
-        return self.ask_all("state", patience_s=3)
+    def states(self, patience_s=10):
+        return self.ask_all("state", patience_s=patience_s)
 
     # up
 

@@ -15,7 +15,7 @@ import cluster_file
 import lab
 from cluster import BIN
 from orders import Operator
-from refusal import Refusal
+from reach import Failed, Unreachable  # noqa: F401  for whoever gives orders that may fail
 
 PATIENCE_S = 60
 STAYS_S = 0.3

@@ -8,7 +8,7 @@ COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input 
 
 def gather(operator):
     """{host: state or error}, and what the bus says as watch --json: of the hosts the first that answers."""
-    states = operator.states()
+    states = operator.states(patience_s=3)  # who answers later is shown as not reached
     first = operator.cluster.nodes[RECORDER].host
     bus = {}
     for host in sorted(states, key=lambda h: h != first):
