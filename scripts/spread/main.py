@@ -123,7 +123,9 @@ def status(a, cluster):
         if a.json:
             tell(json.dumps({"cluster": cluster.name, "whole": table.whole(cluster, states, bus), "nodes": found}))
         else:
-            tell(("\x1b[H\x1b[2J" if live else "") + table.text(found)) if not live else os.write(1, ("\x1b[H\x1b[2J" + table.text(found) + "\n").encode())
+            if live:
+                os.write(1, b"\x1b[H\x1b[2J")  # to the corner, and clear
+            tell(table.text(found, os.get_terminal_size().columns if live else 160))
         if not live:
             return [] if any(r.get("process") == "up" for r in found) else [f"nothing of {cluster.name} runs; scripts/cluster up starts it"]
         time.sleep(max(0.0, PERIOD_S - (time.monotonic() - begin)))

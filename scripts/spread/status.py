@@ -60,7 +60,7 @@ def row(host, name, node, heard):
     return r
 
 
-def text(found, width=140):
+def text(found, width=160):
     """Lines of the table."""
     shown = [[cell(r.get(c)) for c in COLUMNS] for r in found]
     widths = [max(len(c), *(len(r[i]) for r in shown)) if shown else len(c) for i, c in enumerate(COLUMNS)]
