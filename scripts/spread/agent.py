@@ -149,9 +149,7 @@ def prepare(request):
         return {"prepared": False}
     home = place(request)
     out = home / "out"
-    if out.exists() and any(out.iterdir()):
-        shutil.rmtree(home / "out.before", ignore_errors=True)
-        out.rename(home / "out.before")
+    kept = clear_of_before(home, out)
     (out / "logs").mkdir(parents=True, exist_ok=True)
     (home / "files").mkdir(exist_ok=True)
     services.remove_leftovers()
@@ -169,13 +167,28 @@ def prepare(request):
                                     f"port={request['port']}\nout={out}\n", encoding="utf-8")
     (out / "cluster").unlink(missing_ok=True)
     (out / "cluster").symlink_to(folder)
-    kept = {"run_id": request["run_id"], "build": request["build"], "services": str(folder), "holder": holder.pid, "here": [], "began": time.time(),
+    run = {"run_id": request["run_id"], "build": request["build"], "services": str(folder), "holder": holder.pid, "here": [], "began": time.time(),
             "namespaces": net.unshare}
-    write_record(request, kept)
+    write_record(request, run)
     controls = [folder / "services" / name / "supervise" / "control" for name in request["nodes"]]
     if not services.wait_until(lambda: all(p.exists() for p in controls), 15):
         raise Refusal(f"the supervisor does not take up its services; see {out}/logs/supervisor.log there")
-    return {"prepared": True}
+    return {"prepared": True, "kept": kept}
+
+
+def clear_of_before(home, out):
+    """Results of a run before: gone when they were gathered, else kept beside; where, or ""."""
+    marker = home / "gathered"
+    gathered = marker.exists()
+    marker.unlink(missing_ok=True)
+    if not out.exists() or not any(out.iterdir()):
+        return ""
+    if gathered:
+        shutil.rmtree(out)
+        return ""
+    aside = home / time.strftime("out.%Y-%m-%d_%H-%M-%S")
+    out.rename(aside)
+    return str(aside)
 
 
 def write_record(request, kept):
@@ -326,6 +339,7 @@ def collect(request):
         for path in sorted(out.rglob("*")):
             if path.is_file() and not path.is_symlink():
                 tar.add(path, str(path.relative_to(out)))
+    (place(request) / "gathered").touch()
 
 
 QUESTIONS = {f.__name__: f for f in (nothing, look, receive, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}

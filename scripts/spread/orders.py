@@ -95,7 +95,10 @@ class Operator:
         if not runs:
             self.refuse_others(hosts, run_id)
         url = {"group": self.cluster.bus.group, "port": self.cluster.bus.port, "ttl": self.cluster.bus.ttl}
-        self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
+        answers = self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
+        for host, answer in answers.items():
+            if answer.get("kept"):
+                self.say(f"{host}: results of a run before, which nobody gathered, lie there in {answer['kept']}")
         self.start_all(hosts, wanted)
         return away
 
