@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sync/bus.h"
+#include "sync/bus_arguments.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/identity.h"
 #include "sync/node.h"
@@ -41,10 +42,7 @@ int main(int argc, char** argv) try {
   std::int64_t run_id = 1;
   std::string file;
   app.add_option("PROFILE", file, "XML file of the profile, or off");
-  app.add_option("--port", bus_options.port, "UDP port of the bus")
-      ->envname("TACTUS_PORT")
-      ->check(CLI::Range(1, 65534))
-      ->capture_default_str();
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "degrade", argc, argv);
 

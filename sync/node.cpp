@@ -10,6 +10,7 @@
 #include <iostream>
 #include <utility>
 
+#include "sync/bus_arguments.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/health_inputs.h"
 #include "sync/kernel_drops.h"
@@ -63,14 +64,7 @@ constexpr std::size_t kLongestNote = 140;
 void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
   name = d.node;
   app.description(d.about);
-  app.add_option("--group", bus.group, "multicast group of the bus")->capture_default_str();
-  app.add_option("--port", bus.port, "UDP port of the bus; bulk data uses the next one")
-      ->envname("TACTUS_PORT")
-      ->check(CLI::Range(1, 65534))
-      ->capture_default_str();
-  app.add_option("--ttl", bus.ttl, "0: this machine only, 1: this network")
-      ->check(CLI::Range(0, 255))
-      ->capture_default_str();
+  add_bus_options(app, bus);
   app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
       ->envname("TACTUS_RUN_ID")
       ->check(CLI::PositiveNumber)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sync/bus.h"
+#include "sync/bus_arguments.h"
 #include "sync/node.h"
 #include "sync/picture_reader.h"
 
@@ -21,7 +22,7 @@ int main(int argc, char** argv) try {
   app.add_option("FOLDER", folder, "made when it is not there")->required();
   app.add_option("--pictures", pictures, "ends after so many")->check(CLI::Range(1, 100000))->capture_default_str();
   app.add_option("--seconds", seconds, "ends when none has come for so long")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
-  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "save_pictures", argc, argv);
   std::filesystem::create_directories(folder);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sync/asking.h"
+#include "sync/bus_arguments.h"
 #include "sync/node.h"
 #include "sync/printable.h"
 
@@ -37,10 +38,7 @@ int main(int argc, char** argv) try {
   std::int64_t run_id = 1;
   std::string node;
   std::vector<std::string> words;
-  app.add_option("--port", bus_options.port, "UDP port of the bus")
-      ->envname("TACTUS_PORT")
-      ->check(CLI::Range(1, 65534))
-      ->capture_default_str();
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   app.add_option("NODE", node, "as its health calls it: haptic_node, or what --name gave it")->required();
   app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md says which may change")->required();

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sync/asking.h"
+#include "sync/bus_arguments.h"
 #include "sync/node.h"
 #include "sync/printable.h"
 
@@ -93,10 +94,7 @@ int main(int argc, char** argv) try {
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   Words words;
-  app.add_option("--port", bus_options.port, "UDP port of the bus")
-      ->envname("TACTUS_PORT")
-      ->check(CLI::Range(1, 65534))
-      ->capture_default_str();
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   add_commands(app, words);
   sync::parse_or_exit(app, "simulation", argc, argv);

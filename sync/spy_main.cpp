@@ -16,6 +16,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "sync/bus_arguments.h"
 #include "sync/decode.h"
 #include "sync/node.h"
 #include "sync/recorder_tap.h"
@@ -94,9 +95,7 @@ int main(int argc, char** argv) try {
   double once_s = 0;
   std::string json_file;
   std::int64_t run_id = 1;
-  app.add_option("--group", bus_options.group, "multicast group of the bus")->capture_default_str();
-  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
-  app.add_option("--ttl", bus_options.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255));
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "cluster run whose clocks and variables are heeded")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
   app.add_option("--once", once_s, "listens for so many seconds, prints the table and ends; status 1 when nothing was heard")->check(CLI::Range(0.1, 3600.0));
   app.add_option("--json", json_file, "with --once: the same figures as JSON")->needs("--once");

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <iostream>
 
+#include "sync/bus_arguments.h"
 #include "sync/node.h"
 #include "sync/watch_table.h"
 
@@ -19,7 +20,6 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPeriod{1'000'000'000};
 std::atomic<bool> stop{false};
 
 std::size_t terminal_width() {
@@ -42,12 +42,14 @@ int main(int argc, char** argv) try {
   sync::BusOptions bus_options;
   bool once = false, json = false;
   std::int64_t run_id = 0;
-  app.add_option("--group", bus_options.group, "multicast group of the bus")->capture_default_str();
-  app.add_option("--port", bus_options.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
-  app.add_option("--ttl", bus_options.ttl, "0: this machine only, 1: this network")->check(CLI::Range(0, 255));
+  double period_s = 1;
+  sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all")->envname("TACTUS_RUN_ID");
   app.add_flag("--once", once, "show one table and end; status 1 when no node was heard");
-  app.add_flag("--json", json, "one line of JSON a second instead of the table");
+  app.add_flag("--json", json, "one line of JSON each time instead of the table");
+  app.add_option("--period", period_s, "so many seconds from one table to the next; health comes ten times a second")
+      ->check(CLI::Range(0.05, 3600.0))
+      ->capture_default_str();
   sync::parse_or_exit(app, "watch", argc, argv);
   for (int s : {SIGINT, SIGTERM}) signal(s, [](int) { stop = true; });
 
@@ -56,9 +58,10 @@ int main(int argc, char** argv) try {
   auto& report = bus.queue<sync_report_t>(channels::kSyncReport, 256);
   const bool in_place = !once && !json && isatty(STDOUT_FILENO) == 1;
   sync::WatchTable table;
-  sync::HostTime next = sync::host_now() + kPeriod;
+  const sync::Nanoseconds period = sync::from_seconds(period_s);
+  sync::HostTime next = sync::host_now() + period;
   while (!stop && std::cout) {
-    bus.wait(kPeriod / 20);
+    bus.wait(std::min(period, sync::Nanoseconds(1'000'000'000)) / 20);
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
     while (const auto m = health.pop())
@@ -66,7 +69,7 @@ int main(int argc, char** argv) try {
     while (const auto m = report.pop())
       if (run_id == 0 || m->message.header.run_id == run_id) table.observe(m->message);
     if (now < next) continue;
-    next += kPeriod;
+    next += period;
     show(table, now, json, in_place);
     if (once && table.empty())
       throw std::runtime_error("heard no node on port " + std::to_string(bus_options.port) +

@@ -214,7 +214,9 @@ def start(request):
     """Starts nodes here, and remembers that they belong here. Returns when each has said something."""
     kept = record(request)
     members = [running(request, name) for name in request["names"]]
-    write_record(request, {**kept, "here": list(dict.fromkeys([*kept["here"], *request["names"]]))})
+    since = {**kept.get("since", {}), **{n: time.time() for n in request["names"] if n not in kept["here"]}}
+    write_record(request, {**kept, "here": list(dict.fromkeys([*kept["here"], *request["names"]])), "since": since})
+    members = [s for s in members if s.is_down()]
     before = {s.name: s.log.stat().st_size if s.log.exists() else 0 for s in members}
     for s in members:
         (s.path / "lost").unlink(missing_ok=True)
@@ -277,6 +279,9 @@ def on_the_bus(request):
     """What a program that speaks to the bus says, run where the cluster's network is."""
     kept = record(request)
     words = filled(request, request["words"])
+    for name, text in request.get("files", {}).items():  # that the words name
+        (place(request) / "files").mkdir(parents=True, exist_ok=True)
+        (place(request) / "files" / name).write_text(text, encoding="utf-8")
     if "--net" in kept.get("namespaces", []):
         ns = f"/proc/{kept['holder']}/ns"
         words = ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in kept["namespaces"] else []), *words]

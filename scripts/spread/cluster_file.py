@@ -134,9 +134,14 @@ class Reading:
         if len(hosts) > MOST_HOSTS:
             self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MOST_HOSTS} speak on one bus, more need relays between sites")
         placed, words = {}, []
+        self.settings = {}  # {process: words of --set}
+        known = (WORLD, RECORDER, *arguments.SENSES, *hands.processes(scene.tools(self.scene())))
         for element in self.root.findall("node"):
-            placed[element.get("name")] = self.placed(element, hosts)
-            words += self.settings(element, element.get("name"))
+            name = element.get("name")
+            if name not in known and not name.startswith(SYNC):
+                self.refuse(element, f"there is no node \"{name}\"; there are {', '.join(known)}, and {SYNC}, of which every host has one anyway")
+            placed[name] = self.placed(element, hosts)
+            self.take_settings(element, name)
             if element.get("device") is not None:
                 words += self.device(element)
         words += self.walls(placed, hosts)
@@ -146,6 +151,9 @@ class Reading:
         bus = self.bus(hosts)
         plan = self.plan(placed, words, bus)
         first = placed[RECORDER].host
+        for e in self.root.findall("node"):
+            if e.get("name").startswith(SYNC) and e.get("name") != sync_name(e.get("host"), first):
+                self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; call it so, or leave it away: every host has one")
         for host in hosts:
             placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or Placed(host, "", "", 0, (), ())
         return Cluster(self.root.get("name"), self.path, bus, hosts, placed, plan)
@@ -183,8 +191,15 @@ class Reading:
         return Placed(e.get("host"), get("realtime", ""), get("cpus", ""), int(get("nice", "0")), options,
                       tuple((v.get("name"), v.get("value")) for v in environment))
 
-    def settings(self, e, process):
-        return [word for s in e.findall("set") for word in ("--set", f"{process}.{s.get('name')}={s.get('value')}")]
+    def take_settings(self, e, process):
+        """The names are checked here, the values by the node itself."""
+        program = next((n for n in (hands.FIRST, walls.FIRST) if process.startswith(n)), process)
+        for s in e.findall("set"):
+            try:
+                words = arguments.settings([f"{program}.{s.get('name')}={s.get('value')}"], {})[program]
+            except Refusal as refusal:
+                self.refuse(s, str(refusal))
+            self.settings[process] = self.settings.get(process, []) + words
 
     def device(self, e):
         name = e.get("name")
@@ -212,7 +227,8 @@ class Reading:
                 self.refuse(w, f"the room {e.get('room')} has no wall \"{w.get('name')}\"; it has {', '.join(names)}")
             process = process_of[w.get("name")]
             placed[process] = self.placed(w, hosts)
-            words += self.settings(e, process) + self.settings(w, process)
+            self.take_settings(e, process)
+            self.take_settings(w, process)  # comes last, and so wins
         for wall in names:
             if process_of[wall] not in placed:
                 self.refuse(e, f"the wall {wall} is on no host; add <wall name=\"{wall}\" host=\"...\"/>")
@@ -239,8 +255,5 @@ class Reading:
         line += [word for name in arguments.SENSES if name not in placed for word in ("--without", name)]
         line += ["--out", str(self.out)]
         plan = arguments.parse(line, self.path.parent)
-        known = (*plan.nodes(), *(sync_name(h.get("name"), placed[RECORDER].host) for h in self.root.findall("host")))
-        for e in self.root.findall("node"):
-            if e.get("name") not in known:
-                self.refuse(e, f"there is no node \"{e.get('name')}\"; there are {', '.join(dict.fromkeys(known))}")
+        plan.settings.update(self.settings)
         return plan

@@ -192,9 +192,22 @@ class Lab:
     def environment(self):
         return dict(os.environ, **{VARIABLE: str(self.folder)})
 
+    def split(self, names):
+        """These hosts hear each other from now on, and nobody else."""
+        sh("ip", "link", "add", "switch2", "type", "bridge")
+        sh("ip", "link", "set", "switch2", "up")
+        for name in names:
+            sh("ip", "link", "set", self.hosts[name].port, "master", "switch2")
+
+    def unite(self):
+        for host in self.hosts.values():
+            sh("ip", "link", "set", host.port, "master", "switch")
+        sh("ip", "link", "del", "switch2")
+
     def close(self):
         for host in self.hosts.values():
             host.kill()
+        sh("ip", "link", "del", "switch2", check=False)
         sh("ip", "link", "del", "switch", check=False)
         shutil.rmtree(self.folder, ignore_errors=True)
 

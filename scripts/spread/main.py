@@ -14,6 +14,8 @@ from terminal import tell
 
 LAB = "TACTUS_LAB"
 PERIOD_S = 1.0
+TOLD = ("degrade", "playout", "set")
+LONGEST_FILE = 65536  # kMaxProfileBytes of sync/degradation/profile_exchange.h
 MOST_LINES = 100_000
 
 
@@ -38,7 +40,9 @@ def parsed(words):
     command("status", (["--once"], flag), (["--json"], flag))
     command("logs", (["nodes"], {"nargs": "*"}), (["--lines"], {"type": int, "default": 10}), (["--follow"], flag))
     command("restart", (["node"], {}))
-    command("move", (["node"], {}), (["host"], {}), (["--anew"], flag))
+    command("move", (["node"], {}), (["host"], {}), (["--anew"], flag), (["--lost"], flag))
+    for name in TOLD:
+        command(name, (["words"], {"nargs": argparse.REMAINDER}))
     command("doctor", (["--seconds"], {"type": float, "default": 5.0}), (["--json"], {}))
     a = parser.parse_args(words)
     if getattr(a, "name", None) and a.file:
@@ -100,7 +104,9 @@ def down(a, cluster):
     if out.is_file() or out.is_dir() and any(out.iterdir()):
         raise Refusal(f"--out {out}: is there already; name another folder")
     operator = operator_of(a, cluster)
-    wrong = operator.down(out.absolute(), results.git_commit())
+    wrong, ran = operator.down(out.absolute())
+    if ran:
+        wrong += operator.sum_up(out.absolute(), results.git_commit(), **ran)
     if out.is_dir():
         operator.say(f"results in {out}")
     return wrong
@@ -150,8 +156,23 @@ def restart(a, cluster):
 
 
 def move(a, cluster):
-    operator_of(a, cluster).move(a.node, a.host, a.anew)
+    operator_of(a, cluster).move(a.node, a.host, a.anew, a.lost)
     return []
+
+
+def tell_program(a, cluster):
+    """Runs the program on a host of the cluster; a file that is named goes along."""
+    words, files = [a.command], {}
+    for word in a.words:
+        if a.command == "degrade" and os.path.isfile(word):
+            files["told.xml"] = pathlib.Path(word).read_text(encoding="utf-8", errors="replace")
+            if len(files["told.xml"]) > LONGEST_FILE:
+                raise Refusal(f"{word}: is longer than {LONGEST_FILE} bytes; that is no profile")
+            word = "@FILES@/told.xml"
+        words.append(word)
+    said = operator_of(a, cluster).tell(words, files)
+    tell(said["out"].rstrip("\n"))
+    return [] if said["status"] == 0 else [(said["err"].strip().splitlines() or ["it ended with status " + str(said["status"])])[-1]]
 
 
 def check(_, cluster):
@@ -167,7 +188,7 @@ def main(words):
         import cluster_file
         cluster = cluster_file.read(file_of(a), os.path.abspath(os.path.join("out", f"cluster-{os.getpid()}")))
         try:
-            wrong = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check}[a.command](a, cluster)
+            wrong = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check, **{name: tell_program for name in TOLD}}[a.command](a, cluster)
         except (Failed, Unreachable) as error:
             raise Refusal(str(error)) from None
     except Refusal as refusal:

@@ -1,5 +1,4 @@
 """What scripts/cluster can be told to do."""
-import json
 import os
 import pathlib
 import subprocess
@@ -10,6 +9,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "supervise"))
 import commands
+import results
 import shipment
 from arguments import SENSES
 from cluster_file import RECORDER, SYNC, WORLD
@@ -88,14 +88,26 @@ class Operator:
         if own_files(there):
             self.insist(self.send(new, "files", own))
         placed = self.placement(self.ask_all("state", hosts)) if runs else {}
+        self.end_doubles(runs)
         wanted = {h: [n for n in self.cluster.of_host(h) if placed.get(n, h) == h] for h in hosts}
-        self.check(hosts, words, wanted)
+        self.check(new, words, wanted)
         if not runs:
             self.refuse_others(hosts, run_id)
         url = {"group": self.cluster.bus.group, "port": self.cluster.bus.port, "ttl": self.cluster.bus.ttl}
         self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
         self.start_all(hosts, wanted)
         return away
+
+    def end_doubles(self, runs):
+        """A host that could not be reached when its node was placed elsewhere still runs it: the later place holds."""
+        holders = {}
+        for host, kept in runs.items():
+            for name in kept["here"]:
+                holders.setdefault(name, []).append((kept.get("since", {}).get(name, 0.0), host))
+        for name, places in holders.items():
+            for _, host in sorted(places)[:-1]:
+                self.ask(host, "stop", patience_s=STOP_S, names=[name], leave=True, patience=3)
+                self.say(f"{name} ran on {host} too, from where it had been moved; it was ended there")
 
     def refuse_mixed(self, looked, hosts, runs):
         ours = shipment.messages()
@@ -121,7 +133,8 @@ class Operator:
             packed = shipment.packed(self.files)
             self.say(f"installing this build ({len(packed) / 1e6:.0f} MB) on {', '.join(lacking)}")
             self.insist(self.send(lacking, "build", packed))
-        for host, answer in self.insist(self.ask_all("look", lacking or hosts, patience_s=15)).items():
+            looked |= self.insist(self.ask_all("look", lacking, patience_s=15))
+        for host, answer in ((h, looked[h]) for h in hosts):
             if answer["missing"]:
                 raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; install there: apt install {' '.join(packages(answer['missing']))}")
             if not answer["messages"]:
@@ -208,7 +221,7 @@ class Operator:
         host = self.placement(states).get(node)
         if host is None:
             away = [h for h, s in states.items() if isinstance(s, Exception)]
-            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot)" if away else "; scripts/cluster up starts it"))
+            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot); --lost moves it all the same, and up ends it there later" if away else "; scripts/cluster up starts it"))
         return host
 
     def restart(self, node):
@@ -218,7 +231,7 @@ class Operator:
         self.ask(host, "start", patience_s=START_S, names=[node])
         self.say(f"{node} was started anew on {host}, {time.monotonic() - begin:.1f} s after it was asked to end")
 
-    def move(self, node, to, anew=False):
+    def move(self, node, to, anew=False, lost=False):
         if to not in self.cluster.hosts:
             raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
         if node.startswith(SYNC):
@@ -227,7 +240,9 @@ class Operator:
             raise Refusal(f"{node}: its recording lies on its host; end the run, place it elsewhere in the file and begin another")
         if node == WORLD and not anew:
             raise Refusal(f"{node}: elsewhere its world would begin anew; say so with --anew")
-        origin = self.where(node)
+        origin = None if lost else self.where(node)
+        if lost and any(node in s["nodes"] for s in self.states().values() if not isinstance(s, Exception)):
+            raise Refusal(f"{node}: its host can be reached; leave --lost away")
         if origin == to:
             raise Refusal(f"{node}: runs on {to} already")
         state = self.ask(to, "state")
@@ -235,24 +250,37 @@ class Operator:
             raise Refusal(f"{to}: nothing of the cluster runs there yet; first scripts/cluster up")
         self.identity = state["run"]["build"]
         begin = time.monotonic()
-        killed = self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
+        killed = [] if lost else self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
         try:
             self.ask(to, "start", patience_s=START_S, names=[node])
         except (Unreachable, Failed) as error:
             self.ask(to, "stop", patience_s=STOP_S, names=[node], leave=True)
-            self.ask(origin, "start", patience_s=START_S, names=[node])
-            raise Refusal(f"{node}: does not start on {to} ({error}); it runs on {origin} again") from None
-        self.say(f"{node} moved from {origin} to {to} in {time.monotonic() - begin:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+            if not lost:
+                self.ask(origin, "start", patience_s=START_S, names=[node])
+            raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
+        self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - begin:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+
+    def tell(self, words, files):
+        """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""
+        host = self.cluster.nodes[RECORDER].host
+        state = self.ask(host, "state")
+        if not state["run"]:
+            raise Refusal(f"nothing of {self.cluster.name} runs; scripts/cluster up starts it")
+        self.identity = state["run"]["build"]
+        bus = self.cluster.bus
+        words = ["@BUILD@/bin/" + words[0], *words[1:], "--group", bus.group, "--port", str(bus.port), "--ttl", str(bus.ttl), "--run-id", str(state["run"]["run_id"])]
+        return self.ask(host, "on_the_bus", patience_s=40, patience=30, words=words, files=files)
 
     # down
 
-    def down(self, out, git):
-        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each."""
+    def down(self, out):
+        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each, and for
+        sum_up() how long it ran, which nodes are not expected at its end and which were started again; None: nothing ran."""
         states = self.states()
         runs = {h: s["run"] for h, s in states.items() if not isinstance(s, Exception) and s["run"]}
         wrong = [str(s) + "; what runs there goes on until scripts/cluster down reaches it" for s in states.values() if isinstance(s, Exception)]
         if not runs:
-            return wrong or [f"nothing of {self.cluster.name} runs"]
+            return wrong or [f"nothing of {self.cluster.name} runs"], None
         nodes = {name: (h, node) for h, s in states.items() if h in runs for name, node in s["nodes"].items()}
         seconds = time.time() - min(kept["began"] for kept in runs.values())
         lost = [n for n, (_, node) in nodes.items() if node["lost"] or node["taken_down"]]
@@ -267,13 +295,15 @@ class Operator:
             wrong += [str(a)] if isinstance(a, Exception) else []
         wrong += self.gather(out, list(runs))
         restarts = {n: node["deaths"] for n, (_, node) in nodes.items() if node["deaths"]}
+        missing = [n for n in self.cluster.plan.nodes() if n not in nodes]
+        return wrong, {"seconds": seconds, "lost": {*lost, *missing}, "restarts": restarts}
+
+    def sum_up(self, out, git, seconds, lost, restarts):
+        """Summary and tables, as scripts/run makes them. Returns what went wrong, a sentence each."""
         for name, count in restarts.items():
             self.say(f"{name} died and was started again, {count} times" if count > 1 else f"{name} died once and was started again")
-        import results
-        self.cluster.plan.out = out
-        self.cluster.plan.seconds = seconds
-        missing = [n for n in self.cluster.plan.nodes() if n not in nodes]
-        return wrong + results.sum_up(self.cluster.plan, git, {*lost, *missing}, restarts, [])
+        self.cluster.plan.out, self.cluster.plan.seconds = out, seconds
+        return results.sum_up(self.cluster.plan, git, lost, restarts, [])
 
     def gather(self, out, hosts):
         """What the recorder's host has lies in the folder itself; what the others have in one of their names."""

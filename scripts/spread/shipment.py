@@ -63,11 +63,12 @@ def packed(files):
 
 
 def stripped(path):
-    if path.open("rb").read(4) != b"\x7fELF":
-        return path.read_bytes()
+    whole = path.read_bytes()
+    if whole[:4] != b"\x7fELF":
+        return whole
     with tempfile.NamedTemporaryFile() as small:
         done = subprocess.run(["strip", "--strip-all", "-o", small.name, str(path)], capture_output=True, check=False)
-        return pathlib.Path(small.name).read_bytes() if done.returncode == 0 else path.read_bytes()
+        return pathlib.Path(small.name).read_bytes() if done.returncode == 0 else whole
 
 
 def of_run(cluster):
