@@ -14,7 +14,7 @@ START = """\
 #!/bin/sh
 # Starts the private path of the bus on {name}, as root: rules, device, route; then it is openvpn(8). All but openvpn stays when
 # that ends: the bus then goes nowhere, not out openly, and who listens hears the others again as soon as it is back.
-# It goes before what is drawn and built here, and after what has real-time priority.
+# `start prepare` makes rules, device and route, and ends.
 set -e
 PATH=$PATH:/usr/sbin:/sbin
 cd "$(dirname "$0")"
@@ -23,6 +23,8 @@ ip link show dev {device} >/dev/null 2>&1 || ip tuntap add dev {device} mode tap
 ip addr replace {address}/24 dev {device}
 ip link set {device} up
 ip route replace {multicast} dev {device}
+[ "${{1-}}" != prepare ] || exit 0
+# Before what is drawn and built here, and after what has real-time priority.
 exec nice -n -10 openvpn --config tactus.conf "$@"
 """
 # A host that is lost is noticed within 5 s, and dialled again each second: the bus has no use for more patience.
