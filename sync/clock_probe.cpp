@@ -82,7 +82,7 @@ std::vector<ProbeWave> ClockProber::finish(HostTime now) {
     else
       ++contradictory_;
   }
-  Nanoseconds period = kPeriod;
+  Nanoseconds period = kPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(out.size() / kFewClocks));
   if (waves_.size() > kMostClocks) waves_.clear();  // hosts that come and go for months
   for (const ProbeWave& wave : out)
     if (waves_[wave.clock] < kFirstWaves && ++waves_[wave.clock] < kFirstWaves) period = kFirstPeriod;

@@ -5,8 +5,8 @@
 //        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
 //        DEGRADATION, PLAYOUT_REQUEST             the profile and the policy that somebody puts in force
 //        PLAYOUT                                  of another host's sync_node: one speaks, the others listen
-//   out  CLOCK_PROBE                              eight requests every 2 s or less; a reply to each request
-//        CLOCK_MAP                                twice a second, one per clock of another host
+//   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to each request
+//        CLOCK_MAP                                twice a second, likewise; one per clock of another host
 //        SYNC_REPORT                              once a second
 //        DEGRADATION                              again once a second, for who comes late
 //        PLAYOUT                                  ten times a second: when each sense presents an event
@@ -19,6 +19,7 @@
 #include <optional>
 
 #include "sync/clock_agreement.h"
+#include "sync/clock_probe.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/identity.h"
 #include "sync/node.h"
@@ -113,8 +114,10 @@ int main(int argc, char** argv) try {
     const sync::HostTime now = node.wait_for_event();
     while (const auto wave = probes.pop()) agreement.add(*wave);
     if (now >= next_maps) {
-      next_maps = std::max(next_maps + kMapPeriod, now);
       std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
+      // As the probes: with many hosts each map comes less often.
+      const auto share = std::max<std::int64_t>(1, static_cast<std::int64_t>(maps.size() / sync::ClockProber::kFewClocks));
+      next_maps = std::max(next_maps + kMapPeriod * share, now);
       for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);
       node.set_state(node_health_t::RUNNING, clocks_note(maps));
     }

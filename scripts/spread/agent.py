@@ -244,6 +244,11 @@ def stop(request):
     return {"killed": [s.name for s in stubborn]}
 
 
+def restart(request):
+    """stop and start, with one question."""
+    return stop(request) | start(request)
+
+
 def order(request):
     """A letter of runsv(8) to nodes: p pause, c continue, k kill, t end (it starts again)."""
     for name in request["names"]:
@@ -323,7 +328,7 @@ def collect(request):
                 tar.add(path, str(path.relative_to(out)))
 
 
-QUESTIONS = {f.__name__: f for f in (nothing, look, receive, check, prepare, start, stop, order, state, logs, on_the_bus, end)}
+QUESTIONS = {f.__name__: f for f in (nothing, look, receive, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}
 
 
 def main(request):

@@ -123,7 +123,9 @@ def status(a, cluster):
         if a.json:
             tell(json.dumps({"cluster": cluster.name, "whole": table.whole(cluster, states, bus), "nodes": found}))
         else:
-            tell(("\x1b[H\x1b[2J" if live else "") + table.text(found)) if not live else os.write(1, ("\x1b[H\x1b[2J" + table.text(found) + "\n").encode())
+            if live:
+                os.write(1, b"\x1b[H\x1b[2J")  # to the corner, and clear
+            tell(table.text(found, os.get_terminal_size().columns if live else 160))
         if not live:
             return [] if any(r.get("process") == "up" for r in found) else [f"nothing of {cluster.name} runs; scripts/cluster up starts it"]
         time.sleep(max(0.0, PERIOD_S - (time.monotonic() - begin)))
@@ -175,6 +177,17 @@ def tell_program(a, cluster):
     return [] if said["status"] == 0 else [(said["err"].strip().splitlines() or ["it ended with status " + str(said["status"])])[-1]]
 
 
+def doctor(a, cluster):
+    import checkup
+    if not 0.5 <= a.seconds <= 600:
+        raise Refusal(f"--seconds {a.seconds:g}: give a number from 0.5 to 600")
+    figures, wrong = checkup.run(operator_of(a, cluster), a.seconds)
+    if a.json:
+        pathlib.Path(a.json).write_text(json.dumps(figures, indent=1), encoding="utf-8")
+    tell("" if wrong else "\nall is well")
+    return wrong
+
+
 def check(_, cluster):
     tell(f"cluster: {cluster.name} is in order: {len(cluster.nodes)} nodes on {len(cluster.hosts)} hosts, {cluster.bus.group}:{cluster.bus.port}, ttl {cluster.bus.ttl}")
     return []
@@ -188,7 +201,7 @@ def main(words):
         import cluster_file
         cluster = cluster_file.read(file_of(a), os.path.abspath(os.path.join("out", f"cluster-{os.getpid()}")))
         try:
-            wrong = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check, **{name: tell_program for name in TOLD}}[a.command](a, cluster)
+            wrong = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check, "doctor": doctor, **{name: tell_program for name in TOLD}}[a.command](a, cluster)
         except (Failed, Unreachable) as error:
             raise Refusal(str(error)) from None
     except Refusal as refusal:

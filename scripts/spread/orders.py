@@ -32,6 +32,7 @@ class Operator:
         self.cluster, self.quiet = cluster, quiet
         self.reaches = {name: Reach(host, ssh_config) for name, host in cluster.hosts.items()}
         self.files = self.identity = None
+        self.began = 0.0  # when a node was last asked to end, for a restart or a move
 
     def say(self, text):
         if not self.quiet:
@@ -57,8 +58,8 @@ class Operator:
                 raise Refusal(str(answer))
         return answers
 
-    def states(self):
-        return self.ask_all("state", patience_s=3)
+    def states(self, patience_s=10):
+        return self.ask_all("state", patience_s=patience_s)
 
     # up
 
@@ -226,10 +227,9 @@ class Operator:
 
     def restart(self, node):
         host = self.where(node)
-        begin = time.monotonic()
-        self.ask(host, "stop", patience_s=STOP_S, names=[node], patience=3)
-        self.ask(host, "start", patience_s=START_S, names=[node])
-        self.say(f"{node} was started anew on {host}, {time.monotonic() - begin:.1f} s after it was asked to end")
+        self.began = time.monotonic()
+        self.ask(host, "restart", patience_s=STOP_S + START_S, names=[node], patience=3)
+        self.say(f"{node} was started anew on {host}, {time.monotonic() - self.began:.1f} s after it was asked to end")
 
     def move(self, node, to, anew=False, lost=False):
         if to not in self.cluster.hosts:
@@ -249,7 +249,7 @@ class Operator:
         if not state["run"]:
             raise Refusal(f"{to}: nothing of the cluster runs there yet; first scripts/cluster up")
         self.identity = state["run"]["build"]
-        begin = time.monotonic()
+        self.began = time.monotonic()
         killed = [] if lost else self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
         try:
             self.ask(to, "start", patience_s=START_S, names=[node])
@@ -258,7 +258,7 @@ class Operator:
             if not lost:
                 self.ask(origin, "start", patience_s=START_S, names=[node])
             raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
-        self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - begin:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+        self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - self.began:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
 
     def tell(self, words, files):
         """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""

@@ -15,9 +15,10 @@ import cluster_file
 import lab
 from cluster import BIN
 from orders import Operator
-from refusal import Refusal
+from reach import Failed, Unreachable  # noqa: F401  for whoever gives orders that may fail
 
 PATIENCE_S = 60
+STAYS_S = 0.3
 SILENT_S = 3.0  # the observer hears nothing at all
 
 
@@ -54,11 +55,15 @@ class Rehearsal:
         return self.watch.all_run(self.placement)
 
     def wait_until_whole(self, patience_s=PATIENCE_S):
-        """Seconds, or None when it does not become whole."""
-        begin = time.monotonic()
+        """Seconds until it is whole and stays so for a moment, or None when it does not become whole."""
+        begin, since = time.monotonic(), None
         while time.monotonic() < begin + patience_s:
-            if self.whole():
-                return time.monotonic() - begin
+            if not self.whole():
+                since = None
+            elif since is None:
+                since = time.monotonic()
+            elif time.monotonic() - since > STAYS_S:
+                return since - begin
             time.sleep(0.02)
         return None
 
@@ -125,6 +130,8 @@ def enter(script, words):
     """Starts the script again in namespaces of its own, unless it is there already; with status 77 where that cannot be."""
     if lab.is_inside():
         del os.environ["TACTUS_LAB_INSIDE"]
+        for number in (signal.SIGTERM, signal.SIGHUP):  # the first process of a namespace is ended by what it answers to only
+            signal.signal(number, lambda *_: sys.exit("ended from outside"))
         return
     try:
         lab.enter([sys.executable, os.path.abspath(script), *words])

@@ -15,8 +15,8 @@ from arguments import REPOSITORY
 from refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
-            "playout", "set", "message_types")
-OPTIONAL = ("relay", "probe_pairs")
+            "playout", "set", "message_types", "probe_pairs")
+OPTIONAL = ("relay",)
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms"}
 LEFT_OUT = {".py", ".md"}
 LARGEST_SCENE_BYTES = 500_000_000
@@ -30,6 +30,9 @@ def parts():
     found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
     for there, here in FOLDERS.items():
         found |= {f"{there}/{path.relative_to(here)}": path for path in sorted(here.rglob("*")) if path.is_file() and path.suffix not in LEFT_OUT}
+    scripts = REPOSITORY / "scripts"
+    for name in ("doctor", *(f"fitness/{p.name}" for p in (scripts / "fitness").glob("*.py")), *(f"supervise/{p}.py" for p in ("equipment", "network", "refusal"))):
+        found[f"share/scripts/{name}"] = scripts / name
     found["share/inside"] = REPOSITORY / "scripts" / "supervise" / "inside"
     for name, path in found.items():
         if not path.is_file():

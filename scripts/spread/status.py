@@ -8,7 +8,7 @@ COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input 
 
 def gather(operator):
     """{host: state or error}, and what the bus says as watch --json: of the hosts the first that answers."""
-    states = operator.states()
+    states = operator.states(patience_s=3)  # who answers later is shown as not reached
     first = operator.cluster.nodes[RECORDER].host
     bus = {}
     for host in sorted(states, key=lambda h: h != first):
@@ -60,7 +60,7 @@ def row(host, name, node, heard):
     return r
 
 
-def text(found, width=140):
+def text(found, width=160):
     """Lines of the table."""
     shown = [[cell(r.get(c)) for c in COLUMNS] for r in found]
     widths = [max(len(c), *(len(r[i]) for r in shown)) if shown else len(c) for i, c in enumerate(COLUMNS)]

@@ -116,6 +116,41 @@ class Hosts(unittest.TestCase):
         self.assertGreater(owed["audio"], 0)
         self.assertGreater(owed["visual"], 0)
 
+    def test_13_the_doctor_finds_nothing_between_the_hosts_and_their_clocks_as_far_apart_as_they_are(self):
+        figures, wrong = self.doctor()
+        between = [w for w in wrong if "hear" in w or "loses" in w]
+        self.assertEqual([], between)
+        apart_s = lambda a, b: self.r.lab.hosts[b].ahead_s - self.r.lab.hosts[a].ahead_s
+        for host, said in figures["pairs"].items():
+            self.assertEqual(2, len(said["others"]))
+            for other, o in said["others"].items():
+                self.assertLessEqual(abs(o["offset_us"] - 1e6 * apart_s(host, other)), o["uncertainty_us"], (host, other))
+                self.assertEqual(1, o["ttl"])
+        self.assertEqual(set(self.r.lab.hosts), set(figures["hosts"]))
+
+    def test_14_the_doctor_finds_a_firewall_and_a_lossy_cable(self):
+        sound, picture = self.r.lab.hosts["sound"], self.r.lab.hosts["picture"]
+        picture.lose(30)
+        drop = "add table inet deaf; add chain inet deaf input { type filter hook input priority 0; }; add rule inet deaf input udp dport 7669 drop"
+        subprocess.run([*sound.inside(), "nft", drop], check=True)
+        try:
+            _, wrong = self.doctor()
+        finally:
+            subprocess.run([*sound.inside(), "nft", "delete table inet deaf"], check=True)
+            picture.mend()
+        self.assertTrue([w for w in wrong if w.startswith("sound: hears none of the others")], wrong)
+        self.assertTrue([w for w in wrong if w.startswith("world: loses") and "picture" in w], wrong)
+        self.assertTrue([w for w in wrong if w.startswith("picture: loses") and "world" in w], wrong)
+        self.expect_whole()
+
+    def doctor(self):
+        import checkup
+        said, checkup.tell = checkup.tell, lambda *_: None
+        try:
+            return checkup.run(self.r.operator, 2)
+        finally:
+            checkup.tell = said
+
     def test_20_a_sense_moves_and_nobody_else_is_started_anew(self):
         before = self.incarnations()
         self.r.operator.move("audio_node", "picture")
@@ -253,7 +288,7 @@ class Hosts(unittest.TestCase):
         wrong, ran = self.r.operator.down(out)
         self.assertEqual([], wrong)
         self.assertIsNotNone(ran)
-        for path in ("run.lcmlog", "haptic.csv", "logs/sim_node.log", "sound/logs/audio_node.log", "picture/logs/visual_node.log"):
+        for path in ("run.lcmlog", "logs/sim_node.log", "sound/logs/audio_node.log", "picture/logs/visual_node.log"):
             self.assertTrue((out / path).is_file(), path)
         self.assertTrue(list(out.glob("sound/audio*.wav")))
         described = subprocess.run([BIN / "replay", out / "run.lcmlog", "--describe"], capture_output=True, text=True, check=True).stdout

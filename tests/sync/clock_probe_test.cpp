@@ -76,6 +76,32 @@ TEST_CASE("A wave is eight probes 64 ms apart, every two seconds, and keeps the 
   }
 }
 
+TEST_CASE("Of many clocks each is asked less often, so that all probes grow with the hosts and not with their square") {
+  for (const std::int32_t others : {1, 16, 31, 32, 63}) {
+    Pair p;
+    Nanoseconds last{0};
+    for (int wave = 0; wave < ClockProber::kFirstWaves + 1; ++wave) {
+      const HostTime begin = p.prober.next();
+      for (int probe = 0; probe < ClockProber::kProbes; ++probe) {
+        const HostTime now = p.prober.next();
+        const clock_probe_t request = p.ask(now);
+        for (std::int32_t k = 0; k < others; ++k) {
+          clock_probe_t reply = p.answer(request, to_ns(now) + 500, to_ns(now) + 600);
+          reply.header.clock = 100 + k;
+          p.prober.reply(reply, now + Nanoseconds(1100));
+        }
+      }
+      REQUIRE(p.prober.finish(p.prober.next()).size() == static_cast<std::size_t>(others));
+      last = p.prober.next() - begin;
+    }
+    INFO(others << " other clocks");
+    CHECK(last == ClockProber::kPeriod * std::max(1, others / 16));
+    // Requests and answers of all hosts together, a second: each answers each.
+    const double hosts = others + 1.0;
+    CHECK(8 * hosts * (1 + others) / to_seconds(last) <= 64 * 2 * hosts + 64);
+  }
+}
+
 TEST_CASE("One answer of eight is a wave, none is no wave, and the next wave comes all the same") {
   Pair p;
   std::vector<std::pair<std::int64_t, std::int64_t>> ways(8, {-1, 0});
