@@ -21,8 +21,9 @@ BUFFER_BYTES = 64 << 20
 RATE_HZ = 300              # of forged frames
 KEPT = 500                 # frames to send again
 MARK = b"FORGED_"          # channels that nobody but the intruder uses, with the number of the kind behind it
-# A message of LCM, whole or a fragment, wherever it lies: magic number, number, (sizes,) name of the channel.
-MESSAGE = re.compile(rb"LC02[\s\S]{4}[A-Z]+_[A-Z_]+\0|LC03[\s\S]{16}")
+# A message of LCM, wherever it lies: magic number, number, name of the channel; or a fragment: magic number, number, size and offset below
+# 16 MB, number and count below 256. The magic number alone is in one of 4 GB of what is sealed.
+MESSAGE = re.compile(rb"LC02[\s\S]{4}[A-Z]+_[A-Z_]+\0|LC03[\s\S]{4}(?:\0[\s\S]{3}){2}(?:\0[\s\S]){2}")
 CHANNELS = re.compile(rb"TOUCH_MODEL|CONTACT_EVENTS|WORLD_STATE|TOOL_STATE|PRESENTED|NODE_HEALTH|SYNC_REPORT|CLOCK_PROBE|CLOCK_MAP|THERMAL_STATE|SCENE_MANIFEST")
 TEXTS = re.compile(rb"sim_node|haptic_node|audio_node|visual_node|thermal_node|steel_ball")
 KINDS = ("multicast", "multicast in a host's name", "multicast in the path's name", "multicast to a host's card", "unicast", "unicast to the path's address",

@@ -107,13 +107,14 @@ class Run:
             summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
         except OSError:
             raise Trouble("summarise: made no summary of the log") from None
+        age = summary["nodes"]["haptic_node"]["input_age_ms"].get("TOUCH_MODEL", {}).get("p50")  # from host to host
         senses = {}
         for sense, debt in summary["contacts"]["by_modality"].items():
             node = summary["nodes"][f"{sense}_node"]
             # One that the processors had no time for loses events without anybody's help.
             starved = node["missed_ticks"] > STARVED * (node["ticks"] + node["missed_ticks"])
             senses[sense] = {**{what: debt[what] for what in ("owed", "presented", "lost")}, "starved": starved}
-        return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses}
+        return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses, "touch_age_ms": age}
 
     def kill(self):
         for process in self.nodes.values():

@@ -27,6 +27,8 @@ mount -t tmpfs tmpfs disk
 mkdir disk/up disk/work
 mount -t overlay overlay -o lowerdir=/,upperdir=disk/up,workdir=disk/work merged
 mount -t proc proc merged/proc
+mount --bind merged/proc/sys merged/proc/sys
+mount -o remount,bind,ro merged/proc/sys
 mount -t sysfs sysfs merged/sys
 mount -t cgroup2 cgroup2 merged/sys/fs/cgroup
 mount --rbind /dev merged/dev
@@ -49,7 +51,7 @@ chroot . systemd-tmpfiles --create /etc/tmpfiles.d/tactus.conf
 for u in $2; do chroot . systemctl --quiet enable tactus-$u; done
 ip link set lo up
 ip route add 224.0.0.0/4 dev lo
-exec env -i container=other PATH="$PATH" chroot . /lib/systemd/systemd --system --log-target=console
+exec env -i container=other PATH="$PATH" chroot . /lib/systemd/systemd --system --log-target=null
 """
 
 
@@ -192,9 +194,6 @@ def main():
             presented = senses(system)
             print("presented:", presented)
             assert all(presented[sense] > 0 for sense in ("haptic", "audio", "visual", "thermal")), presented
-        except AssertionError:
-            print((inside / "log").read_text(encoding="utf-8")[-2000:])
-            raise
         finally:
             system.close()
     return 0
