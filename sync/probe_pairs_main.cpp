@@ -111,11 +111,14 @@ int main(int argc, char** argv) try {
   std::uint64_t run = 0;
   double seconds = 5;
   sync::add_bus_options(app, bus);
-  app.add_option("--host", host, "name of this host")->required();
-  app.add_option("--expect", expected, "names of all hosts, this one too")->required()->delimiter(',');
-  app.add_option("--round", run, "number of this round of probes, the same on all hosts")->required();
+  app.add_option("--host", host, "name of this host");
+  app.add_option("--expect", expected, "names of all hosts, this one too")->delimiter(',');
+  app.add_option("--round", run, "number of this round of probes, the same on all hosts");
   app.add_option("--seconds", seconds, "how long")->check(CLI::Range(0.5, 600.0))->capture_default_str();
   sync::parse_or_exit(app, "probe_pairs", argc, argv);
+
+  if (host.empty() || expected.empty() || run == 0)
+    throw std::invalid_argument("--host, --expect and --round are needed; see probe_pairs --help");
 
   Socket socket(bus);
   std::map<std::string, sync::PairRecord> others;
