@@ -73,6 +73,8 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   ip_mreq group{};
   group.imr_multiaddr.s_addr = address_;
   if (setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) throw trouble(o, "join the group");
+  const int no = 0;  // on the interface of the route only, as sync/udp_port.cpp
+  if (setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0) throw trouble(o, "join the group on one interface");
 }
 
 ProbeSocket::~ProbeSocket() {

@@ -40,6 +40,9 @@ void prepare(int socket, const std::string& group, int port) {
   ip_mreq member{};
   member.imr_multiaddr = at.sin_addr;
   set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &member, sizeof member, "IP_ADD_MEMBERSHIP");
+  // On that interface only: otherwise what another program joined the group for elsewhere is heard too.
+  const int no = 0;
+  set(socket, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no, "IP_MULTICAST_ALL");
 }
 
 }  // namespace

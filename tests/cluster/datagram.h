@@ -25,6 +25,12 @@ class Datagrams {
   Datagrams(const Datagrams&) = delete;
   Datagrams& operator=(const Datagrams&) = delete;
 
+  // Sends by the loopback interface from now on, wherever the route to the group leads.
+  void by_loopback() const {
+    const in_addr loopback{htonl(INADDR_LOOPBACK)};
+    setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
+  }
+
   // Sends to the real-time port (0) or the bulk port (1). Not more than the network carries: what it refuses is gone.
   void send(const Bytes& bytes, int port = 0) const {
     sockaddr_in to{};

@@ -7,6 +7,7 @@
 
 #include "sync/pacing.h"
 #include "tests/cluster/datagram.h"
+#include "tests/cluster/two_machines.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -105,4 +106,30 @@ TEST_CASE("Another group on the same port is not heard") {
   wire.send_message("A", numbered(1));
   CHECK(read(reader, 10, 1).size() == 1);
   CHECK(read(other, 0.1, 1).empty());
+}
+
+TEST_CASE("What comes in by another network, where another program joined the group, is not heard") {
+  const Cable cable;
+  if (!cable.made()) {
+    WARN("skipped: this system allows no second network with a cable to it");
+    return;
+  }
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);  // on the cable, as the route says
+  const int other = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  const int yes = 1;
+  setsockopt(other, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  sockaddr_in any{};
+  any.sin_family = AF_INET, any.sin_port = htons(channels::kDefaultPort);
+  REQUIRE(bind(other, reinterpret_cast<const sockaddr*>(&any), sizeof any) == 0);
+  ip_mreq member{};
+  inet_pton(AF_INET, channels::kGroup, &member.imr_multiaddr);
+  member.imr_interface.s_addr = htonl(INADDR_LOOPBACK);
+  REQUIRE(setsockopt(other, IPPROTO_IP, IP_ADD_MEMBERSHIP, &member, sizeof member) == 0);
+  Datagrams wire;
+  wire.by_loopback();
+  wire.send_message("A", numbered(1));
+  CHECK(read(reader, 0.2, 1).empty());
+  char byte = 0;
+  CHECK(recv(other, &byte, sizeof byte, 0) == 1);  // it was there to be heard
+  close(other);
 }
