@@ -51,7 +51,7 @@ class Socket {
         setsockopt(fd_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &member, sizeof member) < 0)
       throw std::system_error(errno, std::generic_category(),
                               "cannot join " + o.group + ", port " + std::to_string(o.port) +
-                                  "; add a route, ip route add 224.0.0.0/4 dev INTERFACE, or choose another --port");
+                                  "; add a multicast route, ip route add 224.0.0.0/4 dev INTERFACE, or choose another --port");
   }
   ~Socket() { close(fd_); }
   Socket(const Socket&) = delete;
@@ -117,10 +117,9 @@ int main(int argc, char** argv) try {
   app.add_option("--seconds", seconds, "how long")->check(CLI::Range(0.5, 600.0))->capture_default_str();
   sync::parse_or_exit(app, "probe_pairs", argc, argv);
 
+  Socket socket(bus);
   if (host.empty() || expected.empty() || run == 0)
     throw std::invalid_argument("--host, --expect and --round are needed; see probe_pairs --help");
-
-  Socket socket(bus);
   std::map<std::string, sync::PairRecord> others;
   for (const std::string& name : expected)
     if (name != host) others[name];

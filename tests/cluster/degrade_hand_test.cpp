@@ -151,14 +151,17 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
   // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
   ask_for(c, {"asap"});
   c.feel(2);  // delays of presentation settle
-  const Felt clean = c.feel(5), again = c.feel(5);
+  Felt clean = c.feel(5), again = c.feel(5);
+  // A machine that stood still for a moment has a tap in one of the spans elsewhere: until two are alike.
+  for (int span = 2; span < 5 && error_N(clean, again) > 0.002 * clean.peak_N(); ++span)
+    clean = std::move(again), again = c.feel(5);
   const auto rates = c.rates(2);
   const double peak_N = clean.peak_N(), noise_N = error_N(clean, again);
   REQUIRE(peak_N > 1);
   REQUIRE(noise_N < 0.01 * peak_N);
   // The same taps differ by a few mN, beside heavy work by some 20.
   const double effect_N = std::max(1.5 * noise_N, 0.004 * peak_N);
-  for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"95% burst=200\"", "freeze=\"zero\"",
+  for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"98% burst=400\"", "freeze=\"zero\"",
                                  "off=\"true\"", "force_step=\"1N\""}) {
     put_in_force(c, "<degrade modality=\"haptic\" " + rule + "/>");
     c.feel(1);
