@@ -30,8 +30,10 @@ def run(operator, seconds):
     states = operator.ask_all("state", hosts)
     for host in hosts:
         wrong += of_host(operator, host, looked[host], answers[host], states[host], figures)
-    if len(hosts) > 1:
-        wrong += of_pairs(operator, hosts, seconds, figures)
+    for site in dict.fromkeys(operator.cluster.hosts[h].site for h in hosts):
+        of_site = [h for h in hosts if operator.cluster.hosts[h].site == site]
+        if len(of_site) > 1:
+            wrong += of_pairs(operator, of_site, seconds, figures)
     for sentence in figures["remarks"]:
         tell(f"remark: {sentence}")
     return figures, wrong
@@ -87,6 +89,6 @@ def of_pairs(operator, hosts, seconds, figures):
             wrong.append(f"{host}: {(a['err'].strip().splitlines() or ['probe_pairs ended with status ' + str(a['status'])])[-1]}")
         else:
             said[host] = json.loads(a["out"])
-    figures["pairs"] = said
+    figures["pairs"] |= said
     tell("\n" + pairs.text(pairs.rows(said)))
     return wrong + pairs.findings(said)

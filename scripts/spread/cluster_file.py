@@ -9,6 +9,7 @@ sys.path.insert(0, str(HERE.parent / "supervise"))
 import arguments
 import hands
 import scene
+import sites
 import walls
 from refusal import Refusal
 
@@ -28,6 +29,7 @@ class Host:
     address: str  # for ssh: as on its command line; of a namespace: its name
     folder: str   # where it keeps builds and results; "": in the home
     build: str    # folder of a build of its own; "": ours is installed
+    site: str     # hosts of a site hear each other's multicast; "": the site that is not named
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,6 +58,7 @@ class Cluster:
     hosts: dict  # {name: Host}, in the order of the file
     nodes: dict  # {process: Placed}, sync_nodes among them
     plan: object  # arguments.Plan: the same checks as of scripts/run
+    relays: object  # sites.Relays; None: there is one site
 
     def of_host(self, host):
         return [name for name, placed in self.nodes.items() if placed.host == host]
@@ -150,13 +153,17 @@ class Reading:
                 self.refuse(self.root, f"{name} is on no host; add <node name=\"{name}\" host=\"...\"/>")
         bus = self.bus(hosts)
         plan = self.plan(placed, words, bus)
+        relays = sites.read(self, hosts)
+        if relays and bus.port <= relays.port <= bus.port + 3:
+            self.refuse(self.one("relays"), f"port=\"{relays.port}\" is one of the bus'; choose another")
         first = placed[RECORDER].host
         for e in self.root.findall("node"):
             if e.get("name").startswith(SYNC) and e.get("name") != sync_name(e.get("host"), first):
                 self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; call it so, or leave it away: every host has one")
         for host in hosts:
             placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or Placed(host, "", "", 0, (), ())
-        return Cluster(self.root.get("name"), self.path, bus, hosts, placed, plan)
+        placed |= {name: Placed(relay.host, "", "", 0, (), ()) for name, relay in (relays.by_name if relays else {}).items()}
+        return Cluster(self.root.get("name"), self.path, bus, hosts, placed, plan, relays)
 
     def host(self, e):
         reach, address = e.get("reach"), e.get("address", "")
@@ -165,7 +172,7 @@ class Reading:
         for attribute in ("folder", "build"):
             if e.get(attribute) and not e.get(attribute).startswith(("/", "~/")):
                 self.refuse(e, f"{attribute}=\"{e.get(attribute)}\" of the host {e.get('name')} is not absolute; begin it with / or ~/")
-        return Host(e.get("name"), reach, address or e.get("name"), e.get("folder", ""), e.get("build", ""))
+        return Host(e.get("name"), reach, address or e.get("name"), e.get("folder", ""), e.get("build", ""), e.get("site", ""))
 
     def bus(self, hosts):
         e = self.one("bus")

@@ -6,6 +6,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "supervise"))
 import cluster as one_machine
 from cluster_file import SYNC
+from sites import RELAY
 
 
 def of_nodes(cluster, run_id, git, there):
@@ -14,7 +15,9 @@ def of_nodes(cluster, run_id, git, there):
     paths = {str(one_machine.BIN): "@BUILD@/bin", str(plan.out): "@OUT@", **there}
     made = one_machine.commands(plan, run_id, git)
     for name in cluster.nodes:
-        if name not in made:  # the other hosts' sync_nodes
+        if cluster.relays and name in cluster.relays.by_name:
+            made[name] = [str(one_machine.BIN / RELAY), *cluster.relays.words(name), *one_machine.common(plan, run_id)]
+        elif name not in made:  # the other hosts' sync_nodes
             made[name] = [*made[SYNC], "--name", name]
     return {name: around(placed, [translated(word, paths) for word in made[name]] + bus_words(cluster, name, placed))
             for name, placed in cluster.nodes.items()}

@@ -204,9 +204,25 @@ class Lab:
             sh("ip", "link", "set", host.port, "master", "switch")
         sh("ip", "link", "del", "switch2")
 
+    def sites(self, sites, line_port=None):
+        """These groups of hosts hear each other's multicast no more; what is from one to one still passes, as between sites. line_port:
+        of the relays' lines, which slow() then bounds."""
+        ports = lambda names: "{ " + ", ".join(self.hosts[n].port for n in names) + " }"
+        sh("nft", "add table bridge sites; add chain bridge sites forward { type filter hook forward priority 0; }; "
+           "add chain bridge sites lines; " + (f"add rule bridge sites forward udp dport {line_port} jump lines; " if line_port else "") + "; ".join(
+               f"add rule bridge sites forward iifname {ports(a)} oifname {ports(b)} ip daddr 224.0.0.0/4 drop" for a in sites for b in sites if a != b))
+
+    def slow(self, name, kbit):
+        """Lines to and from this host carry so much; what is more is lost. 0: as before."""
+        sh("nft", "flush chain bridge sites lines")
+        if kbit:
+            for way in ("iifname", "oifname"):
+                sh("nft", f"add rule bridge sites lines {way} {self.hosts[name].port} limit rate over {1000 * kbit // 8} bytes/second burst 16000 bytes drop")
+
     def close(self):
         for host in self.hosts.values():
             host.kill()
+        sh("nft", "delete", "table", "bridge", "sites", check=False)
         sh("ip", "link", "del", "switch2", check=False)
         sh("ip", "link", "del", "switch", check=False)
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -185,7 +185,10 @@ class Operator:
         """In the order of starting."""
         syncs = [n for n in self.cluster.nodes if n == SYNC or n.startswith(SYNC + "_")]
         senses = [n for n in self.cluster.nodes if n.startswith(SENSES)]
-        return ([RECORDER, *syncs], senses, [WORLD])
+        return ([RECORDER, *syncs, *self.relays()], senses, [WORLD])
+
+    def relays(self):
+        return list(self.cluster.relays.by_name) if self.cluster.relays else []
 
     def wait_for_world(self):
         """False when it does not begin."""
@@ -239,6 +242,8 @@ class Operator:
             raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
         if node.startswith(SYNC):
             raise Refusal(f"{node}: every host has a sync_node of its own; it is not moved")
+        if node in self.relays():
+            raise Refusal(f"{node}: it stands where the other sites' relays look for it; place it elsewhere in the file and begin another run")
         if node == RECORDER:
             raise Refusal(f"{node}: its recording lies on its host; end the run, place it elsewhere in the file and begin another")
         if node == WORLD and not anew:
@@ -287,7 +292,7 @@ class Operator:
         nodes = {name: (h, node) for h, s in states.items() if h in runs for name, node in s["nodes"].items()}
         seconds = time.time() - min(kept["began"] for kept in runs.values())
         lost = [n for n, (_, node) in nodes.items() if node["lost"] or node["taken_down"]]
-        for group in ([WORLD], [n for n in nodes if n.startswith(SENSES)], [n for n in nodes if n.startswith(SYNC)], [RECORDER]):
+        for group in ([WORLD], [n for n in nodes if n.startswith(SENSES)], [n for n in nodes if n.startswith(SYNC)], self.relays(), [RECORDER]):
             at = {h: [n for n in group if n in nodes and nodes[n][0] == h] for h in runs}
             answers = self.ask_all("stop", [h for h in at if at[h]], patience_s=STOP_S, names=lambda h, at=at: at[h], patience=15)
             for host, a in answers.items():

@@ -10,14 +10,14 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "supervise"))
+import sites
 from cluster import BIN
 from arguments import REPOSITORY
 from refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
-            "playout", "set", "message_types", "probe_pairs")
-OPTIONAL = ("relay",)
-FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms"}
+            "playout", "set", "message_types", "probe_pairs", "relay")
+FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 LARGEST_SCENE_BYTES = 500_000_000
 
@@ -25,7 +25,6 @@ LARGEST_SCENE_BYTES = 500_000_000
 def parts():
     """{path there: path here} of all files."""
     found = {f"bin/{name}": BIN / name for name in PROGRAMS}
-    found |= {f"bin/{name}": BIN / name for name in OPTIONAL if (BIN / name).is_file()}
     found |= {f"bin/{path.name}": path for path in BIN.glob("lib*.so")}
     found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
     for there, here in FOLDERS.items():
@@ -88,7 +87,8 @@ def of_run(cluster):
                               "and what it needs into a folder of their own")
             tar.add(scene.parent, "scene")
             there[str(scene.parent)] = "@FILES@/scene"
-        for name, path in (("profile.xml", cluster.plan.degrade), ("room.csv", cluster.plan.room if os.sep in cluster.plan.room else None)):
+        rules = cluster.relays.rules if cluster.relays and sites.SHIPPED not in cluster.relays.rules.parents else None
+        for name, path in (("profile.xml", cluster.plan.degrade), ("room.csv", cluster.plan.room if os.sep in cluster.plan.room else None), ("relay.xml", rules)):
             if path:
                 tar.add(path, name)
                 there[str(path)] = f"@FILES@/{name}"

@@ -28,10 +28,13 @@ PROGRESS_S = 10
 WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/main.cpp, sync/replay_main.cpp
 
 
+def common(plan, run_id):
+    """The words that all nodes have."""
+    return ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime, "--out", str(plan.out)]
+
+
 def commands(plan, run_id, git):
     """{name: words} of every process of the plan."""
-    common = ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime,
-              "--out", str(plan.out)]
     own = {
         "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git, *plan.recorder],
         "haptic_node": device_words(plan, ""),
@@ -52,7 +55,7 @@ def commands(plan, run_id, git):
     if plan.degrade:
         for name in (*plan.senses(), "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
-    return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common,
+    return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
 
 

@@ -45,6 +45,38 @@ class ClusterFile(unittest.TestCase):
         self.assertNotIn("\n", said)
         return said
 
+    SITES = (("<host name=\"sound\"", "<host name=\"sound\" site=\"far\""),
+             ("  <node name=\"sim_node\"", "  <relays rules=\"wide\"><relay host=\"desk\" at=\"192.0.2.7\"/><relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/></relays>\n"
+              "  <node name=\"sim_node\""), ("port=\"7700\"", "port=\"7667\""))
+
+    def of_sites(self, *changes):
+        text = GOOD
+        for old, new in (*self.SITES, *changes):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        return text
+
+    def test_each_site_has_a_relay_with_a_line_to_every_other(self):
+        c = self.read(self.of_sites())
+        self.assertEqual("sound", c.nodes["relay_sound"].host)
+        words = commands.of_nodes(c, 7, "git", {str(cluster_file.sites.SHIPPED): "@BUILD@/share/relays"})["relay_desk"]
+        line = " ".join(words)
+        for part in ("@BUILD@/bin/relay --name relay_desk --listen 192.0.2.7:7700 --to 198.51.100.2:7700,2000 --rules @BUILD@/share/relays/wide.xml", "--run-id 7",
+                     "--group 239.1.2.3 --ttl 1"):
+            self.assertIn(part, line)
+        self.assertIn("--to 192.0.2.7:7700 ", " ".join(commands.of_nodes(c, 7, "git", {})["relay_sound"]))
+
+    def test_sites_without_relays_or_with_wrong_ones_are_refused(self):
+        self.refused(GOOD.replace(*self.SITES[0]), "c.xml:5: ", "hosts of 2 sites and no relays")
+        self.refused(GOOD.replace(*self.SITES[1]).replace("<relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/>", ""), "one site, which needs no relay")
+        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"cellar\"")), "no host \"cellar\"")
+        self.refused(self.of_sites(("<relay host=\"desk\" at=\"192.0.2.7\"/>", "")), "no host of the site of desk has a relay")
+        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"sound\"")), "has a relay already, on sound")
+        self.refused(self.of_sites(("at=\"192.0.2.7\"", "at=\"desk\"")), "is no address")
+        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"narrow\"")), "rules=\"narrow\" is no file", "all, wide")
+        self.refused(self.of_sites(("kbit=\"2000\"", "kbit=\"2\"")), "kbit")
+        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"wide\" port=\"7668\"")), "one of the bus'")
+
     def test_a_whole_file_is_read(self):
         c = self.read(GOOD)
         self.assertEqual(cluster_file.Bus("239.1.2.3", 7700, 1), c.bus)

@@ -9,6 +9,18 @@ import growth
 
 
 class Growth(unittest.TestCase):
+    def test_the_traffic_of_the_plan_crosses_as_the_rules_of_a_relay_say(self):
+        from lxml import etree
+        rules = {e.get("channel"): e for e in etree.parse(str(pathlib.Path(growth.__file__).with_name("relays") / "wide.xml")).getroot().iter("pass")}
+        for flow in growth.flows():
+            if flow.channel in ("CLOCK_PROBE", "CLOCK_MAP"):
+                self.assertNotIn(flow.channel, rules)
+                continue
+            self.assertEqual(flow.thin_per_s > 0, flow.channel in rules, flow.channel)
+            if flow.channel in rules:
+                rate = rules[flow.channel].get("rate")
+                self.assertEqual(min(flow.per_s, float(rate.removesuffix("Hz"))) if rate else flow.per_s, flow.thin_per_s, flow.channel)
+
     def test_a_queue_waits_as_pollaczek_and_khinchine_say(self):
         """M/D/1: the mean wait is rho s / (2 (1 - rho)); Kleinrock 1975, equation 5.63."""
         service_s = 1e-3

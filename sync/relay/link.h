@@ -1,0 +1,81 @@
+// The line between relays: datagrams of UDP from one to one, each with a channel, the port of the bus that it is
+// of, and the bytes of one message.
+//
+// Only the relays that were named are heard: by their address, which who sits on the line can forge. Lines that
+// others can reach belong into a private path (docs/between_sites.md).
+#pragma once
+
+#include <netinet/in.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sync/datagram.h"
+
+namespace tactus::sync {
+
+// One end of a line. bit_per_s 0: as much as comes.
+struct LineEnd {
+  sockaddr_in address{};
+  double bit_per_s = 0;
+  std::string name;  // as it was written
+};
+// "ADDRESS:PORT" or "PORT". Throws std::invalid_argument with one sentence.
+LineEnd parse_line_end(const std::string& text);
+// "ADDRESS:PORT" or "ADDRESS:PORT,KBIT".
+LineEnd parse_other_site(const std::string& text);
+
+struct LineMessage {
+  ChannelBytes message;
+  bool bulk = false;
+};
+std::vector<std::uint8_t> line_datagram(const ChannelBytes& message, bool bulk);
+// Nothing for what is no such datagram. Refers to `bytes`.
+std::optional<LineMessage> parse_line_datagram(std::span<const std::uint8_t> bytes);
+
+class LineSocket {
+ public:
+  // Throws std::runtime_error with one sentence.
+  explicit LineSocket(const LineEnd& here);
+  ~LineSocket();
+  LineSocket(const LineSocket&) = delete;
+  LineSocket& operator=(const LineSocket&) = delete;
+
+  // False: the network refused it. Never waits.
+  bool send(const LineEnd& to, std::span<const std::uint8_t> datagram);
+  // Calls hear(index of the site, LineMessage) for what has arrived from these sites, at most kMost; without
+  // waiting.
+  template <class Hear>
+  void read(std::span<const LineEnd> sites, Hear&& hear) {
+    for (int i = 0; i < kMost; ++i) {
+      const auto arrived = receive(sites);
+      if (!arrived) return;
+      if (arrived->site < 0) continue;
+      if (const auto m = parse_line_datagram(arrived->bytes))
+        hear(static_cast<std::size_t>(arrived->site), *m);
+      else
+        ++bad_;
+    }
+  }
+  // Datagrams from elsewhere, and such as no relay sends.
+  std::int64_t strangers() const { return strangers_; }
+  std::int64_t bad() const { return bad_; }
+
+ private:
+  static constexpr int kMost = 4096;
+  struct Arrived {
+    int site;  // -1: of nobody that was named
+    std::span<const std::uint8_t> bytes;
+  };
+  std::optional<Arrived> receive(std::span<const LineEnd> sites);
+
+  int socket_;
+  std::array<std::uint8_t, 2048> buffer_;
+  std::int64_t strangers_ = 0, bad_ = 0;
+};
+
+}  // namespace tactus::sync

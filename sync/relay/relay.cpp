@@ -1,0 +1,57 @@
+#include "sync/relay/relay.h"
+
+#include "sync/log_header.h"
+
+namespace tactus::sync {
+
+Relay::Relay(RelayRules rules, std::vector<LineEnd> sites, std::int64_t run_id)
+    : rules_(std::move(rules)),
+      sites_(std::move(sites)),
+      run_id_(run_id),
+      heard_(sites_.size(), HostTime{} - kSilent) {
+  for (const LineEnd& site : sites_) outboxes_.emplace_back(site.bit_per_s);
+}
+
+Thinner& Relay::thinner(const PassRule& rule) { return thinners_.try_emplace(&rule, rule).first->second; }
+
+void Relay::hear_bus(const ChannelBytes& m, bool bulk, HostTime now) {
+  const PassRule* rule = rules_.find(m.channel);
+  if (!rule || !m.fits()) return;
+  const auto header = peek_header(m.data.data(), m.data.size());
+  if (!header || header->run_id != run_id_) {
+    ++counts_.bad;
+    return;
+  }
+  // What we said ourselves comes back, too.
+  if (!sides_.lives(*header, Sides::kHere, now)) return;
+  const Urgency urgency = bulk ? Urgency::kBulk : rule->first ? Urgency::kFirst : Urgency::kState;
+  thinner(*rule).take(*header, m.data, now, [&](std::span<const std::uint8_t> passing) {
+    ++counts_.out;
+    const auto datagram = line_datagram({m.channel, passing}, bulk);
+    for (Outbox& outbox : outboxes_) outbox.push(urgency, datagram, now);
+  });
+}
+
+bool Relay::hear_line(std::size_t site, const LineMessage& m, HostTime now) {
+  heard_[site] = now;
+  if (!rules_.find(m.message.channel)) return ++counts_.withheld, false;
+  const auto header = peek_header(m.message.data.data(), m.message.data.size());
+  if (!header || header->run_id != run_id_) return ++counts_.bad, false;
+  if (!sides_.lives(*header, Sides::kHere + 1 + static_cast<int>(site), now)) return false;
+  return ++counts_.in, true;
+}
+
+std::string Relay::note(HostTime now) const {
+  std::string text;
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const OutboxCounts& line = outboxes_[i].counts();
+    text += (i > 0 ? "; " : "") + sites_[i].name + (silent(i, now) ? ": not heard" : ": heard");
+    if (line.late > 0) text += ", " + std::to_string(line.late) + " given up, the line is too slow";
+    if (line.refused > 0) text += ", " + std::to_string(line.refused) + " refused by the network";
+  }
+  if (counts_.withheld > 0)
+    text += "; " + std::to_string(counts_.withheld) + " withheld, give all relays the same rules";
+  return text;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,152 @@
+#include "sync/relay/rules.h"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/near_names.h"
+
+namespace tactus::sync {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// All channels that nodes speak on: LOG_INFO is of logs only.
+const Names& channels_of_the_bus() {
+  using namespace channels;
+  static const Names names{
+      kTouchModel,    kContactEvents, kContacts,     kWorldState,     kToolState,   kDeviceState, kDeviceForce,
+      kThermalState,  kThermalDevice, kPresented,    kNodeHealth,     kSyncReport,  kClockProbe,  kClockMap,
+      kMediaClock,    kFrameShown,    kPlayout,      kPlayoutRequest, kDegradation, kDegraded,    kSimCommand,
+      kSimReply,      kSetting,       kSettingReply, kTagRequest,     kTagList,     kTagValues,   kGameState,
+      kSceneManifest, kAssetRequest,  kAssetChunk,   kPictureChunk};
+  return names;
+}
+
+// Of these every message says all that there is to say: the next one makes up for one that is left out.
+const Names kStates{channels::kTouchModel,   channels::kContacts,      channels::kWorldState,
+                    channels::kToolState,    channels::kDeviceState,   channels::kDeviceForce,
+                    channels::kThermalState, channels::kThermalDevice, channels::kNodeHealth,
+                    channels::kMediaClock,   channels::kFrameShown,    channels::kGameState};
+// Of these the signals are known (sync/degradation/snapshot.h).
+const Names kCompared{channels::kTouchModel, channels::kContacts, channels::kWorldState, channels::kToolState};
+
+bool holds(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string list(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+bool truth(const std::string& value) {
+  if (value != "true" && value != "false")
+    throw std::invalid_argument("first=\"" + value + "\" is neither true nor false");
+  return value == "true";
+}
+
+PassRule parse_pass(const tinyxml2::XMLElement& e) {
+  PassRule rule;
+  Names given;
+  for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
+    const std::string name = a->Name(), value = a->Value();
+    if (holds(given, name)) throw std::invalid_argument(name + " stands there twice; leave one away");
+    given.push_back(name);
+    if (name == "channel")
+      rule.channel = value;
+    else if (name == "first")
+      rule.first = truth(value);
+    else if (name == "rate" || name == "deadband")
+      parse_operator(rule.thinning, name, value);
+    else
+      throw std::invalid_argument("a <pass> has no " + name + "; it has channel, first, rate and deadband");
+  }
+  const Names& known = channels_of_the_bus();
+  if (rule.channel.empty())
+    throw std::invalid_argument("a <pass> needs a channel, for example channel=\"CONTACT_EVENTS\"");
+  if (!holds(known, rule.channel)) {
+    const std::string near = near_names(rule.channel, known);
+    throw std::invalid_argument("there is no channel " + rule.channel +
+                                (near.empty() ? "" : "; did you mean " + near + "?"));
+  }
+  if (rule.thinning.rate && !holds(kStates, rule.channel))
+    throw std::invalid_argument(
+        rule.channel +
+        " says each thing once, so that a rate would lose some; let it pass whole, or not at all (a rate have " +
+        list(kStates) + ")");
+  if (rule.thinning.deadband && !holds(kCompared, rule.channel))
+    throw std::invalid_argument("it is not known what of " + rule.channel + " to compare; a deadband have " +
+                                list(kCompared));
+  return rule;
+}
+
+// Elements and comments are all that may stand in an element.
+void refuse_text_in(const tinyxml2::XMLNode& within, const char* what, int& line) {
+  for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
+    if (n->ToElement() || n->ToComment() || (n->ToDeclaration() && within.ToDocument())) continue;
+    line = n->GetLineNum();
+    throw std::invalid_argument(what);
+  }
+}
+
+}  // namespace
+
+const PassRule* RelayRules::find(std::string_view channel) const {
+  const auto at =
+      std::find_if(rules_.begin(), rules_.end(), [&](const PassRule& r) { return r.channel == channel; });
+  return at == rules_.end() ? nullptr : &*at;
+}
+
+RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
+  int line = 1;
+  try {
+    // XML has none; what comes after it would be lost in silence.
+    if (const std::size_t nul = xml.find('\0'); nul != std::string::npos) {
+      line = 1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n'));
+      throw std::invalid_argument("there is a NUL byte here, so this is no text");
+    }
+    tinyxml2::XMLDocument document;
+    if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
+      line = std::max(1, document.ErrorLineNum());
+      throw std::invalid_argument(std::string("this is no XML (") +
+                                  tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) + ")");
+    }
+    const tinyxml2::XMLElement* root = document.RootElement();
+    if (!root || std::string(root->Name()) != "relay") {
+      line = root ? root->GetLineNum() : 1;
+      throw std::invalid_argument("rules of a relay begin with <relay>");
+    }
+    line = root->GetLineNum();
+    if (root->FirstAttribute())
+      throw std::invalid_argument(std::string("<relay> has no ") + root->FirstAttribute()->Name());
+    if (root->NextSiblingElement()) throw std::invalid_argument("a file holds one <relay>");
+    refuse_text_in(document, "outside of <relay> there is nothing but comments", line);
+    refuse_text_in(*root, "in <relay> there is nothing but <pass .../> and comments", line);
+    std::vector<PassRule> rules;
+    for (const tinyxml2::XMLElement* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
+      line = e->GetLineNum();
+      if (std::string(e->Name()) != "pass")
+        throw std::invalid_argument(std::string("<relay> holds no <") + e->Name() + ">; it holds <pass .../>");
+      if (e->FirstChild()) throw std::invalid_argument("a <pass> holds nothing; end it with />");
+      rules.push_back(parse_pass(*e));
+      rules.back().line = line;
+      for (std::size_t i = 0; i + 1 < rules.size(); ++i)
+        if (rules[i].channel == rules.back().channel)
+          throw std::invalid_argument(rules.back().channel + " passes by line " + std::to_string(rules[i].line) +
+                                      " already; leave one away");
+    }
+    if (rules.empty())
+      throw std::invalid_argument(
+          "these rules let nothing pass; name a channel, for example <pass channel=\"CONTACT_EVENTS\"/>");
+    return RelayRules(std::move(rules));
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + e.what());
+  }
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,18 @@
+#include "sync/relay/sides.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+
+bool Sides::lives(const header_t& h, int side, HostTime now) {
+  const auto [at, fresh] = senders_.try_emplace({h.source, h.incarnation}, Sender{side, now});
+  Sender& sender = at->second;
+  if (!fresh && sender.side != side && now - sender.heard < kForgotten) return ++echoes_, false;
+  sender = {side, now};
+  if (senders_.size() > kMost)
+    senders_.erase(std::min_element(senders_.begin(), senders_.end(),
+                                    [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
+  return true;
+}
+
+}  // namespace tactus::sync

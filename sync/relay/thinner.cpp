@@ -1,0 +1,97 @@
+#include "sync/relay/thinner.h"
+
+#include <cmath>
+
+#include "sync/decode.h"
+#include "sync/degradation/degraded_stream.h"
+
+namespace tactus::sync {
+namespace {
+
+constexpr std::int64_t kAnew_ns = 1'000'000'000;           // a sender whose clock is back by more is another one
+constexpr std::size_t kSeqAt = 8 + 8 + 8 + 4 + 8 + 4 + 8;  // LCM's fingerprint and header_t before its last member
+
+// Big-endian, as LCM encodes.
+void number(std::vector<std::uint8_t>& message, std::int64_t seq) {
+  for (std::size_t i = 0; i < 8; ++i)
+    message[kSeqAt + i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(seq) >> (56 - 8 * i));
+}
+
+bool in_pages(const std::string& channel) {
+  return channel == channels::kContacts || channel == channels::kWorldState || channel == channels::kTouchModel;
+}
+
+}  // namespace
+
+template <class Message>
+class Thinner::Compared : public Comparison {
+ public:
+  explicit Compared(const Rule& rule) : stack_({"", 1, {rule}}, rule.modality, SimTime{}) {}
+
+  bool take(std::span<const std::uint8_t> message, HostTime arrival,
+            std::vector<std::vector<std::uint8_t>>& out) override {
+    auto m = decode<Message>(message.data(), message.size());
+    if (!m) return false;
+    stream_.push(std::move(*m), arrival, stack_, nullptr);
+    while (const auto next = stream_.pop(arrival)) out.push_back(encode(next->first));
+    return true;
+  }
+
+ private:
+  Stack stack_;
+  DegradedSnapshots<Message> stream_;
+};
+
+Thinner::Thinner(const PassRule& rule) : rule_(rule) {}
+Thinner::~Thinner() = default;
+Thinner::Thinner(Thinner&&) noexcept = default;
+
+std::unique_ptr<Thinner::Comparison> Thinner::comparison() const {
+  Rule rule = rule_.thinning;
+  if (!in_pages(rule_.channel)) rule.rate.reset();  // decided on before, by due()
+  if (!rule.rate && !rule.deadband) return nullptr;
+  if (rule_.channel == channels::kContacts) return std::make_unique<Compared<contact_frame_t>>(rule);
+  if (rule_.channel == channels::kWorldState) return std::make_unique<Compared<world_state_t>>(rule);
+  if (rule_.channel == channels::kTouchModel) return std::make_unique<Compared<touch_model_t>>(rule);
+  return std::make_unique<Compared<tool_state_t>>(rule);
+}
+
+// So many a second in the mean: one that comes a little early waits for no whole period more.
+bool Thinner::due(Sender& s, const header_t& h) const {
+  if (!rule_.thinning.rate || in_pages(rule_.channel)) return true;
+  const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rule_.thinning.rate->rate_Hz));
+  if (h.publish_time_ns < s.newest_ns - kAnew_ns) s.next_ns = h.publish_time_ns;
+  s.newest_ns = h.publish_time_ns;
+  if (h.publish_time_ns < s.next_ns) return false;
+  s.next_ns = std::max(s.next_ns + period_ns, h.publish_time_ns);
+  return true;
+}
+
+void Thinner::take(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
+  if (!rule_.thins()) return out(message);
+  if (senders_.size() >= kMostSenders && !senders_.contains(h.source)) senders_.clear();
+  Sender& sender = senders_[h.source];
+  if (sender.incarnation != h.incarnation) {
+    sender = {};
+    sender.incarnation = h.incarnation;
+    sender.comparison = comparison();
+  }
+  if (!due(sender, h)) {
+    ++left_out_;
+    return;
+  }
+  passing_.clear();
+  if (!sender.comparison)
+    passing_.emplace_back(message.begin(), message.end());
+  else if (!sender.comparison->take(message, arrival, passing_)) {
+    ++bad_;
+    return;
+  }
+  left_out_ += 1 - static_cast<std::int64_t>(passing_.size());  // pages that waited pass with the last one
+  for (auto& bytes : passing_) {
+    number(bytes, sender.next_seq++);
+    out(bytes);
+  }
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,103 @@
+#include "sync/relay/outbox.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace tactus::sync;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr HostTime kBegin{std::chrono::hours(1)};
+
+std::vector<std::uint8_t> datagram(std::uint8_t first, std::size_t size = 1000) {
+  std::vector<std::uint8_t> bytes(size, 0);
+  bytes[0] = first;
+  return bytes;
+}
+
+// What goes in so long, a flush every 2 ms.
+std::vector<int> flushed(Outbox& outbox, HostTime from, Nanoseconds length) {
+  std::vector<int> sent;
+  for (HostTime t = from; t < from + length; t += 2ms)
+    outbox.flush(t, [&](std::span<const std::uint8_t> d) {
+      sent.push_back(d[0]);
+      return true;
+    });
+  return sent;
+}
+
+}  // namespace
+
+TEST_CASE("An outbox without a bound sends at once, in order") {
+  Outbox outbox(0);
+  for (std::uint8_t i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(i), kBegin);
+  const auto sent = flushed(outbox, kBegin, 1ns);
+  REQUIRE(sent.size() == 100);
+  CHECK(std::is_sorted(sent.begin(), sent.end()));
+  CHECK(outbox.counts().bytes == 100'000);
+}
+
+TEST_CASE("What is urgent overtakes what is not") {
+  Outbox outbox(1e6);
+  for (int i = 0; i < 60; ++i) {
+    outbox.push(Urgency::kBulk, datagram(3), kBegin);
+    outbox.push(Urgency::kState, datagram(2), kBegin);
+    outbox.push(Urgency::kFirst, datagram(1, 100), kBegin);
+  }
+  const auto sent = flushed(outbox, kBegin, 40ms);
+  CHECK(std::count(sent.begin(), sent.end(), 1) == 60);
+  CHECK(std::is_sorted(sent.begin(), sent.end()));
+}
+
+TEST_CASE("What did not go within 50 ms is given up and counted, but assets wait for a second") {
+  Outbox outbox(8 * 16'000);  // 16 kB a second
+  for (int i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(2), kBegin);
+  outbox.push(Urgency::kBulk, datagram(3), kBegin);
+  const auto sent = flushed(outbox, kBegin, 500ms);
+  // 15 of 1028 bytes in the burst; what is left of it and 50 ms more make one more.
+  CHECK(std::count(sent.begin(), sent.end(), 2) == 16);
+  CHECK(outbox.counts().late == 84);
+  CHECK(std::count(sent.begin(), sent.end(), 3) == 1);
+  outbox.push(Urgency::kBulk, datagram(3), kBegin + 500ms);
+  outbox.flush(kBegin + 5s, [](auto) { return true; });
+  CHECK(outbox.counts().late == 85);
+}
+
+TEST_CASE("A line carries no more than its rate over any time, and a burst") {
+  std::mt19937 dice(5);
+  const double rate = GENERATE(64e3, 1e6, 2e7);
+  Outbox outbox(rate);
+  std::vector<std::pair<double, double>> sent;  // s, bits with headers
+  for (int i = 0; i < 2000; ++i) {
+    const HostTime t = kBegin + i * 2ms;
+    for (auto n = dice() % 8; n > 0; --n)
+      outbox.push(static_cast<Urgency>(dice() % 3), datagram(1, 40 + dice() % 1400), t);
+    outbox.flush(t, [&](std::span<const std::uint8_t> d) {
+      sent.emplace_back(i * 2e-3, 8.0 * static_cast<double>(d.size() + Outbox::kHeaders));
+      return true;
+    });
+  }
+  REQUIRE(sent.size() > 50);
+  for (std::size_t begin = 0; begin < sent.size(); begin += 37) {
+    double bits = 0;
+    for (std::size_t i = begin; i < sent.size(); ++i) {
+      bits += sent[i].second;
+      REQUIRE(bits <= 8 * Outbox::kBurstBytes + rate * (sent[i].first - sent[begin].first) + 1);
+    }
+  }
+}
+
+TEST_CASE("An outbox keeps a bounded number of bytes, whatever is pushed") {
+  Outbox outbox(16e3);
+  for (int i = 0; i < 5000; ++i) outbox.push(Urgency::kFirst, datagram(1), kBegin);
+  CHECK(outbox.counts().late >= 5000 - static_cast<std::int64_t>(Outbox::kMostBytes / 1000));
+}
+
+TEST_CASE("What the network refuses is counted and not sent again") {
+  Outbox outbox(0);
+  outbox.push(Urgency::kFirst, datagram(1), kBegin);
+  outbox.flush(kBegin, [](auto) { return false; });
+  CHECK(outbox.counts().refused == 1);
+  CHECK(flushed(outbox, kBegin, 10ms).empty());
+}
