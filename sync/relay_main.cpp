@@ -20,6 +20,7 @@ using namespace tactus;
 namespace {
 
 constexpr std::uintmax_t kMostRulesBytes = 1 << 20;
+constexpr sync::Nanoseconds kNotePeriod{500'000'000};
 
 std::string read_rules(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -74,6 +75,7 @@ int main(int argc, char** argv) try {
   node.tags().add("in", "1", [&] { return static_cast<double>(relay.counts().in); }, 1);
   node.tags().add("out", "1", [&] { return static_cast<double>(relay.counts().out); }, 1);
 
+  sync::HostTime next_note{};
   while (node.running()) {
     const sync::HostTime now = node.wait();
     line.read(relay.sites(), [&](std::size_t site, const sync::LineMessage& m) {
@@ -81,6 +83,8 @@ int main(int argc, char** argv) try {
     });
     reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.hear_bus(m, side == 1, now); });
     relay.flush(now, [&](const sync::LineEnd& site, std::span<const std::uint8_t> datagram) { return line.send(site, datagram); });
+    if (now < next_note) continue;
+    next_note = now + kNotePeriod;
     bool silent = false;
     for (std::size_t i = 0; i < relay.sites().size(); ++i) silent |= relay.silent(i, now);
     node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.note(now));

@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 import time
 
+import reach
+
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 VARIABLE = "TACTUS_LAB"  # for programs that run in the lab: its folder
 SUBNET = "10.77.0"
@@ -225,6 +227,7 @@ class Lab:
         sh("nft", "delete", "table", "bridge", "sites", check=False)
         sh("ip", "link", "del", "switch2", check=False)
         sh("ip", "link", "del", "switch", check=False)
+        shutil.rmtree(reach.control_folder(self.folder / "ssh_config"), ignore_errors=True)
         shutil.rmtree(self.folder, ignore_errors=True)
 
 

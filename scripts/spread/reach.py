@@ -4,6 +4,7 @@ is asked of agent.py, which goes there with each question: a host needs nothing 
 No question waits longer than it is given: a host that does not answer is one that is not there."""
 import base64
 import concurrent.futures
+import hashlib
 import json
 import os
 import pathlib
@@ -33,11 +34,14 @@ class Failed(Exception):
     """The host was reached and cannot do it; one sentence."""
 
 
-def control_folder():
-    """For the connections that ssh shares between questions; only ours."""
-    folder = pathlib.Path(os.environ.get("XDG_RUNTIME_DIR") or f"/tmp/tactus-ssh-{os.getuid()}") / "tactus"
+def control_folder(ssh_config):
+    """For the connections that ssh shares between questions; only ours. ssh names them by user, host and port: a host of that name which another
+    configuration or another network leads to is another host, and has a folder of its own."""
+    parent = pathlib.Path(os.environ.get("XDG_RUNTIME_DIR") or f"/tmp/tactus-ssh-{os.getuid()}")
+    way = f"{pathlib.Path(ssh_config).resolve() if ssh_config else ''} {os.readlink('/proc/self/ns/net')}"
+    folder = parent / "tactus" / hashlib.sha256(way.encode()).hexdigest()[:8]
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    if folder.stat().st_uid != os.getuid() or folder.parent.stat().st_uid not in (os.getuid(), 0):
+    if folder.stat().st_uid != os.getuid() or parent.stat().st_uid not in (os.getuid(), 0):
         raise Unreachable(f"the folder {folder} belongs to somebody else; set XDG_RUNTIME_DIR to one of your own")
     return folder
 
@@ -53,7 +57,7 @@ class Reach:
         if self.host.reach == "namespace":
             return ["ip", "netns", "exec", self.host.address, *command]
         options = ["BatchMode=yes", f"ConnectTimeout={CONNECT_S}", "ServerAliveInterval=1", "ServerAliveCountMax=3", "ControlMaster=auto",
-                   f"ControlPath={control_folder()}/%C", "ControlPersist=60", "LogLevel=ERROR"]
+                   f"ControlPath={control_folder(self.ssh_config)}/%C", "ControlPersist=60", "LogLevel=ERROR"]
         return ["ssh", "-T", *(["-F", str(self.ssh_config)] if self.ssh_config else []), *(w for o in options for w in ("-o", o)),
                 self.host.address, "--", shlex.join(command)]
 

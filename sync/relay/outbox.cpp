@@ -5,13 +5,10 @@
 namespace tactus::sync {
 
 void Outbox::push(Urgency urgency, std::vector<std::uint8_t> datagram, HostTime now) {
-  Queue& queue = queues_[static_cast<std::size_t>(urgency)];
+  Queue& queue = queue_of(urgency);
   queue.bytes += datagram.size();
   queue.waiting.push_back({now, std::move(datagram)});
-  for (; queue.bytes > kMostBytes; ++counts_.late) {
-    queue.bytes -= queue.waiting.front().datagram.size();
-    queue.waiting.pop_front();
-  }
+  give_up(urgency, now);
 }
 
 void Outbox::refill(HostTime now) {
@@ -20,10 +17,14 @@ void Outbox::refill(HostTime now) {
   refilled_ = now;
 }
 
-void Outbox::give_up(Queue& queue, HostTime before) {
-  for (; !queue.waiting.empty() && queue.waiting.front().since < before; ++counts_.late) {
+void Outbox::give_up(Urgency urgency, HostTime now) {
+  Queue& queue = queue_of(urgency);
+  const bool bulk = urgency == Urgency::kBulk;
+  const HostTime oldest = now - (bulk ? kLatestBulk : kLatest);
+  while (!queue.waiting.empty() && (queue.waiting.front().since < oldest || queue.bytes > kMostBytes)) {
     queue.bytes -= queue.waiting.front().datagram.size();
     queue.waiting.pop_front();
+    ++(bulk ? counts_.late_bulk : counts_.late);
   }
 }
 

@@ -1,5 +1,9 @@
 #include "sync/relay/relay.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "sync/log_header.h"
 
 namespace tactus::sync {
@@ -8,7 +12,8 @@ Relay::Relay(RelayRules rules, std::vector<LineEnd> sites, std::int64_t run_id)
     : rules_(std::move(rules)),
       sites_(std::move(sites)),
       run_id_(run_id),
-      heard_(sites_.size(), HostTime{} - kSilent) {
+      heard_(sites_.size(), HostTime{} - kSilent),
+      noted_counts_(sites_.size()) {
   for (const LineEnd& site : sites_) outboxes_.emplace_back(site.bit_per_s);
 }
 
@@ -41,14 +46,23 @@ bool Relay::hear_line(std::size_t site, const LineMessage& m, HostTime now) {
   return ++counts_.in, true;
 }
 
-std::string Relay::note(HostTime now) const {
+std::string Relay::note(HostTime now) {
   std::string text;
   for (std::size_t i = 0; i < sites_.size(); ++i) {
     const OutboxCounts& line = outboxes_[i].counts();
-    text += (i > 0 ? "; " : "") + sites_[i].name + (silent(i, now) ? ": not heard" : ": heard");
-    if (line.late > 0) text += ", " + std::to_string(line.late) + " given up, the line is too slow";
+    const OutboxCounts before = std::exchange(noted_counts_[i], line);
+    const double kbit_s =
+        8e-3 * static_cast<double>(line.bytes - before.bytes) / std::max(1e-3, to_seconds(now - noted_));
+    text += (i > 0 ? "; " : "") + sites_[i].name + (silent(i, now) ? ": not heard" : ": heard") + ", " +
+            std::to_string(std::lround(kbit_s)) + " kbit/s there";
+    if (line.late > before.late)
+      text += ", " + std::to_string(line.late - before.late) + " given up, the line is too slow";
+    else if (line.late > 0)
+      text += ", " + std::to_string(line.late) + " were given up";
+    if (line.late_bulk > 0) text += ", " + std::to_string(line.late_bulk) + " of assets put off";
     if (line.refused > 0) text += ", " + std::to_string(line.refused) + " refused by the network";
   }
+  noted_ = now;
   if (counts_.withheld > 0)
     text += "; " + std::to_string(counts_.withheld) + " withheld, give all relays the same rules";
   return text;

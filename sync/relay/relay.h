@@ -47,8 +47,9 @@ class Relay {
   const RelayCounts& counts() const { return counts_; }
   const OutboxCounts& line(std::size_t site) const { return outboxes_[site].counts(); }
   bool silent(std::size_t site, HostTime now) const { return now - heard_[site] > kSilent; }
-  // For the live table: which lines are silent, what they lost.
-  std::string note(HostTime now) const;
+  // For the live table: what each line carries since this was asked before, what it lost, and whether its other
+  // end is heard.
+  std::string note(HostTime now);
 
  private:
   Thinner& thinner(const PassRule& rule);
@@ -58,6 +59,8 @@ class Relay {
   std::int64_t run_id_;
   std::vector<Outbox> outboxes_;
   std::vector<HostTime> heard_;
+  std::vector<OutboxCounts> noted_counts_;
+  HostTime noted_{};
   std::map<const PassRule*, Thinner> thinners_;
   Sides sides_;
   RelayCounts counts_;

@@ -8,9 +8,11 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -27,7 +29,7 @@ FILE = """<cluster name="sites">
   <run scene="dark_room.sdf" budget="150ms"/>
   <host name="world" reach="ssh"/><host name="near" reach="ssh" site="near"/><host name="far" reach="ssh" site="far"/>
   <relays rules="wide" port="7700">
-    <relay host="world" at="10.77.0.1"/><relay host="near" at="10.77.0.2"/><relay host="far" at="10.77.0.3" kbit="4000"/>
+    <relay host="world" at="10.77.0.1"/><relay host="near" at="10.77.0.2"/><relay host="far" at="10.77.0.3" kbit="8000"/>
   </relays>
   <node name="sim_node" host="world"/><node name="recorder" host="world"/><node name="haptic_node" host="world"/>
   <node name="audio_node" host="near"/><node name="thermal_node" host="far"/>
@@ -93,6 +95,15 @@ class Sites(unittest.TestCase):
         with open(path, newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def channels(self, host):
+        """Those on which anything was heard there, whatever it was; by LCM's log format."""
+        data, at, found = (self.folder / f"heard_{host}" / "run.lcmlog").read_bytes(), 0, set()
+        while at + 28 <= len(data):
+            channel, size = struct.unpack_from(">II", data, at + 20)
+            found.add(data[at + 28:at + 28 + channel].decode())
+            at += 28 + channel + size
+        return found
+
     def incarnations(self):
         return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
 
@@ -116,13 +127,14 @@ class Sites(unittest.TestCase):
 
     def test_11_the_hand_comes_at_60_Hz_numbered_without_gaps_and_is_no_loss_to_anyone(self):
         self.hear(["world", "far"], 4)
-        here, there = self.rows("world", "TOOL_STATE"), self.rows("far", "TOOL_STATE")
+        first = lambda host: [row for row in self.rows(host, "TOOL_STATE") if row["sender"] == "haptic_node"]
+        here, there = first("world"), first("far")
         time_s = lambda rows: float(rows[-1]["log_s"]) - float(rows[0]["log_s"])
-        self.assertGreater(len(here) / time_s(here), 500)
+        self.assertGreater(len(here) / time_s(here), 300)
         self.assertLess(len(there) / time_s(there), 63)
         self.assertGreater(len(there) / time_s(there), 50)
         numbers = [int(row["seq"]) for row in there]
-        self.assertEqual(list(range(numbers[0], numbers[0] + len(numbers))), numbers)
+        self.assertEqual(list(range(numbers[0], numbers[0] + len(numbers))), numbers, self.note("relay_world"))
 
     def test_12_what_is_said_in_one_site_is_heard_once_in_another(self):
         self.hear(["near", "far"], 3)
@@ -171,7 +183,7 @@ class Sites(unittest.TestCase):
     def test_31_a_site_that_is_cut_off_is_missed_and_named_and_the_others_go_on(self):
         before = self.incarnations()
         self.r.lab.hosts["far"].cut()
-        self.wait(lambda: "10.77.0.3:7700,4000: not heard" in self.note("relay_near"), "the relay says which site it does not hear")
+        self.wait(lambda: "10.77.0.3:7700: not heard" in self.note("relay_near"), "the relay says which site it does not hear")
         heard = self.hear(["near"], 3)
         self.assertEqual(0, heard["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):
@@ -194,11 +206,21 @@ class Sites(unittest.TestCase):
             self.r.operator.move("relay_near", "world")
 
     def test_34_who_is_no_relay_is_not_heard(self):
-        forged = "import socket; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.sendto(b'TRL1' + bytes(1) + b'SIM_COMMAND' + bytes(200), ('10.77.0.1', 7700))"
-        for _ in range(3):
-            subprocess.run([*self.r.lab.hosts["near"].inside(), sys.executable, "-c", forged], check=True)
-        self.hear(["world"], 1)
-        self.assertEqual([], self.rows("world", "SIM_COMMAND"))
+        """The same bytes from the address of a relay, that is down meanwhile, are: its address is all that it is known by."""
+        header = struct.pack(">qqiqiqq", -1, 1, 1, self.r.watch.run_id, 7, 1, 0)
+        datagram = b"TRL1\0SIM_COMMAND\0" + bytes(8) + header + bytes(40)
+
+        def arrives(port):
+            program = f"import socket; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(('10.77.0.2', {port})); s.sendto({datagram!r}, ('10.77.0.1', {LINE}))"
+            sender = threading.Timer(1.0, lambda: subprocess.run([*self.r.lab.hosts["near"].inside(), sys.executable, "-c", program], check=True))
+            sender.start()
+            self.hear(["world"], 2)
+            sender.join()
+            return "SIM_COMMAND" in self.channels("world")
+        self.assertFalse(arrives(LINE + 1))
+        self.r.operator.ask("near", "stop", patience_s=20, names=["relay_near"], patience=3)
+        self.assertTrue(arrives(LINE))
+        self.r.operator.ask("near", "start", patience_s=40, names=["relay_near"])
         self.expect_whole()
 
     def test_90_at_the_end_all_results_are_gathered(self):

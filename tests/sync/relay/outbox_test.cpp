@@ -58,10 +58,21 @@ TEST_CASE("What did not go within 50 ms is given up and counted, but assets wait
   // 15 of 1028 bytes in the burst; what is left of it and 50 ms more make one more.
   CHECK(std::count(sent.begin(), sent.end(), 2) == 16);
   CHECK(outbox.counts().late == 84);
-  CHECK(std::count(sent.begin(), sent.end(), 3) == 1);
-  outbox.push(Urgency::kBulk, datagram(3), kBegin + 500ms);
+  // Half of the burst is there again after 540 ms.
+  CHECK(std::count(sent.begin(), sent.end(), 3) == 0);
+  CHECK(flushed(outbox, kBegin + 500ms, 200ms) == std::vector<int>{3});
+  outbox.push(Urgency::kBulk, datagram(3), kBegin + 700ms);
   outbox.flush(kBegin + 5s, [](auto) { return true; });
-  CHECK(outbox.counts().late == 85);
+  CHECK(outbox.counts().late == 84);
+  CHECK(outbox.counts().late_bulk == 1);
+}
+
+TEST_CASE("Assets on their way leave room for what is said together") {
+  Outbox outbox(1e6);
+  for (int i = 0; i < 200; ++i) outbox.push(Urgency::kBulk, datagram(3), kBegin);
+  flushed(outbox, kBegin, 100ms);
+  for (int i = 0; i < 7; ++i) outbox.push(Urgency::kState, datagram(2), kBegin + 100ms);
+  CHECK(flushed(outbox, kBegin + 100ms, 1ns) == std::vector<int>(7, 2));
 }
 
 TEST_CASE("A line carries no more than its rate over any time, and a burst") {
