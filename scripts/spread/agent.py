@@ -2,6 +2,7 @@
 kept running by runit, as on one machine (scripts/supervise/services.py).
 
 FOLDER (~/.local/share/tactus) holds builds/IDENTITY and clusters/NAME with run.json, files/ and out/."""
+import base64
 import contextlib
 import fcntl
 import gzip
@@ -20,6 +21,7 @@ import time
 
 import network
 import services
+import shader_cache
 from refusal import Refusal
 
 KEPT_BUILDS = 3
@@ -107,6 +109,16 @@ def receive(request):
             if path.name not in in_use:
                 shutil.rmtree(path, ignore_errors=True)
     return {}
+
+
+def shaders(_):
+    """Those that were compiled here."""
+    return {"tar": base64.b64encode(shader_cache.packed(shader_cache.folder())).decode()}
+
+
+def take_shaders(_):
+    """Those that follow the question."""
+    return {"taken": shader_cache.unpack(sys.stdin.buffer.read(), shader_cache.folder())}
 
 
 def filled(request, words):
@@ -342,7 +354,7 @@ def collect(request):
     (place(request) / "gathered").touch()
 
 
-QUESTIONS = {f.__name__: f for f in (nothing, look, receive, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}
+QUESTIONS = {f.__name__: f for f in (nothing, look, receive, shaders, take_shaders, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}
 
 
 def main(request):

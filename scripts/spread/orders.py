@@ -1,4 +1,5 @@
 """What scripts/cluster can be told to do."""
+import base64
 import os
 import pathlib
 import subprocess
@@ -21,6 +22,8 @@ SEND_S = 600          # a build over a slow line
 CHECK_S = 620         # agent.READ_SCENE_S, and the way
 START_S, STOP_S = 40, 25
 LOADING_S = 600
+SHADERS_S = 20
+PICTURE = "visual_node"
 LISTEN_S = 1.2        # NODE_HEALTH comes ten times a second
 ENDED_BEFORE_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 
@@ -257,6 +260,8 @@ class Operator:
         if not state["run"]:
             raise Refusal(f"{to}: nothing of the cluster runs there yet; first scripts/cluster up")
         self.identity = state["run"]["build"]
+        if not lost and node.startswith(PICTURE):
+            self.carry_shaders(origin, to)
         self.began = time.monotonic()
         killed = [] if lost else self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
         try:
@@ -267,6 +272,14 @@ class Operator:
                 self.ask(origin, "start", patience_s=START_S, names=[node])
             raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
         self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - self.began:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+
+    def carry_shaders(self, origin, to):
+        """Before the picture ends where it is: a host that never drew would compile them for seconds."""
+        try:
+            data = base64.b64decode(self.ask(origin, "shaders", patience_s=SHADERS_S)["tar"])
+            self.ask(to, "take_shaders", patience_s=SHADERS_S, data=data)
+        except (Unreachable, Failed) as error:
+            self.say(f"shaders were not carried along ({error}); the picture may need seconds to begin")
 
     def tell(self, words, files):
         """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""

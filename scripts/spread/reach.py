@@ -15,7 +15,8 @@ import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 MODULES = {"refusal": HERE.parent / "supervise" / "refusal.py", "services": HERE.parent / "supervise" / "services.py",
-           "network": HERE.parent / "supervise" / "network.py", "agent": HERE / "agent.py"}
+           "network": HERE.parent / "supervise" / "network.py",
+           "shader_cache": HERE / "shader_cache.py", "agent": HERE / "agent.py"}
 LOADER = ("import sys,json,types,base64,zlib\n"
           "p=json.loads(zlib.decompress(base64.b64decode(sys.stdin.buffer.readline())))\n"
           "for n,s in p['modules'].items():\n"
