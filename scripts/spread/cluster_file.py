@@ -169,10 +169,14 @@ class Reading:
         reach, address = e.get("reach"), e.get("address", "")
         if reach == "local" and address:
             self.refuse(e, f"the host {e.get('name')} is local and has an address; leave one away")
+        if reach == "local" and next(h for h in self.root.findall("host") if h.get("reach") == "local") is not e:
+            self.refuse(e, f"the host {e.get('name')} is a second one that is local; there is one such machine: leave it away, or give it a network namespace")
         for attribute in ("folder", "build"):
             if e.get(attribute) and not e.get(attribute).startswith(("/", "~/")):
                 self.refuse(e, f"{attribute}=\"{e.get(attribute)}\" of the host {e.get('name')} is not absolute; begin it with / or ~/")
-        return Host(e.get("name"), reach, address or e.get("name"), e.get("folder", ""), e.get("build", ""), e.get("site", ""))
+        # Namespaces share this machine's disk, and each keeps what is its own.
+        folder = e.get("folder", f"~/.local/share/tactus/hosts/{e.get('name')}" if reach == "namespace" else "")
+        return Host(e.get("name"), reach, address or e.get("name"), folder, e.get("build", ""), e.get("site", ""))
 
     def bus(self, hosts):
         e = self.one("bus")

@@ -66,6 +66,13 @@ class ClusterFile(unittest.TestCase):
             self.assertIn(part, line)
         self.assertIn("--to 192.0.2.7:7700 ", " ".join(commands.of_nodes(c, 7, "git", {})["relay_sound"]))
 
+    def test_a_namespace_keeps_what_is_its_own_and_a_second_local_host_is_refused(self):
+        second = '<host name="sound" reach="{}"/>'
+        of_file = '<host name="sound" reach="ssh" address="me@10.0.0.2" folder="~/t"/>'
+        c = self.read(GOOD.replace(of_file, second.format("namespace")))
+        self.assertEqual(("~/.local/share/tactus/hosts/sound", ""), (c.hosts["sound"].folder, c.hosts["desk"].folder))
+        self.refused(GOOD.replace(of_file, second.format("local")), "c.xml:5: ", "a second one that is local")
+
     def test_sites_without_relays_or_with_wrong_ones_are_refused(self):
         self.refused(GOOD.replace(*self.SITES[0]), "c.xml:5: ", "hosts of 2 sites and no relays")
         self.refused(GOOD.replace(*self.SITES[1]).replace("<relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/>", ""), "one site, which needs no relay")
