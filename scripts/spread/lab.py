@@ -23,7 +23,7 @@ APART_S = 1000           # one host's clock from the next
 PATIENCE_S = 20
 SSHD = """Port 22
 HostKey /root/.lab/host_key
-AuthorizedKeysFile /root/.ssh/authorized_keys
+AuthorizedKeysFile %h/.ssh/authorized_keys
 PermitRootLogin prohibit-password
 PasswordAuthentication no
 KbdInteractiveAuthentication no
@@ -32,6 +32,8 @@ PidFile none
 MaxStartups 50
 MaxSessions 50
 """
+PERSON = "person"  # who logs in where nobody is root
+PERSON_ID = 1000
 SSH = """Host *
   User root
   IdentityFile {folder}/key
@@ -55,29 +57,39 @@ def sh(*words, check=True):
 class Host:
     """A host of the lab; number from 1."""
 
-    def __init__(self, lab, name, number):
-        self.lab, self.name, self.number = lab, name, number
+    def __init__(self, lab, name, number, ordinary=False):
+        """ordinary: who logs in there is not root, and has the limits of somebody whom nobody gave any."""
+        self.lab, self.name, self.number, self.ordinary = lab, name, number, ordinary
         self.port = f"port{number}"  # its socket of the switch
         self.address = f"{SUBNET}.{number}"
         self.ahead_s = APART_S * number
-        self.home = lab.folder / name
+        self.disk = lab.folder / name
+        self.home = self.disk / PERSON if ordinary else self.disk  # of who logs in
         self.process = self.pid = None
 
     def prepare(self):
         """Its disk, which outlives it."""
-        (self.home / ".lab").mkdir(parents=True)
-        (self.home / ".ssh").mkdir(mode=0o700)
+        (self.disk / ".lab").mkdir(parents=True)
+        (self.home / ".ssh").mkdir(mode=0o700, parents=True)
         shutil.copy(self.lab.folder / "key.pub", self.home / ".ssh" / "authorized_keys")
-        (self.home / ".lab" / "sshd_config").write_text(SSHD, encoding="ascii")
-        sh("ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(self.home / ".lab" / "host_key"))
-        public = (self.home / ".lab" / "host_key.pub").read_text(encoding="ascii").split()[:2]
+        if self.ordinary:
+            for path in (self.home, *self.home.rglob("*")):
+                os.chown(path, PERSON_ID, PERSON_ID)
+            known = pathlib.Path("/etc/passwd").read_text(encoding="utf-8")
+            (self.disk / ".lab" / "passwd").write_text(f"{known.rstrip()}\n{PERSON}:*:{PERSON_ID}:{PERSON_ID}::/home/{PERSON}:/bin/sh\n", encoding="utf-8")
+        (self.disk / ".lab" / "sshd_config").write_text(SSHD, encoding="ascii")
+        sh("ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(self.disk / ".lab" / "host_key"))
+        public = (self.disk / ".lab" / "host_key.pub").read_text(encoding="ascii").split()[:2]
         with open(self.lab.folder / "known_hosts", "a", encoding="ascii") as file:
             file.write(f"{self.name},{self.address} {' '.join(public)}\n")
         with open(self.lab.folder / "ssh_config", "a", encoding="utf-8") as file:
-            file.write(f"Host {self.name}\n  HostName {self.address}\n")
+            file.write(f"Host {self.name}\n  HostName {self.address}\n" + (f"  User {PERSON}\n" if self.ordinary else ""))
 
     def boot(self):
-        inside = (f"mount --bind {self.home} /root && mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && mkdir -m 755 /run/sshd && "
+        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{PERSON} && mount --bind {self.home} /home/{PERSON} && "
+                  if self.ordinary else "")
+        limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
+        inside = (f"mount --bind {self.disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && mkdir -m 755 /run/sshd && "
                   f"mount -t tmpfs tmpfs {REPOSITORY} && hostname {self.name} && cd /root && export HOME=/root && "
                   "ip link set lo up && echo up && read linked && { ulimit -l unlimited 2>/dev/null; exec /usr/sbin/sshd -D -f /root/.lab/sshd_config -E /root/.lab/sshd.log; }")
         environment = {"PATH": os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"}
@@ -98,7 +110,7 @@ class Host:
         end = time.monotonic() + PATIENCE_S
         while not answers(self.address):
             if self.process.poll() is not None or time.monotonic() > end:
-                raise Error(f"sshd of the host {self.name} does not answer; see {self.home}/.lab/sshd.log")
+                raise Error(f"sshd of the host {self.name} does not answer; see {self.disk}/.lab/sshd.log")
             time.sleep(0.02)
 
     def inside(self):
@@ -163,7 +175,8 @@ class Host:
 class Lab:
     """Made in the network of the caller, who is to be alone in it: see enter()."""
 
-    def __init__(self, names):
+    def __init__(self, names, ordinary=()):
+        """ordinary: those of the hosts that nobody is root on."""
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-lab-"))
         self.hosts = {}
         try:
@@ -175,7 +188,7 @@ class Lab:
             sh("ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(self.folder / "key"))
             (self.folder / "ssh_config").write_text("", encoding="utf-8")
             for number, name in enumerate(names, 1):
-                self.hosts[name] = Host(self, name, number)
+                self.hosts[name] = Host(self, name, number, name in ordinary)
                 self.hosts[name].prepare()
             with open(self.folder / "ssh_config", "a", encoding="utf-8") as file:
                 file.write(SSH.format(folder=self.folder))

@@ -25,12 +25,12 @@ SILENT_S = 3.0  # the observer hears nothing at all
 class Rehearsal:
     """The cluster of the file, in a lab that has its hosts. Only inside of lab.enter()."""
 
-    def __init__(self, file, folder):
+    def __init__(self, file, folder, ordinary=()):
         self.folder = pathlib.Path(folder)
         os.environ["HOME"] = str(self.folder / "home")  # of whoever gives the orders; hosts have homes of their own
         (self.folder / "home").mkdir(parents=True, exist_ok=True)
         self.cluster = cluster_file.read(str(file), self.folder / "plan")
-        self.lab = lab.Lab([name for name, host in self.cluster.hosts.items() if host.reach == "ssh"])
+        self.lab = lab.Lab([name for name, host in self.cluster.hosts.items() if host.reach == "ssh"], ordinary)
         self.operator = Operator(self.cluster, str(self.lab.folder / "ssh_config"), quiet=True)
         self.placement = {}
         self.watch = None

@@ -45,7 +45,7 @@ class Hosts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-hosts-test-"))
-        cls.r = rehearsal.Rehearsal(write_file(cls.folder), cls.folder)
+        cls.r = rehearsal.Rehearsal(write_file(cls.folder), cls.folder, ordinary=("sound",))
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         cls.addClassCleanup(cls.r.close)
         cls.r.up()
@@ -98,6 +98,18 @@ class Hosts(unittest.TestCase):
             self.assertEqual(1, len(builds), name)
         listing = subprocess.run(["nsenter", f"--mount=/proc/{self.r.lab.hosts['sound'].pid}/ns/mnt", "ls", str(REPOSITORY)], capture_output=True, text=True, check=False)
         self.assertEqual("", listing.stdout)
+
+    def test_10_where_nobody_is_root_the_nodes_run_all_the_same_and_the_doctor_says_what_they_lack(self):
+        users = {pathlib.Path(f"/proc/{p}").stat().st_uid for p in self.r.lab.hosts["sound"].processes() if self.name_of(p) in ("audio_node", "thermal_node", "sync_node")}
+        self.assertEqual({1000}, users)
+        self.assertIn("normal schedul", self.health()["audio_node"]["note"])
+        _, wrong = self.doctor()
+        said = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
+        self.assertEqual(1, len(said), wrong)
+        self.assertIn("person - rtprio 90", said[0])
+
+    def name_of(self, process):
+        return pathlib.Path(f"/proc/{process}/comm").read_text(encoding="ascii").strip()
 
     def test_11_up_again_changes_nothing(self):
         before = self.incarnations()
