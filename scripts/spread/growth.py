@@ -6,6 +6,7 @@ which the tests hold it.
 """
 import csv
 import dataclasses
+import math
 import pathlib
 import random
 
@@ -30,7 +31,8 @@ def flows():
 
 
 def senders(of, hosts):
-    return {"world": 1, "hand": 1, "node": hosts, "host": hosts, "pair": hosts}[of]
+    """The default scene has two hands."""
+    return {"world": 1, "hand": 2, "node": hosts, "host": hosts, "pair": hosts}[of]
 
 
 def rate(flow, hosts, thin=False):
@@ -111,3 +113,13 @@ class Bucket(Queue):
         self.last = self.free = at_work + wait
         self.busy_s += size / self.bit_per_s
         return self.free
+
+
+class Ticks:
+    """Who wakes so often and handles what has come: at the next tick, from a phase on."""
+
+    def __init__(self, rate_hz, phase_s):
+        self.period_s, self.phase_s = 1 / rate_hz, phase_s
+
+    def serve(self, at, _):
+        return math.ceil((at - self.phase_s) / self.period_s) * self.period_s + self.phase_s

@@ -19,7 +19,9 @@ class Growth(unittest.TestCase):
             self.assertEqual(flow.thin_per_s > 0, flow.channel in rules, flow.channel)
             if flow.channel in rules:
                 rate = rules[flow.channel].get("rate")
-                self.assertEqual(min(flow.per_s, float(rate.removesuffix("Hz"))) if rate else flow.per_s, flow.thin_per_s, flow.channel)
+                snapshots = [flow.per_s] if rate is None else [flow.per_s, *(pages * float(rate.removesuffix("Hz")) for pages in range(1, 5))]
+                self.assertIn(flow.thin_per_s, snapshots, flow.channel)
+                self.assertLessEqual(flow.thin_per_s, flow.per_s, flow.channel)
 
     def test_a_queue_waits_as_pollaczek_and_khinchine_say(self):
         """M/D/1: the mean wait is rho s / (2 (1 - rho)); Kleinrock 1975, equation 5.63."""
@@ -33,6 +35,13 @@ class Growth(unittest.TestCase):
             expected = rho * service_s / (2 * (1 - rho))
             self.assertAlmostEqual(1, waited / count / expected, delta=0.04, msg=f"rho {rho}")
             self.assertAlmostEqual(rho, queue.busy_s / at, delta=0.01)
+
+    def test_who_wakes_at_times_adds_half_a_period_in_the_mean_and_never_more_than_one(self):
+        dice, ticks = random.Random(3), growth.Ticks(500, 0.0007)
+        waited = [ticks.serve(at, 1) - at for at in (dice.uniform(0, 100) for _ in range(20_000))]
+        self.assertAlmostEqual(1e-3, sum(waited) / len(waited), delta=2e-5)
+        self.assertLessEqual(-1e-9, min(waited))
+        self.assertLessEqual(max(waited), 2e-3 + 1e-9)
 
     def test_a_bucket_never_lets_more_pass_than_its_rate_and_its_burst(self):
         """The bound of a token bucket: in any t at most burst + rate t (Cruz 1991, equation 1)."""
