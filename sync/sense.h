@@ -168,7 +168,10 @@ class Sense {
 
 template <class Message>
 void Sense::Held<Message>::step(Sense& sense, HostTime now, HostTime lets) {
+  // A turn that is held up while it reads hears what came meanwhile, too, and does not keep it until the next.
+  HostTime heard = now;
   while (auto m = stream.inbox_.pop()) {
+    heard = std::max(heard, m->arrival);
     if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
     if constexpr (std::is_same_v<Message, contact_events_t>) {
       sense.note_arrivals(m->message, m->arrival);
@@ -180,7 +183,7 @@ void Sense::Held<Message>::step(Sense& sense, HostTime now, HostTime lets) {
   if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
   // In lock-step the state of the world is that of the turn; events say themselves when they are due.
   const bool is_state = !std::is_same_v<Message, contact_events_t>;
-  stream.now_ = (is_state ? lets : now) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+  stream.now_ = (is_state && lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
 }
 
 }  // namespace tactus::sync

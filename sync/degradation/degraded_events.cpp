@@ -35,6 +35,7 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, Stack& st
   if (replaced) seen_.clear(), order_.clear();  // a log that is played anew brings the same ids
   if (replaced || m.header.publish_time_ns >= newest_.header.publish_time_ns) {
     newest_.header = m.header;
+    newest_arrival_ = arrival;
     newest_.clock = m.clock;
     newest_.pages = 1;
   }
@@ -70,6 +71,7 @@ std::optional<std::pair<contact_events_t, HostTime>> DegradedEvents::pop(HostTim
   auto next = waiting_.pop(now);
   if (next && next->first.header.incarnation == newest_.header.incarnation) {
     next->first.header.publish_time_ns = newest_.header.publish_time_ns;
+    next->second = newest_arrival_;
     next->first.clock = newest_.clock;
   }
   return next;

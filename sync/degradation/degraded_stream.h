@@ -1,9 +1,9 @@
 // Streams on their way from the bus to a renderer, with the operators of its profile in between. Without a profile
 // they pass through untouched. Pure.
 //
-// A message that is let through late carries the newest publication time and clock of its stream: it is old news
-// of the world, not a message from before a restart. Its arrival stays the true one, since loss is judged on raw
-// arrivals.
+// A message that is let through late carries the newest publication time and clock of its stream, and the arrival
+// of the message that they are of: it is old news of the world, not a message from before a restart, and says
+// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/sense.h).
 #pragma once
 
 #include <algorithm>
@@ -73,7 +73,7 @@ class DegradedSnapshots {
  public:
   // decisions: where those are noted; null: nowhere.
   void push(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
-    note_newest(m);
+    note_newest(m, arrival);
     const SimTime time = sim_time(m.header.sim_time_ns);
     if constexpr (requires { m.pages; })
       if (m.pages > 1 && of_two_profiles(m)) return;
@@ -94,7 +94,7 @@ class DegradedSnapshots {
   // The next message that is let through by now, and when it arrived.
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
     auto next = waiting_.pop(now);
-    if (next) freshen(next->first);
+    if (next) freshen(next->first, next->second);
     return next;
   }
 
@@ -181,17 +181,19 @@ class DegradedSnapshots {
     if (decisions && v.touched) decisions->push_back({key, false, item.time, v, arrival});
     return v;
   }
-  void note_newest(const Message& m) {
+  void note_newest(const Message& m, HostTime arrival) {
     const bool same = m.header.incarnation == incarnation_;
     if (same && m.header.publish_time_ns < newest_publish_ns_ && !epoch(m)) return;
     incarnation_ = m.header.incarnation;
     newest_publish_ns_ = m.header.publish_time_ns;
+    newest_arrival_ = arrival;
     if constexpr (requires { m.clock; }) newest_clock_ = m.clock;
   }
   bool epoch(const Message& m) const { return m.header.publish_time_ns < newest_publish_ns_ - 1'000'000'000; }
-  void freshen(Message& m) {
+  void freshen(Message& m, HostTime& arrival) {
     if (m.header.incarnation != incarnation_) return;
     m.header.publish_time_ns = newest_publish_ns_;
+    arrival = newest_arrival_;
     if constexpr (requires { m.clock; }) m.clock = newest_clock_;
   }
 
@@ -201,6 +203,7 @@ class DegradedSnapshots {
   std::map<std::uint64_t, Verdict> verdicts_;
   std::deque<std::uint64_t> order_;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
+  HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};
 };
 
@@ -221,6 +224,7 @@ class DegradedEvents {
 
   Waiting<contact_events_t> waiting_;
   contact_events_t newest_{};  // header and clock
+  HostTime newest_arrival_{};  // of that
   std::set<std::int64_t> seen_;
   std::deque<std::int64_t> order_;
   std::vector<contact_event_t> dropped_;

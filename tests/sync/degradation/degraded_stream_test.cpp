@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sync/contact_stream.h"
+#include "sync/sender_clock.h"
 
 using namespace tactus;
 using namespace tactus::sync;
@@ -280,4 +281,42 @@ TEST_CASE("Values are changed in each message, and stay valid") {
   while (const auto m = events.pop(arrival(3)))
     for (const contact_event_t& e : m->first.events) speed = e.approach_speed_m_s;
   CHECK(speed == 0.5f);
+}
+
+TEST_CASE("What is held back says nothing about the clock of who sent it") {
+  // A sender with a clock of its own, 7 s behind ours, known to 50 us; its messages take 300 us.
+  constexpr std::int32_t kTheirs = 5, kOurs = 6;
+  constexpr Nanoseconds kBehind{7'000'000'000}, kWay{300'000};
+  ClockMaps maps(1);
+  clock_map_t map{};
+  map.header = header(0, 0);
+  map.of_clock = kTheirs;
+  map.to_clock = kOurs;
+  map.at_ns = kEpoch;
+  map.offset_ns = kBehind.count();
+  map.uncertainty_ns = 50'000;
+  maps.observe(map, host_time(kEpoch) + kBehind);
+  REQUIRE(maps.read(host_time(kEpoch), kTheirs, kOurs));
+  SenderClock clock({1, kOurs, &maps});
+  Stack stack = stack_of(GENERATE("delay=\"40ms network\"", "jitter=\"10ms uniform\"", "rate=\"60Hz\""));
+  DegradedSnapshots<contact_frame_t> snapshots;
+  DegradedEvents events;
+  std::size_t heard = 0;
+  for (int ms = 0; ms < 500; ++ms) {
+    const HostTime sent = host_time(kEpoch + ms * kMs) + kBehind, arrived = sent + kWay;
+    contact_frame_t page = page_at(ms, 0, 1, ms);
+    contact_events_t told = events_at(ms, {event(1 + ms / 100, ms / 100 * 100)}, ms);
+    page.header.clock = told.header.clock = kTheirs;
+    snapshots.push(page, arrived, stack, nullptr);
+    events.push(told, arrived, stack, nullptr);
+    const auto observe = [&](const header_t& h, HostTime at) {
+      ++heard;
+      CHECK_FALSE(clock.observe(h, at));
+      CHECK(clock.read(h.publish_time_ns, arrived).how == SenderClock::How::kMapped);
+      CHECK(at - (host_time(h.publish_time_ns) + kBehind) == kWay);
+    };
+    while (const auto m = snapshots.pop(arrived)) observe(m->first.header, m->second);
+    while (const auto m = events.pop(arrived)) observe(m->first.header, m->second);
+  }
+  CHECK(heard > 400);
 }
