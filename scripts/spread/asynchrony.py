@@ -38,6 +38,7 @@ class Onset:
     clock_ns: int  # half width that the map states
     own_ns: int    # half width that the node states
     late: bool = False
+    meant_ns: int | None = None  # when it was to be
 
 
 @dataclasses.dataclass(frozen=True)
@@ -156,7 +157,7 @@ def onsets(rows, kinds, maps, host_of, ahead_s):
             read = maps.read(int(r["presented_ns"]), host, log_s)
             if read is not None:
                 found[node, event, part] = Onset(event, sense + ("_push" if part == CONSTRAINT else ""), node, host, int(r["presented_ns"]) - ahead_s[host] * PER_S,
-                                                 read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE)
+                                                 read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE, int(r["scheduled_ns"]) - ahead_s[host] * PER_S)
     return list(found.values())
 
 
@@ -274,6 +275,24 @@ def summed_up(pairs):
                      "aimed": len(aside), "aside_p50_ms": quantile(aside, 0.5) / 1e6 if aside else None, "aside_worst_ms": max(aside) / 1e6 if aside else None,
                      "grain_ms": max(p.grain_ns for p in of) / 1e6, "beyond": sum(p.beyond for p in of), "beyond_in_time": sum(p.beyond and not p.late for p in of)})
     return rows
+
+
+def instants(found, events_ns, delays):
+    """A row for each node, in ms: what it meant to be the instant of an event, against the event itself and the playout delay; and how far from what
+    it meant it presented. The first crosses hosts and should be as small as their maps state, the second is the node's own. events_ns: {event: ns}."""
+    nodes = {}
+    for o in found:
+        delay = delays.at(o.sense, o.true_ns)
+        if delay is not None and o.what in events_ns:
+            nodes.setdefault((o.sense, o.node), []).append((o.meant_ns - events_ns[o.what] - delay, o.true_ns - o.meant_ns))
+    return [{"sense": sense, "node": node, "n": len(of), "meant_p50_ms": quantile([m for m, _ in of], 0.5) / 1e6, "meant_worst_ms": max((m for m, _ in of), key=abs) / 1e6,
+             "met_p50_ms": quantile([t for _, t in of], 0.5) / 1e6, "met_worst_ms": max((t for _, t in of), key=abs) / 1e6} for (sense, node), of in sorted(nodes.items())]
+
+
+def text_of_instants(rows):
+    lines = [f"{'':24} {'n':>6} {'meant p50':>10} {'worst':>8} {'met p50':>8} {'worst':>8}"]
+    lines += [f"{r['node']:24} {r['n']:6d} {r['meant_p50_ms']:10.2f} {r['meant_worst_ms']:8.2f} {r['met_p50_ms']:8.2f} {r['met_worst_ms']:8.2f}" for r in rows]
+    return "\n".join(lines)
 
 
 def text(rows):

@@ -42,9 +42,10 @@ def message(sender, arrives_s, once, **lists):
 message.seq = 0
 
 
-def report(node, at_s, event=1, part=0, outcome=0, own_ns=1_000_000, arrives_s=None):
+def report(node, at_s, event=1, part=0, outcome=0, own_ns=1_000_000, arrives_s=None, meant_s=None):
     sense = node.split("_")[0]
-    entry = {"event_id": event, "part": part, "presented_ns": -1 if at_s is None else s(at_s + AHEAD_S[HOSTS[node]]), "uncertainty_ns": own_ns, "outcome": outcome}
+    entry = {"event_id": event, "part": part, "scheduled_ns": s((meant_s or at_s or 0) + AHEAD_S[HOSTS[node]]),
+             "presented_ns": -1 if at_s is None else s(at_s + AHEAD_S[HOSTS[node]]), "uncertainty_ns": own_ns, "outcome": outcome}
     return message(node, arrives_s or (at_s or 500) + 0.005, {"modality": sense, "count": 1}, reports=[entry])
 
 
@@ -141,6 +142,13 @@ class Asynchrony(unittest.TestCase):
         self.assertEqual([s(0.05), None, None, s(0.15)], [delays.at("audio", s(t)) for t in (499.9, 500.05, 502.4, 503.5)])  # 0.1 s at 5 % take 2 s
         self.assertIsNone(delays.at("haptic_push", s(499)))
         self.assertIsNone(delays.at("audio", s(480)))
+
+    def test_an_instant_that_was_meant_wrongly_is_told_from_one_that_was_not_met(self):
+        delays = a.Delays([r for i in range(60) for r in delays_row(495 + i / 10, audio=0.15, visual=0.15)], self.maps)
+        found = self.onsets(report("audio_node", 500.150), report("visual_node", 500.140, meant_s=500.120))
+        sound, picture = a.instants(found, {1: s(500.0)}, delays)
+        self.assertEqual(("audio_node", 0.0, 0.0), (sound["node"], sound["meant_worst_ms"], sound["met_worst_ms"]))
+        self.assertEqual(("visual_node", -30.0, 20.0), (picture["node"], picture["meant_worst_ms"], picture["met_worst_ms"]))
 
     def test_frames_take_their_instant_from_one_table_and_their_arrival_from_the_other(self):
         told = [{"log_s": "10.0", "sender": n} for n in ("visual_node", "visual_node_right", "visual_node")]
