@@ -7,7 +7,8 @@ sync/presentation_matcher.cpp does, for each event, from the maps that had arriv
   off        what it says minus what was: the maps are all that lies between, so it is within the sum of what they state
   stated     that sum, and with it the uncertainties of the two presentations themselves
   aside      the true asynchrony minus that which the playout delays aim at: what the senses made of it. It is within what is
-             stated and the grain of both: a picture is the nearest one, half a period away, a tick the next one; sound falls on its sample
+             stated and the grain of both: a picture is the nearest one, half a period away, a tick the next one; sound falls on its sample.
+             A sense that is to present at once, touch by default, does so when it has heard of the event: from then on by its own word
 
 Pure: rows of tables in, rows out. Times are ns of the lab's clock where nothing else is said.
 """
@@ -39,6 +40,7 @@ class Onset:
     own_ns: int    # half width that the node states
     late: bool = False
     meant_ns: int | None = None  # when it was to be
+    ready_ns: int | None = None  # when it could have been at the earliest
 
 
 @dataclasses.dataclass(frozen=True)
@@ -157,7 +159,8 @@ def onsets(rows, kinds, maps, host_of, ahead_s):
             read = maps.read(int(r["presented_ns"]), host, log_s)
             if read is not None:
                 found[node, event, part] = Onset(event, sense + ("_push" if part == CONSTRAINT else ""), node, host, int(r["presented_ns"]) - ahead_s[host] * PER_S,
-                                                 read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE, int(r["scheduled_ns"]) - ahead_s[host] * PER_S)
+                                                 read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE,
+                                                 *(int(r[name]) - ahead_s[host] * PER_S if int(r[name]) >= 0 else None for name in ("scheduled_ns", "ready_ns")))
     return list(found.values())
 
 
@@ -165,7 +168,10 @@ def frames(told, shown, maps, host_of, ahead_s, own_ns):
     """Onsets of frames, by wall: told are rows of FRAME_SHOWN, wide, and shown those of frame_shown.csv of the same log, in the same order, which have
     the instant. own_ns: {wall: half width that it states of what it presents}."""
     found = []
-    for arrived, row in zip(told, shown, strict=True):
+    told = [r for r in map(plain, told) if r["sender"]]  # of the others the header cannot be read: they are in the first table alone
+    if [r["frame"] for r in told] != [r["frame"] for r in shown]:
+        raise ValueError("FRAME_SHOWN.csv and frame_shown.csv are not of the same log; make both anew from one")
+    for arrived, row in zip(told, shown):
         node = arrived["sender"]
         host = host_of.get(node)
         read = maps.read(int(row["publish_ns"]), host, float(arrived["log_s"])) if host and row["stage"] == "shown" and node in own_ns else None
@@ -209,6 +215,7 @@ def between(a, b, name, delays, periods_ns):
     if a.sense != b.sense:
         aims = [delays.at(o.sense, o.true_ns) if delays else None for o in (a, b)]
     grain = sum(round(GRAIN.get(o.sense, 0) * periods_ns.get(o.node, 0)) for o in (a, b))
+    grain += sum(max(0, o.ready_ns - o.meant_ns) for o, aim in zip((a, b), aims) if aim == 0 and a.sense != b.sense and o.ready_ns and o.meant_ns)
     clocks = a.clock_ns + b.clock_ns
     return Pair(name(a), name(b), (a.host, b.host), min(a.true_ns, b.true_ns), b.true_ns - a.true_ns, b.told_ns - a.told_ns, clocks,
                 clocks + a.own_ns + b.own_ns, None if None in aims else aims[1] - aims[0], grain, a.late or b.late)
@@ -283,7 +290,7 @@ def instants(found, events_ns, delays):
     nodes = {}
     for o in found:
         delay = delays.at(o.sense, o.true_ns)
-        if delay is not None and o.what in events_ns:
+        if delay is not None and o.what in events_ns and o.meant_ns is not None:
             nodes.setdefault((o.sense, o.node), []).append((o.meant_ns - events_ns[o.what] - delay, o.true_ns - o.meant_ns))
     return [{"sense": sense, "node": node, "n": len(of), "meant_p50_ms": quantile([m for m, _ in of], 0.5) / 1e6, "meant_worst_ms": max((m for m, _ in of), key=abs) / 1e6,
              "met_p50_ms": quantile([t for _, t in of], 0.5) / 1e6, "met_worst_ms": max((t for _, t in of), key=abs) / 1e6} for (sense, node), of in sorted(nodes.items())]

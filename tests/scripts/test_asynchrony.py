@@ -42,9 +42,10 @@ def message(sender, arrives_s, once, **lists):
 message.seq = 0
 
 
-def report(node, at_s, event=1, part=0, outcome=0, own_ns=1_000_000, arrives_s=None, meant_s=None):
+def report(node, at_s, event=1, part=0, outcome=0, own_ns=1_000_000, arrives_s=None, meant_s=None, ready_s=None):
     sense = node.split("_")[0]
     entry = {"event_id": event, "part": part, "scheduled_ns": s((meant_s or at_s or 0) + AHEAD_S[HOSTS[node]]),
+             "ready_ns": s((ready_s or at_s or 0) + AHEAD_S[HOSTS[node]]),
              "presented_ns": -1 if at_s is None else s(at_s + AHEAD_S[HOSTS[node]]), "uncertainty_ns": own_ns, "outcome": outcome}
     return message(node, arrives_s or (at_s or 500) + 0.005, {"modality": sense, "count": 1}, reports=[entry])
 
@@ -136,6 +137,13 @@ class Asynchrony(unittest.TestCase):
         self.assertTrue(far["audio", "visual"].beyond)
         self.assertFalse(far["audio", "visual"].outside)
 
+    def test_touch_at_once_is_when_it_has_heard_of_the_event(self):
+        delays = a.Delays([r for i in range(60) for r in delays_row(495 + i / 10, haptic=0, audio=0.15)], self.maps)
+        felt = lambda after_s: self.pairs(report("haptic_node", 500 + after_s, part=a.TRANSIENT, meant_s=500.0, ready_s=500.003), report("audio_node", 500.150, ready_s=500.2),
+                                          delays=delays)["haptic", "audio"]
+        self.assertEqual([4_000_000] * 2, [felt(t).grain_ns for t in (0.003, 0.008)])  # a tick and the way; what sound needs is in its delay
+        self.assertEqual([False, True], [felt(t).beyond for t in (0.003, 0.008)])
+
     def test_while_a_delay_changes_and_for_the_push_nothing_is_aimed_at(self):
         rows = [r for i in range(160) for r in delays_row(490 + i / 10, haptic=0, audio=0.05 if i < 100 else 0.15)]
         delays = a.Delays(rows, self.maps)
@@ -151,12 +159,14 @@ class Asynchrony(unittest.TestCase):
         self.assertEqual(("visual_node", -30.0, 20.0), (picture["node"], picture["meant_worst_ms"], picture["met_worst_ms"]))
 
     def test_frames_take_their_instant_from_one_table_and_their_arrival_from_the_other(self):
-        told = [{"log_s": "10.0", "sender": n} for n in ("visual_node", "visual_node_right", "visual_node")]
+        told = [{"log_s": "10.0", "sender": n, "frame": "7"} for n in ("visual_node", "", "visual_node_right", "visual_node")]
         shown = [{"frame": "7", "stage": stage, "publish_ns": str(s(t + 3000))} for stage, t in (("shown", 500.0), ("shown", 500.004), ("ready", 500.01))]
         found = a.frames(told, shown, self.maps, HOSTS, AHEAD_S, {"visual_node": 3_000_000, "visual_node_right": 3_000_000})
         pair, = a.of_walls(found, {}, {"visual_node": "front", "visual_node_right": "right"})
         self.assertEqual((4_000_000, 0, 2 * 30_002 + 6_000_000), (pair.true_ns, pair.off_ns, pair.stated_ns))
         self.assertFalse(pair.beyond)
+        with self.assertRaisesRegex(ValueError, "same log"):
+            a.frames(told[:1], shown, self.maps, HOSTS, AHEAD_S, {})
 
     def test_pairs_are_told_apart_by_what_was_spoilt_meanwhile(self):
         windows = [(None, s(499), s(501)), ("left", s(510), s(511)), ("right", s(520), s(521)), ("world", s(530), s(531))]
