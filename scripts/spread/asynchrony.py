@@ -1,0 +1,326 @@
+"""How far apart senses and walls on different hosts presented what belongs together: what was, what the system says, and how sure it says to be.
+
+A lab knows by how much the clocks of its hosts differ, so that the times at which two hosts presented one event can be laid on one
+clock exactly: the true asynchrony. The system knows that of its CLOCK_MAPs only. What it says is reckoned here as
+sync/presentation_matcher.cpp does, for each event, from the maps that had arrived at the recorder when the report did.
+
+  off        what it says minus what was: the maps are all that lies between, so it is within the sum of what they state
+  stated     that sum, and with it the uncertainties of the two presentations themselves
+  aside      the true asynchrony minus that which the playout delays aim at: what the senses made of it. It is within what is
+             stated and the grain of both: a picture is the nearest one, half a period away, a tick the next one; sound falls on its sample.
+             A sense that is to present at once, touch by default, does so when it has heard of the event: from then on by its own word
+
+Pure: rows of tables in, rows out. Times are ns of the lab's clock where nothing else is said.
+"""
+import bisect
+import dataclasses
+import itertools
+import re
+
+NAMES = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation_matcher.cpp
+CONSTRAINT, TRANSIENT = 1, 2                                     # presentation_t: part
+PRESENTED, LATE, INAUDIBLE = 0, 1, 4                             # presentation_t: outcome
+GRAIN = {"haptic": 1.0, "thermal": 1.0, "visual": 0.5}           # of the period: by how much a presentation may be off its instant
+SLEW = 0.05                                                      # sync/playout/follower.h
+MOST_UNCERTAIN_NS = 16_000_000                                   # sync/clock_maps.h
+PER_S = 1_000_000_000
+BEFORE_NS = PER_S // 2                                           # a delay that changed so shortly before is one that changes: on its way, and in a picture begun
+
+
+@dataclasses.dataclass(frozen=True)
+class Onset:
+    """One event, or frame, as one node presented it."""
+    what: int
+    sense: str     # haptic_push: the force that answers a begin at once whatever the policy
+    node: str
+    host: str
+    true_ns: int
+    told_ns: int   # on the recorder's clock, by the maps
+    clock_ns: int  # half width that the map states
+    own_ns: int    # half width that the node states
+    late: bool = False
+    meant_ns: int | None = None  # when it was to be
+    ready_ns: int | None = None  # when it could have been at the earliest
+
+
+@dataclasses.dataclass(frozen=True)
+class Pair:
+    """Two onsets of one thing: b minus a."""
+    a: str
+    b: str
+    hosts: tuple
+    at_ns: int            # when the first of them was
+    true_ns: int
+    told_ns: int
+    clocks_ns: int
+    stated_ns: int        # clocks_ns and what both nodes state
+    aim_ns: int | None    # by the playout delays; None: they were changing, or aim at nothing
+    grain_ns: int
+    late: bool
+
+    @property
+    def off_ns(self):
+        return self.told_ns - self.true_ns
+
+    @property
+    def outside(self):
+        return abs(self.off_ns) > self.clocks_ns
+
+    @property
+    def aside_ns(self):
+        return None if self.aim_ns is None else self.true_ns - self.aim_ns
+
+    @property
+    def beyond(self):
+        return self.aside_ns is not None and abs(self.aside_ns) > self.stated_ns + self.grain_ns
+
+
+# what arrived
+
+def plain(row):
+    """A row of a wide table of export_log without the units in its names."""
+    return {name.partition(" (")[0]: value for name, value in row.items()}
+
+
+def messages(rows):
+    """(log_s, sender, {field: value}, {place: {field: value}}) of each message of a long table of export_log whose type has one list."""
+    for (log_s, sender, _), fields in itertools.groupby(rows, lambda r: (r["log_s"], r["sender"], r["seq"])):
+        once, lists = {}, {}
+        for r in fields:
+            place = re.match(r"\w+\[(\d+)\]\.(.*)", r["field"])
+            if place:
+                lists.setdefault(int(place[1]), {})[place[2]] = r["value"]
+            else:
+                once[r["field"]] = r["value"]
+        yield float(log_s), sender, once, lists
+
+
+class Maps:
+    """What a log holds of other clocks in the clock of the host that recorded it, as it was known at each instant."""
+
+    def __init__(self, rows, host_of, home, ahead_s):
+        """rows: CLOCK_MAP, wide. host_of: {node: host}. home: the recorder's host."""
+        rows = [plain(r) for r in rows]
+        self.home, self.lines = home, {}
+        host_of_clock = {r["to_clock"]: host_of[r["sender"]] for r in rows if r["sender"] in host_of}
+        shifts = []
+        for r in rows:
+            of, to = host_of_clock.get(r["of_clock"]), host_of_clock.get(r["to_clock"])
+            if to == home:
+                shifts.append(int(r["at_ns"]) - ahead_s[home] * PER_S - round(float(r["log_s"]) * PER_S))
+            if home in (of, to) and of and to:
+                self.lines.setdefault((of, to), []).append((float(r["log_s"]), r))
+        shifts.sort()
+        # A map is of the instant at which it is sent, so that it ties the log's time to its host's clock: to some ms, on the way to the recorder.
+        self.begin_ns = shifts[len(shifts) // 2] if shifts else None
+
+    def at_ns(self, log_s):
+        """An instant of the log on the lab's clock."""
+        return self.begin_ns + round(log_s * PER_S)
+
+    def read(self, of_ns, host, log_s):
+        """(ns, half width) on the recorder's clock of an instant of that host's, by what was known then; None: nothing certain enough was."""
+        if host == self.home:
+            return of_ns, 0
+        for key, read in (((host, self.home), from_of), ((self.home, host), to_of)):
+            lines = self.lines.get(key, ())
+            newest = bisect.bisect_right(lines, log_s, key=lambda line: line[0])
+            if newest:
+                ns, half_ns = read(lines[newest - 1][1], of_ns)
+                return (ns, half_ns) if half_ns <= MOST_UNCERTAIN_NS else None
+        return None
+
+
+def half_width(row, since_ns):
+    return int(row["uncertainty_ns"]) + round(abs(since_ns) * float(row["uncertainty_drift"])) + 2  # sync/clock_maps.cpp: two roundings
+
+
+def from_of(row, ns):
+    since = round((ns - int(row["at_ns"]) - int(row["offset_ns"])) / (1 + float(row["drift"])))
+    return int(row["at_ns"]) + since, half_width(row, since)
+
+
+def to_of(row, ns):
+    since = ns - int(row["at_ns"])
+    return ns + int(row["offset_ns"]) + round(since * float(row["drift"])), half_width(row, since)
+
+
+def onsets(rows, kinds, maps, host_of, ahead_s):
+    """Of PRESENTED, long: the onset that each node gave each event. kinds: {event_id: kind}, as events.csv has them."""
+    found = {}
+    for log_s, node, once, reports in messages(rows):
+        host = host_of.get(node)
+        for r in reports.values():
+            event, part, sense = int(r["event_id"]), int(r["part"]), once["modality"]
+            if host is None or (node, event, part) in found or int(r["presented_ns"]) < 0 or int(r["outcome"]) not in (PRESENTED, LATE, INAUDIBLE):
+                continue
+            if part and part != (TRANSIENT if kinds.get(str(event)) == "hit" else CONSTRAINT):
+                continue
+            read = maps.read(int(r["presented_ns"]), host, log_s)
+            if read is not None:
+                found[node, event, part] = Onset(event, sense + ("_push" if part == CONSTRAINT else ""), node, host, int(r["presented_ns"]) - ahead_s[host] * PER_S,
+                                                 read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE,
+                                                 *(int(r[name]) - ahead_s[host] * PER_S if int(r[name]) >= 0 else None for name in ("scheduled_ns", "ready_ns")))
+    return list(found.values())
+
+
+def frames(told, shown, maps, host_of, ahead_s, own_ns):
+    """Onsets of frames, by wall: told are rows of FRAME_SHOWN, wide, and shown those of frame_shown.csv of the same log, in the same order, which have
+    the instant. own_ns: {wall: half width that it states of what it presents}."""
+    found = []
+    told = [r for r in map(plain, told) if r["sender"]]  # of the others the header cannot be read: they are in the first table alone
+    if [r["frame"] for r in told] != [r["frame"] for r in shown]:
+        raise ValueError("FRAME_SHOWN.csv and frame_shown.csv are not of the same log; make both anew from one")
+    for arrived, row in zip(told, shown):
+        node = arrived["sender"]
+        host = host_of.get(node)
+        read = maps.read(int(row["publish_ns"]), host, float(arrived["log_s"])) if host and row["stage"] == "shown" and node in own_ns else None
+        if read is not None:
+            found.append(Onset(int(row["frame"]), "visual", node, host, int(row["publish_ns"]) - ahead_s[host] * PER_S, *read, own_ns[node]))
+    return found
+
+
+class Delays:
+    """The playout delay of each sense, as it follows what PLAYOUT asks for."""
+
+    def __init__(self, rows, maps):
+        self.told = {}  # by sense: (ns, delay from then on, what is asked for)
+        for log_s, _, _, entries in messages(rows):
+            at = maps.at_ns(log_s)
+            for e in entries.values():
+                asked, of_sense = int(e["delay_ns"]), self.told.setdefault(e["modality"], [])
+                of_sense.append((at, followed(of_sense[-1], at) if of_sense else asked, asked))
+
+    def at(self, sense, ns):
+        """The delay, when it did not change from the event until it was presented; else None."""
+        told = self.told.get(sense, ())
+        end = bisect.bisect_right(told, ns, key=lambda t: t[0])
+        if not end:
+            return None
+        delay = told[end - 1][2]
+        begin = bisect.bisect_left(told, ns - delay - BEFORE_NS, hi=end - 1, key=lambda t: t[0])
+        return delay if all(t[1] == t[2] == delay for t in told[begin:end]) else None
+
+
+def followed(before, at):
+    begin, delay, asked = before
+    most = round(SLEW * (at - begin))
+    return delay + max(-most, min(asked - delay, most))
+
+
+# what belongs together
+
+def between(a, b, name, delays, periods_ns):
+    aims = [0, 0]
+    if a.sense != b.sense:
+        aims = [delays.at(o.sense, o.true_ns) if delays else None for o in (a, b)]
+    grain = sum(round(GRAIN.get(o.sense, 0) * periods_ns.get(o.node, 0)) for o in (a, b))
+    grain += sum(max(0, o.ready_ns - o.meant_ns) for o, aim in zip((a, b), aims) if aim == 0 and a.sense != b.sense and o.ready_ns and o.meant_ns)
+    clocks = a.clock_ns + b.clock_ns
+    return Pair(name(a), name(b), (a.host, b.host), min(a.true_ns, b.true_ns), b.true_ns - a.true_ns, b.told_ns - a.told_ns, clocks,
+                clocks + a.own_ns + b.own_ns, None if None in aims else aims[1] - aims[0], grain, a.late or b.late)
+
+
+def by_event(found):
+    events = {}
+    for o in found:
+        events.setdefault(o.what, []).append(o)
+    return events.values()
+
+
+def of_senses(found, delays, periods_ns):
+    """A row for each event and pair of senses; of several walls the first to show it, by what the system says."""
+    place = lambda sense: (NAMES.index(sense) if sense in NAMES else len(NAMES), sense)
+    for event in by_event(found):
+        first = {}
+        for o in event:
+            if o.sense not in first or o.told_ns < first[o.sense].told_ns:
+                first[o.sense] = o
+        for a, b in itertools.combinations(sorted(first, key=place), 2):
+            yield between(first[a], first[b], lambda o: o.sense, delays, periods_ns)
+
+
+def of_walls(found, periods_ns, names):
+    """A row for each event or frame and pair of walls. names: {node: wall}."""
+    for event in by_event(o for o in found if o.node in names):
+        for a, b in itertools.combinations(sorted(event, key=lambda o: list(names).index(o.node)), 2):
+            yield between(a, b, lambda o: names[o.node], None, periods_ns)
+
+
+def by_window(pairs, windows, home):
+    """{"nothing": pairs while nothing was spoilt, "others": while another host was, "spoilt": while one of theirs was, or the recorder's, whose maps
+    these are}. windows: (spoilt host or None, begin, end) in ns; what is in none of them is left out."""
+    found = {"nothing": [], "others": [], "spoilt": []}
+    for p in pairs:
+        for host, begin, end in windows:
+            if begin <= p.at_ns < end:
+                found["nothing" if host is None else "spoilt" if host in (*p.hosts, home) else "others"].append(p)
+                break
+    return found
+
+
+# tables
+
+def quantile(values, q):
+    """As SoaHistogram::quantile, but for its bins."""
+    values = sorted(values)
+    return values[max(0, -int(-q * len(values) // 1) - 1)]
+
+
+def summed_up(pairs):
+    """A row for each pair of names, in ms."""
+    groups = {}
+    for p in pairs:
+        groups.setdefault((p.a, p.b), []).append(p)
+    rows = []
+    for (a, b), of in groups.items():
+        aside = [abs(p.aside_ns) for p in of if p.aside_ns is not None]
+        rows.append({"a": a, "b": b, "n": len(of), "other_host": sum(p.hosts[0] != p.hosts[1] for p in of),
+                     "true_p50_ms": quantile([p.true_ns for p in of], 0.5) / 1e6, "true_worst_ms": max((p.true_ns for p in of), key=abs) / 1e6,
+                     "off_worst_ms": max(abs(p.off_ns) for p in of) / 1e6, "clocks_worst_ms": max(p.clocks_ns for p in of) / 1e6,
+                     "outside": sum(p.outside for p in of), "stated_worst_ms": max(p.stated_ns for p in of) / 1e6, "late": sum(p.late for p in of),
+                     "aimed": len(aside), "aside_p50_ms": quantile(aside, 0.5) / 1e6 if aside else None, "aside_worst_ms": max(aside) / 1e6 if aside else None,
+                     "grain_ms": max(p.grain_ns for p in of) / 1e6, "beyond": sum(p.beyond for p in of), "beyond_in_time": sum(p.beyond and not p.late for p in of)})
+    return rows
+
+
+def instants(found, events_ns, delays):
+    """A row for each node, in ms: what it meant to be the instant of an event, against the event itself and the playout delay; and how far from what
+    it meant it presented. The first crosses hosts and should be as small as their maps state, the second is the node's own. events_ns: {event: ns}."""
+    nodes = {}
+    for o in found:
+        delay = delays.at(o.sense, o.true_ns)
+        if delay is not None and o.what in events_ns and o.meant_ns is not None:
+            nodes.setdefault((o.sense, o.node), []).append((o.meant_ns - events_ns[o.what] - delay, o.true_ns - o.meant_ns))
+    return [{"sense": sense, "node": node, "n": len(of), "meant_p50_ms": quantile([m for m, _ in of], 0.5) / 1e6, "meant_worst_ms": max((m for m, _ in of), key=abs) / 1e6,
+             "met_p50_ms": quantile([t for _, t in of], 0.5) / 1e6, "met_worst_ms": max((t for _, t in of), key=abs) / 1e6} for (sense, node), of in sorted(nodes.items())]
+
+
+def text_of_instants(rows):
+    lines = [f"{'':24} {'n':>6} {'meant p50':>10} {'worst':>8} {'met p50':>8} {'worst':>8}"]
+    lines += [f"{r['node']:24} {r['n']:6d} {r['meant_p50_ms']:10.2f} {r['meant_worst_ms']:8.2f} {r['met_p50_ms']:8.2f} {r['met_worst_ms']:8.2f}" for r in rows]
+    return "\n".join(lines)
+
+
+def text(rows):
+    lines = [f"{'':24} {'n':>6} {'true p50':>9} {'worst':>9} {'off worst':>10} {'clocks':>7} {'outside':>8} {'stated':>7} "
+             f"{'late':>5} {'aimed':>6} {'aside p50':>10} {'worst':>8} {'grain':>6} {'beyond':>7}"]
+    show = lambda v: "-" if v is None else f"{v:.2f}"
+    for r in rows:
+        lines.append(f"{r['a'] + ' ' + r['b']:24} {r['n']:6d} {r['true_p50_ms']:9.2f} {r['true_worst_ms']:9.2f} {r['off_worst_ms']:10.4f} "
+                     f"{r['clocks_worst_ms']:7.4f} {r['outside']:8d} {r['stated_worst_ms']:7.2f} {r['late']:5d} {r['aimed']:6d} {show(r['aside_p50_ms']):>10} "
+                     f"{show(r['aside_worst_ms']):>8} {r['grain_ms']:6.1f} {r['beyond']:7d}")
+    return "\n".join(lines)
+
+
+def against_summary(pairs, said):
+    """Rows of what summarise says of the same log (asynchrony_ms) beside the same reckoned here: both count the same events, and differ by a bin."""
+    rows = []
+    for name, s in said.items():
+        of = [p for p in pairs if f"{p.a}_{p.b}" == name]
+        if not s["n"] and not of:
+            continue
+        differs = [abs(s[f"p{q:02d}"] - quantile([p.told_ns for p in of], q / 100) / 1e6) for q in (5, 50, 95)] if s["n"] and of else []
+        rows.append({"pair": name, "n_said": s["n"], "n": len(of), "differs_ms": max(differs, default=None),
+                     "uncertainty_said_ms": s["uncertainty"], "uncertainty_ms": max((p.stated_ns for p in of), default=0) / 1e6})
+    return rows
