@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "sync/udp_reader.h"
+#include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sync {
 namespace {
@@ -82,6 +83,7 @@ struct Bus::Connections {
   std::shared_ptr<lcm::LCM> realtime;
   std::shared_ptr<lcm::LCM> bulk;
   std::unique_ptr<UdpReader> reader;  // none in memory: there LCM hands over what arrives
+  std::unique_ptr<VirtualEnd> end;    // in a virtual time: instead of all of them
   HostTime now{};                     // stamp for what is drained
 
   struct Handler {
@@ -113,6 +115,10 @@ Bus::Bus(Identity identity, const BusOptions& options)
     : identity_(std::move(identity)), maps_(identity_.run_id), connections_(std::make_unique<Connections>()) {
   if (options.clock != 0) identity_.clock = options.clock;
   Connections& c = *connections_;
+  if (VirtualTime* time = VirtualTime::current()) {
+    c.end = time->wire().join();
+    return;
+  }
   c.realtime = c.bulk = open(lcm_url(options, options.port), identity_);
   if (options.memory) return;
   c.bulk = open(lcm_url(options, options.port + 1), identity_);
@@ -144,6 +150,11 @@ Bus::~Bus() = default;
 
 void Bus::subscribe(const char* channel, InboxBase* inbox, Port port) {
   Connections& c = *connections_;
+  if (c.end) {
+    if (port != Port::kBulk) c.end->subscribe(0, channel, inbox);
+    if (port != Port::kRealtime) c.end->subscribe(1, channel, inbox);
+    return;
+  }
   if (!c.reader) {
     auto handler = std::make_unique<Connections::Handler>(Connections::Handler{&c, inbox});
     c.realtime->subscribe(channel, &Connections::Handler::handle, handler.get())->setQueueCapacity(kLcmQueue);
@@ -178,6 +189,7 @@ void Bus::follow_clocks() {
 
 void Bus::drain(HostTime now) {
   Connections& c = *connections_;
+  if (c.end) return c.end->drain(now, kMaxDrain);
   c.now = now;
   if (c.reader) {
     const auto hear = [&](std::size_t side, const ChannelBytes& m) {
@@ -200,6 +212,7 @@ void Bus::hear(std::string_view channel, std::span<const std::uint8_t> data, Hos
 }
 
 void Bus::wait(Nanoseconds at_most) {
+  if (connections_->end) return VirtualTime::current()->wait(*connections_->end, at_most);
   if (connections_->reader) return connections_->reader->wait(at_most);
   pollfd fd{connections_->realtime->getFileno(), POLLIN, 0};
   const std::int64_t ns = at_most.count();
@@ -222,6 +235,13 @@ void Bus::stamp(const char* channel, header_t& h) {
 }
 
 bool Bus::send(const char* channel, const void* data, unsigned size, Port port) {
+  if (connections_->end) {
+    VirtualTime& time = *VirtualTime::current();
+    const std::span bytes(static_cast<const std::uint8_t*>(data), size);
+    if (port != Port::kBulk) time.wire().send(*connections_->end, 0, channel, bytes, time.now());
+    if (port != Port::kRealtime) time.wire().send(*connections_->end, 1, channel, bytes, time.now());
+    return true;
+  }
   bool sent = true;
   if (port != Port::kBulk) sent = connections_->realtime->publish(channel, data, size) == 0;
   if (port == Port::kBulk || (port == Port::kBoth && connections_->bulk != connections_->realtime))

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "sync/virtual_time/virtual_time.h"
+
 namespace tactus::sync {
 
 std::uint64_t fnv1a_64(std::uint64_t h, const void* data, std::size_t size) {
@@ -40,14 +42,17 @@ std::int32_t clock_of_this_process() {
 
 Identity Identity::fresh(std::string node, std::int64_t run_id) {
   std::uint64_t random = 0;
-  if (getrandom(&random, sizeof random, 0) != sizeof random)
+  VirtualTime* const time = VirtualTime::current();
+  if (time)
+    random = time->random();
+  else if (getrandom(&random, sizeof random, 0) != sizeof random)
     throw std::system_error(errno, std::generic_category(), "no random numbers for the incarnation");
   Identity id;
   id.source = static_cast<std::int32_t>(fnv1a_32(node));
   id.node = std::move(node);
   id.incarnation = static_cast<std::int64_t>(random >> 2) + 1;
   id.run_id = run_id;
-  id.clock = clock_of_this_process();
+  id.clock = time ? VirtualTime::kClock : clock_of_this_process();
   return id;
 }
 

@@ -15,6 +15,7 @@
 #include "sync/health_inputs.h"
 #include "sync/kernel_drops.h"
 #include "sync/printable.h"
+#include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sync {
 namespace {
@@ -38,6 +39,7 @@ Realtime parse_realtime(const std::string& text) {
 
 std::string enter(const Declaration& d, const NodeOptions& o) {
   if (o.check) std::exit(0);
+  if (VirtualTime::current()) return "virtual time";
   catch_signals();
   // Timers of normal threads are rounded up by 50 us unless told otherwise.
   prctl(PR_SET_TIMERSLACK, 1000);
@@ -117,12 +119,15 @@ Node::Node(Declaration declaration, NodeOptions options)
   health_.nominal_rate_Hz = declaration_.rate_Hz;
   rate_since_ = tick_begin_ = next_report_ = host_now();
   std::cerr << options_.name << ": " << declaration_.rate_Hz << " Hz, " << scheduling_ << ", "
-            << lcm_url(options_.bus, options_.bus.port) << std::endl;
+            << (VirtualTime::current() ? "a bus of this process" : lcm_url(options_.bus, options_.bus.port)) << std::endl;
 }
 
 Node::~Node() = default;
 
-bool Node::running() const { return !stop_requested; }
+bool Node::running() const {
+  const VirtualTime* const time = VirtualTime::current();
+  return !stop_requested && !(time && time->asked_to_leave());
+}
 
 void Node::set_rate(double rate_Hz) {
   loop_.set_rate(rate_Hz);
@@ -269,7 +274,7 @@ void Node::report(HostTime now) {
     rate_since_ = now;
     ticks_at_rate_since_ = health_.ticks;
   }
-  if (reports_++ % 10 == 0) health_.kernel_drops = kernel_drops();
+  if (reports_++ % 10 == 0) health_.kernel_drops = VirtualTime::current() ? 0 : kernel_drops();
   node_health_t m = health_message(now);
   bus_.publish(channels::kNodeHealth, m);
 }

@@ -1,6 +1,6 @@
 // Makes something in a thread of its own, because making it may take long or block for ever: PortAudio 19.6 waits
 // without limit for the first callback of a card that opens but does not start, a file may lie on a network.
-// Whoever waits for it asks; no loop is held.
+// Whoever waits for it asks; no loop is held. In a virtual time it is made at once: how long it takes is the machine's affair.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "sync/virtual_time/virtual_time.h"
+
 namespace tactus::sync {
 
 template <class T>
@@ -17,14 +19,18 @@ class Opening {
  public:
   // make runs in the new thread and owns all that it uses: it may outlive this object.
   explicit Opening(std::function<std::unique_ptr<T>()> make) : state_(std::make_shared<State>()) {
-    std::thread([state = state_, make = std::move(make)] {
+    auto opens = [state = state_, make = std::move(make)] {
       try {
         state->made = make();
       } catch (...) {
         state->error = std::current_exception();
       }
       state->done.store(true, std::memory_order_release);
-    }).detach();
+    };
+    if (VirtualTime::current())
+      opens();
+    else
+      std::thread(std::move(opens)).detach();
   }
 
   // True once it has ended, in one way or the other.

@@ -7,9 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "sync/virtual_time/virtual_time.h"
+
 namespace tactus::sync {
 
 HostTime host_now() {
+  if (const VirtualTime* time = VirtualTime::current()) return time->now();
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
   return host_time(t.tv_sec * 1'000'000'000 + t.tv_nsec);
@@ -42,6 +45,7 @@ void Deadlines::align(HostTime next, std::int64_t left_out) {
 }
 
 void sleep_until(HostTime t) {
+  if (VirtualTime* time = VirtualTime::current()) return time->sleep_until(t);
   const timespec at{to_ns(t) / 1'000'000'000, to_ns(t) % 1'000'000'000};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
 }

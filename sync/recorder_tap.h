@@ -1,11 +1,12 @@
 // Hears everything that crosses both ports of the bus, as bytes, and stamps it on arrival in a thread of its own,
-// so that neither decoding nor a slow disk makes a stamp late or a queue full.
+// so that neither decoding nor a slow disk makes a stamp late or a queue full. In a virtual time what is sent is heard at once.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "sync/bus.h"
@@ -39,7 +40,12 @@ class RecorderTap {
   void listen();
   void keep(const ChannelBytes& message);
 
-  std::array<UdpPort, 2> ports_;
+  struct Ports {
+    explicit Ports(const BusOptions& options);
+    std::array<UdpPort, 2> both;
+  };
+  std::optional<Ports> ports_;  // none in a virtual time, whose wire tells
+  int told_ = 0;                // number of what its wire calls
   std::mutex mutex_;
   MessageBatch arrived_;
   std::atomic<std::int64_t> overflow_ = 0;

@@ -27,13 +27,17 @@ std::vector<std::string> not_declared(const Profile& profile, const Declaration&
 
 }  // namespace
 
-Sense::Sense(Node& node)
+Sense::Sense(Node& node) : Sense(node, node.declaration()) { listens_in_ = false; }
+
+Sense::Sense(Node& node, Declaration of)
     : node_(node),
+      declaration_(std::move(of)),
+      listens_in_(true),
       degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)),
       playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
       simulation_(node.bus().clocks()),
-      playout_(node.declaration().modality),
-      reporter_(node.declaration().modality) {
+      playout_(declaration_.modality),
+      reporter_(declaration_.modality) {
   if (node.options().profile.empty()) return;
   const std::string& text = node.options().profile;
   put_in_force({text, fnv1a_64(text.data(), text.size()), 0, SimTime{}});
@@ -58,7 +62,7 @@ void Sense::set_scene(const scene_t& scene, int tool) {
 }
 
 void Sense::put_in_force(const ProfileInForce& profile) {
-  const Declaration& d = node_.declaration();
+  const Declaration& d = declaration_;
   try {
     const Profile parsed = parse_profile(profile.text, "profile");
     stack_ = Stack(parsed, d.modality, profile.start);
@@ -74,7 +78,7 @@ void Sense::put_in_force(const ProfileInForce& profile) {
       std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
                 << std::endl;
   } catch (const std::invalid_argument& e) {
-    std::cerr << d.node << ": refused: " << e.what() << std::endl;
+    std::cerr << node_.declaration().node << ": refused: " << e.what() << std::endl;
   }
 }
 
@@ -144,7 +148,7 @@ void Sense::note_arrivals(const contact_events_t& m, HostTime arrival) {
 }
 
 bool Sense::owes(const contact_event_t& e) const {
-  const int owes = node_.declaration().owes;
+  const int owes = declaration_.owes;
   if ((owes & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
   return (e.kind == contact_event_t::BEGIN && (owes & node_health_t::OWES_BEGIN)) ||
          (e.kind == contact_event_t::HIT && (owes & node_health_t::OWES_HIT));
@@ -171,6 +175,7 @@ void Sense::report(const presentation_t& report) {
 }
 
 void Sense::publish(HostTime now) {
+  if (listens_in_) return decisions_.clear();
   reporter_.publish(node_.bus(), now);
   if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
   next_decisions_ = now + kDecisionPeriod;
@@ -181,7 +186,7 @@ void Sense::publish_decisions() {
   if (decisions_.size() > kMostDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMostDecisions);
   degraded_t m{};
   m.header.sim_time_ns = -1;
-  m.modality = node_.declaration().modality;
+  m.modality = declaration_.modality;
   m.profile = profile_hash_;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
     const Decision& d = decisions_[i];

@@ -62,6 +62,9 @@ class Sense {
 
   // Reads the node's --degrade. Throws std::runtime_error with one sentence when that is no profile.
   explicit Sense(Node& node);
+  // The sense of another process, listened in on: its streams with what the same profile decides, when it presents, and nothing
+  // said on the bus. So a process knows what a person gets of it.
+  Sense(Node& node, Declaration of);
   ~Sense();
 
   // Make them before the first step.
@@ -144,6 +147,8 @@ class Sense {
   void publish_decisions();
 
   Node& node_;
+  Declaration declaration_;
+  bool listens_in_ = false;
   Queue<degradation_t>& degradations_;
   Queue<playout_t>& playouts_;
   ProfileReceiver receiver_;

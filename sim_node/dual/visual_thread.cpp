@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sync/realtime.h"
+#include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sim {
 namespace {
@@ -16,7 +17,8 @@ VisualThread::VisualThread(std::unique_ptr<VisualGroup> group)
     : group_(std::move(group)), step_(std::make_unique<VisualStep>()) {}
 
 void VisualThread::start() {
-  if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
+  // In a virtual time computing takes none: a step is done when it is asked for.
+  if (!thread_.joinable() && !sync::VirtualTime::current()) thread_ = std::thread([this] { loop(); });
 }
 
 VisualThread::~VisualThread() {

@@ -126,8 +126,7 @@ class DegradedSnapshots {
 
   void put(Message m, HostTime arrival, const Verdict& v, Stack& stack) {
     if (v.dropped()) {
-      if (v.conceal != Conceal::kZero) return;
-      make_zero(m);
+      if (v.conceal != Conceal::kZero || !make_zero(m)) return;
     } else if (stack.changes_values()) {
       change_values(m, stack);
     }

@@ -141,15 +141,17 @@ void change_values(contact_event_t& e, Stack& stack) {
   change(Quantity::kVelocity, e.approach_speed_m_s, 0);
 }
 
-void make_zero(contact_frame_t& m) {
+bool make_zero(contact_frame_t& m) {
   m.contacts.clear();
   m.count = 0;
+  return true;
 }
-void make_zero(world_state_t&) {}
-void make_zero(touch_model_t& m) {
+bool make_zero(world_state_t&) { return false; }
+bool make_zero(touch_model_t& m) {
   m.planes.clear();
   m.plane_count = 0;
+  return true;
 }
-void make_zero(tool_state_t&) {}
+bool make_zero(tool_state_t&) { return false; }
 
 }  // namespace tactus::sync

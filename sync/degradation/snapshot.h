@@ -40,10 +40,10 @@ void change_values(touch_model_t&, Stack&);
 void change_values(tool_state_t&, Stack&);
 void change_values(contact_event_t&, Stack&);
 
-// Nothing touches; poses stay.
-void make_zero(contact_frame_t&);
-void make_zero(world_state_t&);
-void make_zero(touch_model_t&);
-void make_zero(tool_state_t&);
+// Nothing touches. False, and nothing is changed: there is no such thing as no pose, so such a message is not let through.
+bool make_zero(contact_frame_t&);
+bool make_zero(world_state_t&);
+bool make_zero(touch_model_t&);
+bool make_zero(tool_state_t&);
 
 }  // namespace tactus::sync

@@ -20,6 +20,8 @@ Stage::Stage(const Settings& s, bool window, MakeDisplay make)
   open();
 }
 
+Stage::Stage(const Settings& s) : settings_(s), window_(false), quality_(s), loop_rate_Hz_(s.rate_Hz) {}
+
 void Stage::open() {
   display_ = make_(settings_, window_);
   if (!display_) throw std::runtime_error("nothing to draw on");
@@ -28,6 +30,7 @@ void Stage::open() {
 }
 
 std::string Stage::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
+  if (!draws()) return {};
   std::string why = display_->lost();
   const bool hangs = unfinished_ >= kMostUnfinished;
   if (why.empty() && hangs) why = "the graphics device does not finish what it is given";
@@ -54,11 +57,13 @@ std::string Stage::recover(sync::HostTime now, const SceneView* view, const Draw
 void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s,
                  const std::function<void()>& meanwhile) {
   settings_ = s;
-  shaders_ = std::make_unique<ShaderWatch>(s.shader_folder);
-  renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size, s.anti_aliasing);
-  renderer_->load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-  meanwhile();
-  renderer_->warm_up(sample, meanwhile);
+  if (draws()) {
+    shaders_ = std::make_unique<ShaderWatch>(s.shader_folder);
+    renderer_ = std::make_unique<Renderer>(view.width(), view.height(), s.shadow_size, s.anti_aliasing);
+    renderer_->load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
+    meanwhile();
+    renderer_->warm_up(sample, meanwhile);
+  }
   quality_ = QualityControl(s);
   rate_.restart();
   loop_rate_Hz_ = s.rate_Hz;
@@ -66,6 +71,7 @@ void Stage::load(const SceneView& view, const DrawList& sample, const Settings& 
 }
 
 void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
+  if (!draws()) return;
   if (shaders_)
     if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
   renderer_->set_quality(degraded(quality_.quality(), output.resolution));
@@ -74,11 +80,13 @@ void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
 }
 
 void Stage::draw_over(const DrawList& list) {
+  if (!draws()) return;
   renderer_->draw_over(list);
   finish();
 }
 
 void Stage::show() {
+  if (!draws()) return;
   display_->show(picture().framebuffer(), picture().width(), picture().height(), halves_);
   finish();
 }

@@ -30,9 +30,13 @@ class Stage {
 
   // Throws std::runtime_error with one sentence when nothing can be drawn on.
   Stage(const Settings& settings, bool window, MakeDisplay make = make_display);
+  // One that draws nothing, in no time: all else is as if it did.
+  explicit Stage(const Settings& settings);
 
-  const std::string& description() const { return display_->description(); }
-  bool closed() { return display_->closed(); }
+  bool draws() const { return renderer_ != nullptr; }
+  std::string description() const { return display_ ? display_->description() : "draws no pictures"; }
+  bool closed() { return display_ && display_->closed(); }
+  // Of one that draws.
   Display& display() { return *display_; }
   const PictureTarget& picture() const { return renderer_->picture(); }
   QualityControl& quality() { return quality_; }
@@ -52,7 +56,7 @@ class Stage {
   std::string recover(sync::HostTime now, const SceneView* view, const DrawList& sample);
 
   // One sentence for each thing that could not be drawn as the scene says; asking takes them.
-  std::vector<std::string> take_trouble() { return renderer_->take_trouble(); }
+  std::vector<std::string> take_trouble() { return draws() ? renderer_->take_trouble() : std::vector<std::string>(); }
 
   // For how long each picture is held on purpose; 0: for the tick.
   sync::Nanoseconds held() const { return rate_.held(); }

@@ -256,6 +256,27 @@ TEST_CASE("A frozen stream that shows zero lets go of every contact") {
   CHECK(n == 30);
 }
 
+TEST_CASE("A sense that is off is told of no pose, for there is no such thing as none") {
+  for (const char* what : {"off=\"true\"", "freeze=\"zero\"", "loss=\"100%\" conceal=\"zero\""}) {
+    Stack stack = stack_of(std::string(what) + " from=\"10ms\" until=\"20ms\"");
+    DegradedSnapshots<world_state_t> poses;
+    for (int ms = 0; ms < 30; ++ms) {
+      world_state_t m{};
+      m.header = header(ms, ms);
+      m.clock = clock_at(ms);
+      m.pages = 1;
+      poses.push(m, arrival(ms), stack, nullptr);
+    }
+    int n = 0;
+    while (const auto m = poses.pop(arrival(100))) {
+      const std::int64_t ms = m->first.header.sim_time_ns / kMs;
+      CHECK((ms < 10 || ms >= 20));
+      ++n;
+    }
+    CHECK(n == 20);
+  }
+}
+
 TEST_CASE("A log played anew brings its events again") {
   Stack stack = stack_of("delay=\"10ms network\"");
   DegradedEvents degraded;

@@ -1,0 +1,137 @@
+// virtual_time: a cluster in one process, on a simulated clock and a simulated bus. Its nodes are those that run live, with the
+// same options; with one seed, what they write is the same to the bit.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "audio_node/run.h"
+#include "haptic_node/run.h"
+#include "scripts/participant/run.h"
+#include "sim_node/run.h"
+#include "sync/node.h"
+#include "sync/recorder_node.h"
+#include "sync/sync_node.h"
+#include "sync/virtual_time/virtual_time.h"
+#include "thermal_node/run.h"
+#include "visual_node/run.h"
+
+using namespace tactus;
+
+namespace {
+
+const std::map<std::string, std::function<int(int, char**)>> kPrograms{
+    {"sim_node", sim::run},       {"haptic_node", haptic::run},   {"audio_node", audio::run},
+    {"visual_node", visual::run}, {"thermal_node", thermal::run}, {"sync_node", sync::run_sync_node},
+    {"recorder", sync::run_recorder}, {"participant", participant::run},
+};
+
+using Words = std::vector<std::string>;
+
+constexpr sync::Nanoseconds kTurn{100'000'000};
+constexpr sync::Nanoseconds kWorldBegins{60'000'000'000};   // at the latest: a scene's grace is some seconds
+constexpr sync::Nanoseconds kPresentTheLast{300'000'000};  // what has just happened is presented and reported
+constexpr std::chrono::seconds kProgress{5};
+
+// One line of the plan.
+struct Planned {
+  std::string name;
+  Words words;  // the program first
+};
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+std::vector<Planned> read_plan(const std::string& file) {
+  std::ifstream in(file);
+  const nlohmann::json plan = nlohmann::json::parse(in, nullptr, false);
+  const std::string wrong = file + " is no plan: it holds {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}";
+  if (!plan.is_object() || plan.empty()) throw std::runtime_error(wrong);
+  std::vector<Planned> programs;
+  for (const auto& [name, words] : plan.items()) {
+    if (!words.is_array() || words.empty() || !std::all_of(words.begin(), words.end(), [](const auto& w) { return w.is_string(); }))
+      throw std::runtime_error(wrong + "; what it has for " + name + " is none");
+    programs.push_back({name, words.get<Words>()});
+    const std::string program = std::filesystem::path(programs.back().words.front()).filename();
+    if (!kPrograms.contains(program)) throw std::runtime_error(program + " does not run in virtual time; leave it out of " + file);
+    programs.back().words.front() = program;
+  }
+  return programs;
+}
+
+int run_program(const Words& given) {
+  Words words = given;
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return kPrograms.at(words.front())(static_cast<int>(words.size()), argv.data());
+}
+
+// The simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
+void end_in_order(sync::VirtualTime& time, const std::vector<Planned>& programs) {
+  const auto ask = [&](auto&& concerns) {
+    for (const Planned& program : programs)
+      if (concerns(program.words.front())) time.ask_to_leave(program.name);
+    time.run_for(kPresentTheLast);
+  };
+  ask([](const std::string& program) { return program == "sim_node"; });
+  ask([](const std::string& program) { return program != "sync_node" && program != "recorder"; });
+  ask([](const std::string& program) { return program == "sync_node"; });
+  time.end();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Runs the nodes of a cluster in one process, in virtual time.");
+  std::string file;
+  double seconds = 10, latency_ms = 0, jitter_ms = 0, loss_percent = 0;
+  sync::VirtualPlan plan;
+  app.add_option("PLAN", file, "command lines of the nodes, JSON: {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--seconds", seconds, "of the world, from when it begins")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--seed", plan.seed, "of identities, phases of loops, and what the bus does")->capture_default_str();
+  app.add_option("--latency-ms", latency_ms, "of the bus")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
+  app.add_option("--jitter-ms", jitter_ms, "of the bus, mean of what is added; its tail is heavy")->check(CLI::Range(0.0, 10000.0));
+  app.add_option("--loss-percent", loss_percent, "of datagrams on the bus")->check(CLI::Range(0.0, 100.0));
+  sync::parse_or_exit(app, "virtual_time", argc, argv);
+  const std::vector<Planned> programs = read_plan(file);
+  plan.wire = {.latency = sync::from_seconds(latency_ms * 1e-3),
+               .jitter = {.shape = sync::JitterShape::kPareto, .scale_s = jitter_ms * 1e-3},
+               .loss = {.share = loss_percent / 100}};
+  if (jitter_ms == 0) plan.wire.jitter = {};
+
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });
+  sync::VirtualTime time(plan);
+  std::optional<sync::HostTime> world_began;
+  time.wire().tell([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {
+    if (!world_began && channel == channels::kWorldState) world_began = now;
+  });
+  for (const Planned& program : programs) time.add(program.name, [&] { return run_program(program.words); });
+  const auto begun = std::chrono::steady_clock::now();
+  auto next_said = begun + kProgress;
+  while (!world_began && !stop_asked && time.now() < sync::VirtualTime::kBegin + kWorldBegins) time.run_for(kTurn);
+  if (!world_began && !stop_asked) throw std::runtime_error("the world does not begin; the plan needs a sim_node, and a scene that it can read");
+  const sync::HostTime until = world_began.value_or(time.now()) + sync::from_seconds(seconds);
+  while (time.now() < until && !stop_asked) {
+    time.run_until(std::min(until, time.now() + kTurn));
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_said) {
+      next_said = now + kProgress;
+      std::cerr << "virtual_time: " << sync::to_seconds(time.now() - *world_began) << " of " << seconds << " s" << std::endl;
+    }
+  }
+  end_in_order(time, programs);
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const double lasted_s = sync::to_seconds(time.now() - sync::VirtualTime::kBegin);
+  std::cerr << "virtual_time: " << lasted_s << " s in " << took_s << " s, " << lasted_s / took_s << " times as fast as real time; "
+            << time.wire().sent() << " messages sent" << std::endl;
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("virtual_time", e);
+}

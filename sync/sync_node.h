@@ -1,0 +1,9 @@
+// What the program sync_node does. A function, so that a virtual time can run it beside others in one process.
+#pragma once
+
+namespace tactus::sync {
+
+// Returns the exit status, after one sentence on stderr where that is not 0.
+int run_sync_node(int argc, char** argv);
+
+}  // namespace tactus::sync

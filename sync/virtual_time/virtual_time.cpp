@@ -1,0 +1,145 @@
+#include "sync/virtual_time/virtual_time.h"
+
+#include <algorithm>
+#include <boost/context/fiber.hpp>
+#include <boost/context/protected_fixedsize_stack.hpp>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "sync/degradation/chance.h"
+
+namespace tactus::sync {
+namespace {
+
+// Mains hold tables of a few hundred kB; pages that are not touched cost nothing.
+constexpr std::size_t kStack = 8 << 20;
+constexpr Nanoseconds kPhases{1'000'000};
+// Streams of random numbers of one seed.
+constexpr std::uint64_t kOfWire = 1, kOfPrograms = 2;
+
+}  // namespace
+
+struct VirtualTime::Program {
+  std::string name;
+  boost::context::fiber stack, caller;
+  HostTime wakes{};
+  VirtualEnd* waits_for = nullptr;
+  bool asked_to_leave = false, over = false;
+  int result = -1;
+  std::exception_ptr trouble;
+};
+
+VirtualTime* VirtualTime::current_ = nullptr;
+
+VirtualTime::VirtualTime(const VirtualPlan& plan)
+    : seed_(mixed(plan.seed, kOfPrograms)), wire_(plan.wire, mixed(plan.seed, kOfWire)) {
+  if (current_) throw std::logic_error("this process lives in another virtual time already");
+  current_ = this;
+}
+
+VirtualTime::~VirtualTime() {
+  while (!programs_.empty()) programs_.pop_back();
+  current_ = nullptr;
+}
+
+std::uint64_t VirtualTime::random() { return mixed(seed_, ++drawn_); }
+
+void VirtualTime::add(std::string name, std::function<int()> body) {
+  auto program = std::make_unique<Program>();
+  program->name = std::move(name);
+  program->wakes = now_ + Nanoseconds(static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kPhases.count())));
+  program->stack = boost::context::fiber(
+      std::allocator_arg, boost::context::protected_fixedsize_stack(kStack),
+      [p = program.get(), body = std::move(body)](boost::context::fiber&& caller) {
+        p->caller = std::move(caller);
+        try {
+          p->result = body();
+        } catch (const boost::context::detail::forced_unwind&) {
+          throw;  // it was killed
+        } catch (...) {
+          p->trouble = std::current_exception();
+        }
+        p->over = true;
+        return std::move(p->caller);
+      });
+  programs_.push_back(std::move(program));
+}
+
+HostTime VirtualTime::wakes(const Program& program) const {
+  if (program.over) return HostTime::max();
+  return program.waits_for ? std::min(program.wakes, std::max(now_, program.waits_for->next_arrival())) : program.wakes;
+}
+
+void VirtualTime::run_until(HostTime until) {
+  while (!programs_.empty()) {
+    Program* next = nullptr;
+    for (const auto& program : programs_)  // of those that wake together, who was added first
+      if (!next || wakes(*program) < wakes(*next)) next = program.get();
+    if (wakes(*next) > until) break;
+    now_ = std::max(now_, wakes(*next));
+    resume(*next);
+  }
+  now_ = std::max(now_, until);
+}
+
+void VirtualTime::resume(Program& program) {
+  running_ = &program;
+  program.waits_for = nullptr;
+  program.stack = std::move(program.stack).resume();
+  running_ = nullptr;
+  if (program.trouble) std::rethrow_exception(std::exchange(program.trouble, nullptr));
+}
+
+void VirtualTime::yield() {
+  Program& program = *running_;
+  program.caller = std::move(program.caller).resume();
+}
+
+void VirtualTime::sleep_until(HostTime t) {
+  if (!running_) throw std::logic_error("only a program of the virtual time may sleep in it");
+  running_->wakes = std::max(t, now_);
+  yield();
+}
+
+void VirtualTime::wait(VirtualEnd& end, Nanoseconds at_most) {
+  if (!running_) throw std::logic_error("only a program of the virtual time may wait in it");
+  running_->wakes = now_ + at_most;
+  running_->waits_for = &end;
+  yield();
+}
+
+VirtualTime::Program* VirtualTime::find(std::string_view name) const {
+  const auto at = std::find_if(programs_.begin(), programs_.end(), [&](const auto& p) { return p->name == name; });
+  return at == programs_.end() ? nullptr : at->get();
+}
+
+bool VirtualTime::asked_to_leave() const { return running_ && running_->asked_to_leave; }
+
+bool VirtualTime::ask_to_leave(std::string_view name) {
+  Program* program = find(name);
+  if (program) program->asked_to_leave = true;
+  return program != nullptr;
+}
+
+bool VirtualTime::kill(std::string_view name) {
+  return std::erase_if(programs_, [&](const auto& p) { return p->name == name; }) > 0;
+}
+
+int VirtualTime::result(std::string_view name) const {
+  const Program* program = find(name);
+  return program && program->over ? program->result : -1;
+}
+
+bool VirtualTime::any() const {
+  return std::any_of(programs_.begin(), programs_.end(), [](const auto& p) { return !p->over; });
+}
+
+void VirtualTime::end(Nanoseconds patience) {
+  for (const auto& program : programs_) program->asked_to_leave = true;
+  const HostTime until = now_ + patience;
+  while (any() && now_ < until) run_for(std::min<Nanoseconds>(until - now_, std::chrono::milliseconds(100)));
+  std::erase_if(programs_, [](const auto& p) { return !p->over; });
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,64 @@
+#include "sync/virtual_time/virtual_wire.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sync/degradation/chance.h"
+#include "sync/inbox.h"
+
+namespace tactus::sync {
+
+VirtualWire::VirtualWire(WirePlan plan, std::uint64_t seed) : plan_(std::move(plan)), seed_(seed) {
+  Loss{plan_.loss};  // throws here what every path would throw later
+}
+
+std::unique_ptr<VirtualEnd> VirtualWire::join() {
+  std::unique_ptr<VirtualEnd> end(new VirtualEnd(*this, mixed(seed_, ++joined_)));
+  ends_.push_back(end.get());
+  return end;
+}
+
+int VirtualWire::tell(Tell of_message) {
+  tell_.emplace(++tells_, std::move(of_message));
+  return tells_;
+}
+
+VirtualEnd::~VirtualEnd() {
+  std::erase(wire_.ends_, this);
+  for (VirtualEnd* end : wire_.ends_) end->paths_.erase(this);
+}
+
+void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data,
+                       HostTime now) {
+  ++sent_;
+  for (const auto& [number, tell] : tell_) tell(now, channel, data);
+  std::shared_ptr<const std::vector<std::uint8_t>> bytes;
+  for (VirtualEnd* end : ends_) {
+    const auto to = end->subscribers_[side].find(channel);
+    if (to == end->subscribers_[side].end()) continue;
+    // What a host sends itself crosses no wire.
+    VirtualEnd::Path& path = end->paths_.try_emplace(&from, plan_).first->second;
+    const std::uint64_t number = path.sent++;
+    const bool own = end == &from;
+    if (!own && path.loss.lose(uniform(end->seed_, 2 * number))) {
+      ++lost_;
+      continue;
+    }
+    const Nanoseconds late = own ? Nanoseconds(0) : plan_.latency + path.jitter.next(uniform(end->seed_, 2 * number + 1));
+    path.newest = std::max({path.newest, now, now + late});
+    if (!bytes) bytes = std::make_shared<const std::vector<std::uint8_t>>(data.begin(), data.end());
+    end->under_way_.push_back({path.newest, end->numbered_++, &to->second, bytes});
+    std::push_heap(end->under_way_.begin(), end->under_way_.end(), VirtualEnd::later);
+  }
+}
+
+void VirtualEnd::drain(HostTime now, int at_most) {
+  for (; at_most > 0 && next_arrival() <= now; --at_most) {
+    std::pop_heap(under_way_.begin(), under_way_.end(), later);
+    const Datagram m = std::move(under_way_.back());
+    under_way_.pop_back();
+    for (InboxBase* inbox : *m.to) inbox->accept(m.bytes->data(), m.bytes->size(), now);
+  }
+}
+
+}  // namespace tactus::sync

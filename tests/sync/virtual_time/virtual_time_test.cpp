@@ -1,0 +1,172 @@
+#include "sync/virtual_time/virtual_time.h"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "sync/node.h"
+#include "sync/opening.h"
+#include "sync/pacing.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+using namespace std::chrono_literals;
+
+namespace {
+
+using Trace = std::vector<std::pair<std::string, HostTime>>;
+
+// Two loops that sleep, as they note when they woke.
+Trace two_loops(std::uint64_t seed) {
+  Trace trace;
+  VirtualTime time({.seed = seed});
+  const auto loop = [&](const char* name, Nanoseconds period) {
+    return [&trace, &time, name, period] {
+      for (HostTime next = host_now(); !time.asked_to_leave(); sleep_until(next += period)) trace.emplace_back(name, host_now());
+      return 0;
+    };
+  };
+  time.add("fast", loop("fast", 1ms));
+  time.add("slow", loop("slow", 7ms));
+  time.run_for(1s);
+  time.end();
+  return trace;
+}
+
+// Says when it is destroyed.
+struct Flag {
+  bool& raised;
+  ~Flag() { raised = true; }
+};
+
+}  // namespace
+
+TEST_CASE("Programs wake at their deadlines and in the order of these, and a virtual hour takes no time") {
+  const Trace trace = two_loops(3);
+  CHECK(std::is_sorted(trace.begin(), trace.end(), [](auto& a, auto& b) { return a.second < b.second; }));
+  CHECK(std::count_if(trace.begin(), trace.end(), [](auto& row) { return row.first == "slow"; }) == 143);  // 1000 / 7, and the first
+
+  VirtualTime time;
+  HostTime woke{};
+  time.add("sleeper", [&] {
+    sleep_until(host_now() + 1h);
+    woke = host_now();
+    return 5;
+  });
+  time.run_for(59min);
+  CHECK(time.any());
+  CHECK(woke == HostTime{});
+  CHECK(time.result("sleeper") == -1);
+  time.run_for(2min);
+  CHECK(woke > VirtualTime::kBegin + 1h);
+  CHECK(woke < VirtualTime::kBegin + 1h + 1ms);
+  CHECK(time.now() == VirtualTime::kBegin + 61min);
+  CHECK_FALSE(time.any());
+  CHECK(time.result("sleeper") == 5);
+}
+
+TEST_CASE("One seed gives one story, and another seed another") {
+  CHECK(two_loops(3) == two_loops(3));
+  CHECK(two_loops(3) != two_loops(4));
+}
+
+TEST_CASE("A program that is asked to leave leaves, one that does not is unwound, and a killed one never wakes again") {
+  VirtualTime time;
+  bool polite = false, stubborn = false, killed = false;
+  int woke = 0;
+  time.add("polite", [&] {
+    const Flag flag{polite};
+    while (!time.asked_to_leave()) sleep_until(host_now() + 1ms);
+    return 7;
+  });
+  time.add("stubborn", [&] {
+    const Flag flag{stubborn};
+    while (true) sleep_until(host_now() + 1ms);
+    return 0;
+  });
+  time.add("killed", [&] {
+    const Flag flag{killed};
+    while (true) ++woke, sleep_until(host_now() + 1ms);
+    return 0;
+  });
+  time.run_for(10ms);
+  CHECK(woke == 10);
+  CHECK(time.kill("killed"));
+  CHECK(killed);
+  CHECK_FALSE(time.kill("killed"));
+  time.run_for(10ms);
+  CHECK(woke == 10);
+  CHECK(time.ask_to_leave("polite"));
+  time.run_for(2ms);
+  CHECK(time.result("polite") == 7);
+  CHECK(polite);
+  CHECK_FALSE(stubborn);
+  time.end(100ms);
+  CHECK(stubborn);
+  CHECK_FALSE(time.any());
+}
+
+TEST_CASE("What a program throws comes out where the time is run, and the others go on") {
+  VirtualTime time;
+  int woke = 0;
+  time.add("thrower", [] {
+    sleep_until(host_now() + 5ms);
+    throw std::runtime_error("no more");
+    return 0;
+  });
+  time.add("other", [&] {
+    while (!time.asked_to_leave()) ++woke, sleep_until(host_now() + 1ms);
+    return 0;
+  });
+  CHECK_THROWS_WITH(time.run_for(1s), "no more");
+  time.run_for(10ms);
+  CHECK(woke > 12);
+  time.end();
+}
+
+TEST_CASE("There is one virtual time at a time, and only its programs sleep in it") {
+  CHECK(VirtualTime::current() == nullptr);
+  {
+    VirtualTime time;
+    CHECK(VirtualTime::current() == &time);
+    CHECK_THROWS_AS(VirtualTime(), std::logic_error);
+    CHECK_THROWS_AS(sleep_until(host_now() + 1ms), std::logic_error);
+  }
+  CHECK(VirtualTime::current() == nullptr);
+  CHECK(host_now() != VirtualTime::kBegin);
+}
+
+TEST_CASE("What is opened in virtual time is there at once") {
+  VirtualTime time;
+  Opening<int> opening([] { return std::make_unique<int>(4); });
+  REQUIRE(opening.done());
+  CHECK(*opening.take() == 4);
+}
+
+TEST_CASE("A node ticks on its deadlines in virtual time, misses none and reports itself ten times a second") {
+  VirtualTime time({.seed = 9});
+  std::vector<HostTime> ticks;
+  node_health_t last{};
+  int reports = 0;
+  time.add("node", [&] {
+    Node node({.node = "test_node", .modality = "", .rate_Hz = 1000, .about = ""}, {});
+    while (node.running()) ticks.push_back(node.wait());
+    return 0;
+  });
+  time.add("listener", [&] {
+    Bus bus(Identity::fresh("listener", 1), {});
+    auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 64);
+    while (!time.asked_to_leave()) {
+      bus.wait(1s);
+      bus.drain(host_now());
+      while (const auto m = healths.pop()) last = m->message, ++reports;
+    }
+    return 0;
+  });
+  time.run_for(5s);
+  time.end();
+  REQUIRE(ticks.size() > 4999);
+  for (std::size_t i = 2; i < ticks.size(); ++i) REQUIRE(ticks[i] - ticks[i - 1] == 1ms);
+  CHECK(reports >= 49);
+  CHECK(last.missed_ticks == 0);
+  CHECK(last.kernel_drops == 0);
+}

@@ -1,0 +1,121 @@
+#include "sync/virtual_time/virtual_wire.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "sync/inbox.h"
+
+using namespace tactus::sync;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr HostTime kBegin{std::chrono::hours(1)};
+
+// Keeps the first byte of all that it is handed, and when.
+class Ear : public InboxBase {
+ public:
+  using InboxBase::InboxBase;
+  void accept(const void* data, std::size_t, HostTime arrival) noexcept override {
+    heard.emplace_back(static_cast<const std::uint8_t*>(data)[0], arrival);
+  }
+  std::vector<std::pair<int, HostTime>> heard;
+};
+
+void send(VirtualWire& wire, const VirtualEnd& from, int what, HostTime at, const char* channel = "A", std::size_t side = 0) {
+  const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(what)};
+  wire.send(from, side, channel, bytes, at);
+}
+
+}  // namespace
+
+TEST_CASE("What is sent arrives after the latency, at those who have subscribed to its channel on its port") {
+  VirtualWire wire({.latency = 3ms}, 1);
+  const auto sender = wire.join(), receiver = wire.join();
+  Ear a("A"), b("B"), bulk("A"), own("A");
+  receiver->subscribe(0, "A", &a);
+  receiver->subscribe(0, "B", &b);
+  receiver->subscribe(1, "A", &bulk);
+  sender->subscribe(0, "A", &own);
+  CHECK(receiver->next_arrival() == HostTime::max());
+  send(wire, *sender, 1, kBegin);
+  CHECK(receiver->next_arrival() == kBegin + 3ms);
+  receiver->drain(kBegin + 3ms - 1ns, 10);
+  CHECK(a.heard.empty());
+  receiver->drain(kBegin + 4ms, 10);
+  CHECK(a.heard == std::vector<std::pair<int, HostTime>>{{1, kBegin + 4ms}});
+  CHECK(b.heard.empty());
+  CHECK(bulk.heard.empty());
+  sender->drain(kBegin, 10);  // what a program sends itself crosses no wire
+  CHECK(own.heard.size() == 1);
+}
+
+TEST_CASE("Jitter delays, and neither overtakes nor arrives before it was sent") {
+  VirtualWire wire({.latency = 1ms, .jitter = {.shape = JitterShape::kNormal, .scale_s = 5e-3}}, 2);
+  const auto sender = wire.join(), receiver = wire.join();
+  Ear ear("A");
+  receiver->subscribe(0, "A", &ear);
+  int late = 0;
+  for (int i = 0; i < 200; ++i) {
+    const HostTime sent = kBegin + i * 1ms;
+    send(wire, *sender, i, sent);
+    if (receiver->next_arrival() > sent + 1ms) ++late;
+    CHECK(receiver->next_arrival() >= kBegin);
+  }
+  CHECK(late > 0);
+  receiver->drain(kBegin + 10s, 1000);
+  REQUIRE(ear.heard.size() == 200);
+  for (int i = 0; i < 200; ++i) CHECK(ear.heard[static_cast<std::size_t>(i)].first == i);
+}
+
+TEST_CASE("Each receiver loses the stated share, by itself") {
+  constexpr int kSent = 20000;
+  VirtualWire wire({.loss = {.share = 0.1}}, 3);
+  const auto sender = wire.join(), first = wire.join(), second = wire.join();
+  Ear a("A"), b("A");
+  first->subscribe(0, "A", &a);
+  second->subscribe(0, "A", &b);
+  std::vector<std::pair<bool, bool>> arrived;
+  for (int i = 0; i < kSent; ++i) {
+    const auto before_a = a.heard.size(), before_b = b.heard.size();
+    send(wire, *sender, 0, kBegin);
+    first->drain(kBegin, 10), second->drain(kBegin, 10);
+    arrived.emplace_back(a.heard.size() > before_a, b.heard.size() > before_b);
+  }
+  // Five standard deviations of a binomial count.
+  const double five = 5 * std::sqrt(kSent * 0.1 * 0.9);
+  CHECK(std::abs(kSent * 0.9 - static_cast<double>(a.heard.size())) < five);
+  CHECK(std::abs(kSent * 0.9 - static_cast<double>(b.heard.size())) < five);
+  const auto both = std::count(arrived.begin(), arrived.end(), std::pair{false, false});
+  CHECK(std::abs(kSent * 0.01 - static_cast<double>(both)) < 5 * std::sqrt(kSent * 0.01));
+  CHECK(wire.sent() == kSent);
+  CHECK(wire.lost() == 2 * kSent - static_cast<std::int64_t>(a.heard.size() + b.heard.size()));
+}
+
+TEST_CASE("A flood is handed over in turns, oldest first, and who has gone hears nothing") {
+  VirtualWire wire({}, 4);
+  const auto sender = wire.join();
+  auto receiver = wire.join();
+  Ear ear("A");
+  receiver->subscribe(0, "A", &ear);
+  for (int i = 0; i < 10; ++i) send(wire, *sender, i, kBegin);
+  receiver->drain(kBegin, 4);
+  REQUIRE(ear.heard.size() == 4);
+  CHECK(ear.heard.back().first == 3);
+  CHECK(receiver->next_arrival() == kBegin);
+  receiver.reset();
+  send(wire, *sender, 11, kBegin);
+  CHECK(ear.heard.size() == 4);
+}
+
+TEST_CASE("A recorder is told of all that is sent, and an impossible loss is refused") {
+  VirtualWire wire({.loss = {.share = 1}}, 5);
+  const auto sender = wire.join();
+  int told = 0;
+  wire.tell([&](HostTime at, std::string_view channel, std::span<const std::uint8_t> data) {
+    told += at == kBegin && channel == "A" && data.size() == 1;
+  });
+  send(wire, *sender, 1, kBegin);
+  CHECK(told == 1);
+  CHECK_THROWS_AS(VirtualWire({.loss = {.share = 0.9, .mean_burst = 2}}, 1), std::invalid_argument);
+}
