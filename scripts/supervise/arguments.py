@@ -15,10 +15,12 @@ from refusal import Refusal
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 SCENES = REPOSITORY / "sim_node" / "scenes"
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
+PARTICIPANT = "participant"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
-RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/recorder_main.cpp
+RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/recorder_node.cpp
+WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # and the most of each: scripts/virtual_time/virtual_time_main.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -48,10 +50,16 @@ class Plan:
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
     recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: how long its files get
     live: int = None  # port of the live page, 0: any that is free; None: there is none
+    player: bool = False  # a simulated person holds the first tool's device
+    virtual: list = None  # options of virtual_time; None: the run lasts as long as it says
 
     def nodes(self):
         """Names of the processes of this run; the order is that of starting."""
-        return [n for n in ("recorder", "sync_node", *self.senses(), self.world) if n not in self.without]
+        return [n for n in ("recorder", "sync_node", *self.senses(), *self.people(), self.world) if n not in self.without]
+
+    def people(self):
+        """Names of the processes that are in the place of a person."""
+        return [PARTICIPANT] if self.player else []
 
     def senses(self):
         """Names of the processes of all senses, those that are left out too."""
@@ -83,6 +91,10 @@ def parse(words, here):
     for option in RECORDING:
         parser.add_argument("--" + option.replace("_", "-"))
     parser.add_argument("--tags", action="append", default=[])
+    parser.add_argument("--player", action="store_true")
+    parser.add_argument("--virtual-time", action="store_true")
+    for option in WIRE:
+        parser.add_argument(f"--{option}")
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--live")
     parser.add_argument("--listen", action="store_true")
@@ -119,7 +131,11 @@ def parse(words, here):
                 degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, recorder=recording(a), live=live_port(a.live), listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
-                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several))
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player)
+    if plan.player:
+        if plan.devices or hands.FIRST in plan.without:
+            raise Refusal("--player holds the first tool's device itself; leave --device and --without haptic_node away")
+        plan.devices = {"": f"external:{PARTICIPANT}"}
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
                       "--window away and look at video.mp4")
@@ -202,9 +218,26 @@ def playout(a):
     return words
 
 
+def virtual(a):
+    """The options for virtual_time; None: the run is live."""
+    given = {option: value for option in WIRE if (value := getattr(a, option.replace("-", "_"))) is not None}
+    if not a.virtual_time:
+        if given:
+            raise Refusal(f"--{next(iter(given))} is of the simulated bus, which only --virtual-time has; on a real one "
+                          "--degrade says what is wrong with a sense")
+        return None
+    for option, value in (("--window", a.window), ("--listen", a.listen), ("--live", a.live is not None), ("--room", a.room),
+                          ("--realtime require", a.realtime == "require"), ("--network host", a.network == "host"),
+                          ("--device external", any("external:" in device for device in a.device))):
+        if value:
+            raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; leave one away")
+    return [word for option, value in given.items()
+            for word in (f"--{option}", f"{number(f'--{option}', value, 0, WIRE[option], ''):g}")]
+
+
 def recording(a):
     """The options for the recorder."""
-    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/recorder_main.cpp
+    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/recorder_node.cpp
     given = {name: number("--" + name.replace("_", "-"), value, *bounds[name], "", whole=name == "keep")
              for name in RECORDING if (value := getattr(a, name)) is not None}
     splits = "split_mb" in given or "split_minutes" in given

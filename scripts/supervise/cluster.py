@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 
+import arguments
 import services
 import walls
 from arguments import REPOSITORY, SENSES
@@ -21,11 +22,12 @@ SUPERVISE = pathlib.Path(__file__).resolve().parent
 # Each group has so long to end before the next is asked: a sense that still closes its video has said all it had to say.
 WORLDS = ("sim_node", "replay")
 STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
+SCATTER_M = "0.08"  # design: the balls of the dark room stay apart from each other and from what stands there
 PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
-WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/main.cpp, sync/replay_main.cpp
+WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/replay_main.cpp
 
 
 def common(plan, run_id):
@@ -42,6 +44,8 @@ def commands(plan, run_id, git):
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
+        # Nobody plays from memory: the seed says where the balls lie.
+        arguments.PARTICIPANT: [str(plan.scene), "--device", arguments.PARTICIPANT, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
         "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
     }
     own["sync_node"] = list(plan.playout)
@@ -53,7 +57,7 @@ def commands(plan, run_id, git):
         for name in {walls.FIRST, *plan.walls}:
             own[name] = [*own.get(name, []), "--set", f"shader_folder={plan.shaders}"]
     if plan.degrade:
-        for name in (*plan.senses(), "sync_node"):
+        for name in (*plan.senses(), *plan.people(), "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
     return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
@@ -147,7 +151,7 @@ class Cluster:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
         self.write_address()
-        for group in (("recorder", "sync_node"), tuple(self.plan.senses()), (self.plan.world,)):
+        for group in (("recorder", "sync_node"), (*self.plan.senses(), *self.plan.people()), (self.plan.world,)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
@@ -203,7 +207,7 @@ class Cluster:
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
-            names = tuple(self.plan.senses()) if names == SENSES else names
+            names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
             services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
                 time.sleep(PRESENT_THE_LAST_S)

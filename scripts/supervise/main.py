@@ -19,6 +19,7 @@ import network
 import priority
 import services
 import terminal
+import virtual
 import walls
 from refusal import Interrupted, Refusal, sentence_of
 from results import git_commit, sum_up
@@ -95,6 +96,8 @@ def claim_out(plan):
 
 def run(plan, watch=watch_over):
     """One run; watch says how long it lasts, as watch_over does. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
+    if plan.virtual is not None:
+        return virtual.run(plan, Stop(), claim_out)
     stop = Stop()
     git = git_commit()
     run_id = time.time_ns()

@@ -1,0 +1,36 @@
+// The arm that holds the device: it goes where the player wants, as fast as an arm can, trembles, and yields to force. Pure.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace tactus::participant {
+
+// Design, in the range of what is measured of hands that hold a posture (Tsuji, Morasso, Goto and Ito 1995, Biological
+// Cybernetics 72, "Human hand impedance characteristics during maintained posture").
+struct ArmDef {
+  double mass_kg = 1.0;
+  double stiffness_N_m = 300;
+  double damping_N_s_m = 25;
+  // Noise of movement grows with what is commanded (Harris and Wolpert 1998, Nature 394, "Signal-dependent noise determines
+  // motor planning"); the share is design.
+  double noise_share = 0.02;
+};
+
+class Arm {
+ public:
+  Arm(const ArmDef& def, const Eigen::Vector3d& at_m, std::uint64_t seed) : def_(def), seed_(seed), position_(at_m), wanted_(at_m) {}
+
+  // One step of dt_s, at most 2 ms, towards `wanted_m`, while the device pushes with force_N.
+  void step(const Eigen::Vector3d& wanted_m, const Eigen::Vector3d& force_N, double dt_s);
+  const Eigen::Vector3d& position_m() const { return position_; }
+  const Eigen::Vector3d& velocity_m_s() const { return velocity_; }
+
+ private:
+  ArmDef def_;
+  std::uint64_t seed_, steps_ = 0;
+  Eigen::Vector3d position_, wanted_;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), tremor_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace tactus::participant

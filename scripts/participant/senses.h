@@ -1,0 +1,45 @@
+// What the cluster's senses deliver to a person, put together: he sees what the pictures show, when they show it, and hears what
+// sounds, when it sounds. Whatever a profile makes late, rare or silent comes so to him.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scripts/participant/player.h"
+#include "scripts/participant/rules.h"
+#include "sync/body_history.h"
+#include "sync/contact_stream.h"
+#include "sync/sense.h"
+
+namespace tactus::participant {
+
+class Senses {
+ public:
+  // Pictures come so often. Throws std::runtime_error as sync::Sense does.
+  Senses(sync::Node& node, Rules rules, double frame_rate_Hz);
+
+  void set_scene(const scene_t& scene);
+  // Once a tick. What is seen and heard at `now`, for the player: his hand and the force on it are not of the bus alone.
+  Percept perceive(sync::HostTime now);
+
+ private:
+  void look(sync::HostTime now);
+  std::vector<bool> listen(sync::HostTime now);
+
+  Rules rules_;
+  sync::Sense eyes_, ears_;
+  sync::Sense::Stream<world_state_t>& world_;
+  sync::Sense::Stream<contact_events_t>& events_;
+  sync::BodyHistory bodies_;
+  sync::ContactStream contacts_;
+  double frame_rate_Hz_;
+  sync::HostTime next_look_{};
+  std::vector<std::optional<Eigen::Vector3d>> shown_;
+  struct Sound {
+    sync::HostTime at;
+    std::size_t goal;
+  };
+  std::vector<Sound> sounds_;  // to come
+};
+
+}  // namespace tactus::participant
