@@ -10,6 +10,7 @@ sync::Declaration of(const char* node, const char* modality, int owes) { return 
 
 // Below the rim by so much, a ball that hits something lies in the hole (design: a third of the shallowest ball).
 constexpr double kBelowRim_m = 0.02;
+constexpr sync::Nanoseconds kGone{300'000'000};  // after so long without a word a node stands still, as sync_node counts it
 constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, as audio_node takes them
 
 }  // namespace
@@ -18,6 +19,7 @@ Senses::Senses(sync::Node& node, Rules rules, double frame_rate_Hz)
     : rules_(std::move(rules)),
       eyes_(node, of("visual_node", "visual", int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT)),
       ears_(node, of("audio_node", "audio", node_health_t::OWES_HIT)),
+      healths_(node.bus().queue<node_health_t>(channels::kNodeHealth, 256)),
       world_(eyes_.snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(ears_.events()),
       bodies_(node.bus().clocks()),
@@ -36,12 +38,19 @@ Percept Senses::perceive(sync::HostTime now) {
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
   eyes_.publish(now), ears_.publish(now);
+  while (const auto m = healths_.pop())
+    if (!m->message.modality.empty()) heard_of_[m->message.modality] = m->arrival;
   if (now >= next_look_) look(now);
   Percept percept;
   percept.time_s = sync::to_seconds(now.time_since_epoch());
   percept.balls_m = shown_;
   percept.fell = listen(now);
   return percept;
+}
+
+bool Senses::rendered(const std::string& modality, sync::HostTime now) const {
+  const auto at = heard_of_.find(modality);
+  return at != heard_of_.end() && now - at->second < kGone;
 }
 
 // A picture shows the world as it was when what it presents now happened, and stays until the next.
@@ -51,7 +60,7 @@ void Senses::look(sync::HostTime now) {
   const auto map = bodies_.map(now);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     shown_[i].reset();
-    if (!map) continue;
+    if (!map || !rendered("visual", now)) continue;
     const auto pose = bodies_.pose(rules_.goals[i].body, map->to_sim(now - eyes_.delay()));
     // A picture of what is too old says so itself.
     if (pose.how != sync::How::kNone && pose.how != sync::How::kStale) shown_[i] = pose.value.position;
@@ -67,6 +76,7 @@ std::vector<bool> Senses::listen(sync::HostTime now) {
         if (e.point_m.z < goal.hole_m.z() - kBelowRim_m - goal.ball_radius_m)
           sounds_.push_back({ears_.schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), i});
       }
+  if (!rendered("audio", now)) sounds_.clear();
   std::vector<bool> fell(rules_.goals.size());
   std::erase_if(sounds_, [&](const Sound& sound) {
     if (sound.at > now) return false;

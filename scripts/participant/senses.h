@@ -1,8 +1,10 @@
 // What the cluster's senses deliver to a person, put together: he sees what the pictures show, when they show it, and hears what
-// sounds, when it sounds. Whatever a profile makes late, rare or silent comes so to him.
+// sounds, when it sounds. Whatever a profile makes late, rare or silent comes so to him; and where nobody draws he sees nothing.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scripts/participant/player.h"
@@ -23,16 +25,20 @@ class Senses {
   Percept perceive(sync::HostTime now);
 
  private:
+  // Somebody renders that sense, or did so a moment ago.
+  bool rendered(const std::string& modality, sync::HostTime now) const;
   void look(sync::HostTime now);
   std::vector<bool> listen(sync::HostTime now);
 
   Rules rules_;
   sync::Sense eyes_, ears_;
+  sync::Queue<node_health_t>& healths_;
   sync::Sense::Stream<world_state_t>& world_;
   sync::Sense::Stream<contact_events_t>& events_;
   sync::BodyHistory bodies_;
   sync::ContactStream contacts_;
   double frame_rate_Hz_;
+  std::map<std::string, sync::HostTime> heard_of_;  // who renders a sense, by modality
   sync::HostTime next_look_{};
   std::vector<std::optional<Eigen::Vector3d>> shown_;
   struct Sound {

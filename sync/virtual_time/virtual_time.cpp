@@ -1,13 +1,12 @@
 #include "sync/virtual_time/virtual_time.h"
 
 #include <algorithm>
-#include <boost/context/fiber.hpp>
-#include <boost/context/protected_fixedsize_stack.hpp>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 
 #include "sync/degradation/chance.h"
+#include "sync/virtual_time/stack_switch.h"
 
 namespace tactus::sync {
 namespace {
@@ -22,13 +21,20 @@ constexpr std::uint64_t kOfWire = 1, kOfPrograms = 2;
 
 struct VirtualTime::Program {
   std::string name;
-  boost::context::fiber stack, caller;
+  std::unique_ptr<StackSwitch> stack;
   HostTime wakes{};
   VirtualEnd* waits_for = nullptr;
-  bool asked_to_leave = false, over = false;
+  bool asked_to_leave = false, killed = false, begun = false, over = false;
   int result = -1;
   std::exception_ptr trouble;
 };
+
+namespace {
+
+// Thrown where a program waits that shall wait no more. No exception of the standard library, so that nobody takes it for his.
+struct Killed {};
+
+}  // namespace
 
 VirtualTime* VirtualTime::current_ = nullptr;
 
@@ -39,7 +45,8 @@ VirtualTime::VirtualTime(const VirtualPlan& plan)
 }
 
 VirtualTime::~VirtualTime() {
-  while (!programs_.empty()) programs_.pop_back();
+  for (const auto& program : programs_) unwind(*program);
+  programs_.clear();
   current_ = nullptr;
 }
 
@@ -49,20 +56,15 @@ void VirtualTime::add(std::string name, std::function<int()> body) {
   auto program = std::make_unique<Program>();
   program->name = std::move(name);
   program->wakes = now_ + Nanoseconds(static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kPhases.count())));
-  program->stack = boost::context::fiber(
-      std::allocator_arg, boost::context::protected_fixedsize_stack(kStack),
-      [p = program.get(), body = std::move(body)](boost::context::fiber&& caller) {
-        p->caller = std::move(caller);
-        try {
-          p->result = body();
-        } catch (const boost::context::detail::forced_unwind&) {
-          throw;  // it was killed
-        } catch (...) {
-          p->trouble = std::current_exception();
-        }
-        p->over = true;
-        return std::move(p->caller);
-      });
+  program->stack = std::make_unique<StackSwitch>(kStack, [p = program.get(), body = std::move(body)] {
+    try {
+      p->result = body();
+    } catch (const Killed&) {
+    } catch (...) {
+      p->trouble = std::current_exception();
+    }
+    p->over = true;
+  });
   programs_.push_back(std::move(program));
 }
 
@@ -84,16 +86,18 @@ void VirtualTime::run_until(HostTime until) {
 }
 
 void VirtualTime::resume(Program& program) {
-  running_ = &program;
+  Program* const before = std::exchange(running_, &program);
   program.waits_for = nullptr;
-  program.stack = std::move(program.stack).resume();
-  running_ = nullptr;
+  program.begun = true;
+  program.stack->resume();
+  running_ = before;
   if (program.trouble) std::rethrow_exception(std::exchange(program.trouble, nullptr));
 }
 
 void VirtualTime::yield() {
   Program& program = *running_;
-  program.caller = std::move(program.caller).resume();
+  program.stack->yield();
+  if (program.killed) throw Killed{};
 }
 
 void VirtualTime::sleep_until(HostTime t) {
@@ -107,6 +111,12 @@ void VirtualTime::wait(VirtualEnd& end, Nanoseconds at_most) {
   running_->wakes = now_ + at_most;
   running_->waits_for = &end;
   yield();
+}
+
+// A main that catches all waits again, and is told again.
+void VirtualTime::unwind(Program& program) {
+  program.killed = true;
+  while (program.begun && !program.over) resume(program);
 }
 
 VirtualTime::Program* VirtualTime::find(std::string_view name) const {
@@ -123,7 +133,11 @@ bool VirtualTime::ask_to_leave(std::string_view name) {
 }
 
 bool VirtualTime::kill(std::string_view name) {
-  return std::erase_if(programs_, [&](const auto& p) { return p->name == name; }) > 0;
+  Program* program = find(name);
+  if (!program || program == running_) return false;
+  unwind(*program);
+  std::erase_if(programs_, [&](const auto& p) { return p.get() == program; });
+  return true;
 }
 
 int VirtualTime::result(std::string_view name) const {
@@ -139,7 +153,7 @@ void VirtualTime::end(Nanoseconds patience) {
   for (const auto& program : programs_) program->asked_to_leave = true;
   const HostTime until = now_ + patience;
   while (any() && now_ < until) run_for(std::min<Nanoseconds>(until - now_, std::chrono::milliseconds(100)));
-  std::erase_if(programs_, [](const auto& p) { return !p->over; });
+  for (const auto& program : programs_) unwind(*program);
 }
 
 }  // namespace tactus::sync

@@ -53,7 +53,7 @@ class VirtualTime {
   // Runs all programs for so long.
   void run_for(Nanoseconds span) { run_until(now_ + span); }
   void run_until(HostTime until);
-  // Asks that program to leave, as SIGTERM does; or leaves it where it is for good, as SIGKILL does. False: there is none.
+  // Asks that program to leave, as SIGTERM does; or ends it where it is, as SIGKILL does. False: there is none, or it is the one that runs.
   bool ask_to_leave(std::string_view name);
   bool kill(std::string_view name);
   // Asks all to leave and runs them until they have, for so long at the most. Who has not by then is unwound.
@@ -78,6 +78,7 @@ class VirtualTime {
   HostTime wakes(const Program& program) const;
   void resume(Program& program);
   void yield();
+  void unwind(Program& program);
   Program* find(std::string_view name) const;
 
   static VirtualTime* current_;

@@ -19,6 +19,25 @@ double longest_standstill_us(const json& summary) {
 
 }  // namespace
 
+TEST_CASE("A simulated person finds every ball and pushes it into its hole, live, and none where nobody draws the picture") {
+  for (const bool seen : {true, false}) {
+    RunScript run;
+    std::vector<std::string> words{"--seconds", "20", "--player", "--without", "audio_node", "--without", "thermal_node", "--out", run.out(),
+                                   "--set", "visual_node.width=320", "--set", "visual_node.height=240"};
+    if (!seen) words.insert(words.end(), {"--without", "visual_node"});
+    run.start(words);
+    const int status = run.finish(150);
+    INFO((seen ? "seen: " : "unseen: ") << run.processes.said("run"));
+    CHECK(status == 0);
+    const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
+    REQUIRE_FALSE(summary.is_discarded());
+    if (seen)
+      CHECK(summary["game"]["filled"] == 3);
+    else
+      CHECK(summary["game"]["filled"] < 3);
+  }
+}
+
 TEST_CASE("The hand of the dark room, and a string device in its place, push every ball into its hole") {
   // What drives a simulated string device is the same hand, whose pose comes from the lengths of strings, whose
   // force from tensions.

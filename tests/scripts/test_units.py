@@ -11,8 +11,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
-SOURCES = {"sync": "sync/sync_node_main.cpp", "recorder": "sync/recorder_main.cpp", "haptic": "haptic_node/main.cpp", "audio": "audio_node/main.cpp",
-           "visual": "visual_node/main.cpp", "thermal": "thermal_node/main.cpp", "sim": "sim_node/main.cpp"}
+SOURCES = {"sync": "sync/sync_node.cpp", "recorder": "sync/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
+           "visual": "visual_node/run.cpp", "thermal": "thermal_node/run.cpp", "sim": "sim_node/run.cpp"}
 MOST_EXPOSED = 5  # systemd calls what is below "OK"
 
 

@@ -130,11 +130,11 @@ TEST_CASE("What a known sense does not have is refused, and a sense of one's own
   CHECK(refusal_of("frame_rate=\"20Hz\" response=\"2s\"", "wind").empty());
 }
 
-TEST_CASE("The known senses have what their mains declare") {
+TEST_CASE("The known senses have what their nodes declare") {
   for (const std::string sense : {"audio", "haptic", "thermal", "visual"}) {
     INFO(sense);
     std::stringstream main;
-    main << std::ifstream(std::string(TACTUS_SOURCE_DIR) + "/" + sense + "_node/main.cpp").rdbuf();
+    main << std::ifstream(std::string(TACTUS_SOURCE_DIR) + "/" + sense + "_node/run.cpp").rdbuf();
     const std::string text = main.str();
     std::smatch found;
     REQUIRE(std::regex_search(text, found, std::regex("degradable = \\{([^}]*)\\}")));

@@ -148,7 +148,9 @@ TEST_CASE("A node ticks on its deadlines in virtual time, misses none and report
   node_health_t last{};
   int reports = 0;
   time.add("node", [&] {
-    Node node({.node = "test_node", .modality = "", .rate_Hz = 1000, .about = ""}, {});
+    NodeOptions options;
+    options.name = "test_node";
+    Node node({.node = "test_node", .modality = "", .rate_Hz = 1000, .about = ""}, options);
     while (node.running()) ticks.push_back(node.wait());
     return 0;
   });
