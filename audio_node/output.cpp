@@ -32,7 +32,7 @@ Instructions instructions_of(const Settings& settings) {
 
 }  // namespace
 
-Output::Output(std::string folder, std::string device, int fifo_priority, OpenCard open)
+Output::Output(std::string folder, std::string device, int fifo_priority, OpenCard open, bool silent)
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
@@ -40,7 +40,8 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
       scrapes_(*crossing_),
       rubs_(crossing_->recorded.rubs),
       library_(crossing_->recorded),
-      open_(std::move(open)) {}
+      open_(std::move(open)),
+      silent_(silent) {}
 
 void Output::configure(Settings settings) {
   if (!device_.empty()) settings.device = device_;
@@ -73,14 +74,14 @@ void Output::begin_to_open(sync::HostTime now) {
   opened_with_ = settings_;
   ordered_.reset();
   heard_from_.reset();
-  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_));
-  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_] {
-    return open(settings, folder, priority, crossing, {});
+  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_, silent_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_, silent = silent_] {
+    return open(settings, folder, priority, crossing, {}, silent);
   });
 }
 
 std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
-                                             const std::shared_ptr<Crossing>& crossing, const OpenCard& open) {
+                                             const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent) {
   RendererDef def;
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
@@ -88,7 +89,8 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
-  def.space = space_of(settings, settings.sample_rate_Hz);
+  if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);  // reading ears takes a third of a second
+  def.silent = silent;
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
   const auto renderer = std::make_shared<Renderer>(*crossing, def);
   const StreamOptions options{settings.device,

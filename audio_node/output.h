@@ -18,8 +18,8 @@ namespace tactus::audio {
 class Output {
  public:
   // device: replaces the setting of that name unless empty. open: what it plays on instead of a sound card; opened
-  // at once, and what it throws leaves keep_open().
-  Output(std::string folder, std::string device, int fifo_priority, OpenCard open = {});
+  // at once, and what it throws leaves keep_open(). silent: what it plays is not computed, only told of.
+  Output(std::string folder, std::string device, int fifo_priority, OpenCard open = {}, bool silent = false);
 
   // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the
   // limits.
@@ -47,10 +47,10 @@ class Output {
   void hear_from(const Eigen::Isometry3d& listener);
   // A state that does not fit is not heard, the next one is; note() counts it. An end is told later.
   void submit(const Scrape& scrape) {
-    if (stream_) scrapes_.submit(scrape);
+    if (stream_ && !silent_) scrapes_.submit(scrape);
   }
   void submit(const Rub& rub) {
-    if (stream_) rubs_.submit(rub);
+    if (stream_ && !silent_) rubs_.submit(rub);
   }
   // How often contacts may be told so that all fit that wait for their sample, latency() and `lead` later.
   sync::Nanoseconds tell_every(sync::Nanoseconds lead) const;
@@ -106,13 +106,14 @@ class Output {
   std::optional<Orders> ordered_;       // what the renderer has been told; nothing: it is new
   std::optional<Listener> heard_from_;  // likewise
   OpenCard open_;                       // none: a Stream
+  bool silent_;
   // A card and what renders for it.
   struct Opened {
     std::shared_ptr<Renderer> renderer;
     std::unique_ptr<Card> card;
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
-                                      const std::shared_ptr<Crossing>& crossing, const OpenCard& open);
+                                      const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent);
   void take(Opened& opened);
   std::optional<sync::Opening<Opened>> opening_;
   std::unique_ptr<Card> stream_;

@@ -57,6 +57,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
       rate_Hz_(def.rate_Hz),
       channels_(def.space.channels()),
       delay_(def.space.latency() + Limiter::kDelay),
+      silent_(def.silent),
       late_(def.late),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
       scrapes_(def.rate_Hz),
@@ -147,14 +148,18 @@ void Renderer::render_some(float* out, int frames, const BlockTime& time) {
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(out, out + channels_ * frames, 0.f);
+  if (!silent_) sound_some(out, frames, leaving.first_sample);
+}
+
+void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t begun = clock();
   const int scraping = scrapes_.active();
-  take_scrapes(leaving.first_sample);
+  take_scrapes(leaving);
   crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
-  scrapes_.drive(voices_, frames, leaving.first_sample);
+  scrapes_.drive(voices_, frames, leaving);
   voices_.render(out, frames);
   const std::int64_t computed = clock();
-  const int rubs = recorded_.render(out, frames, leaving.first_sample);
+  const int rubs = recorded_.render(out, frames, leaving);
   crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
   // A block in which nothing sounds is no contact's.
   if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
@@ -201,8 +206,10 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const auto gain = static_cast<float>(late_.gain(lateness));
   const auto nearest = static_cast<long>(std::floor(-sync::to_seconds(lateness) * rate_Hz_ + 0.5));
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
-  for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
-  recorded_.begin(strike, gain, offset);
+  if (!silent_) {
+    for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
+    recorded_.begin(strike, gain, offset);
+  }
   const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
   crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
   crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);

@@ -83,6 +83,7 @@ struct RendererDef {
   Instructions instructions = available_instructions().back();
   Space space = {};
   std::int64_t (*clock_ns)() = nullptr;  // to tell costs by; null: nobody asks
+  bool silent = false;  // no sample is computed: each strike is reported as if it were, on its sample
 };
 
 // How many of the frames that are left are rendered next: blocks as even as can be, since what goes over within a
@@ -113,6 +114,7 @@ class Renderer {
   void take_orders();
   void adapt(int frames, sync::Nanoseconds used);
   void render_some(float* out, int frames, const BlockTime& time);
+  void sound_some(float* out, int frames, sync::HostTime leaving);
   void take_scrapes(sync::HostTime until);
   void let_go_of_scrapes();
   void limit(float* out, int frames);
@@ -125,6 +127,7 @@ class Renderer {
   double rate_Hz_;
   int channels_;
   int delay_;  // frames from what is rendered to what leaves
+  bool silent_;
   sync::LatePolicy late_;
   Scheduler scheduler_{512};
   Voices voices_;

@@ -74,14 +74,18 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const audio::MediaP
 int tactus::audio::run(int argc, char** argv) try {
   sync::NodeOptions options;
   std::string device;
+  bool no_sound = false;
   audio::OfflineOptions of_log;
   CLI::App app;
   options.add_to(app, kAudio);
   app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
+  app.add_flag("--no-sound", no_sound, "compute no samples, and report when each sound would have begun; only in virtual time");
   of_log.add_to(app, "renders this log of a run", "--wav");
   app.add_option("--wav", of_log.wav, "file for the sound of the log")->needs("--log");
   sync::parse_or_exit(app, kAudio.node, argc, argv);
   if (!of_log.log.empty() && of_log.wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  if (no_sound && !sync::VirtualTime::current())
+    throw std::runtime_error("--no-sound is for virtual time; live, --audio-device virtual plays into a file and leaves the room quiet");
   std::optional<audio::Offline> offline;
   if (!of_log.log.empty()) {
     offline.emplace(of_log, kAudio.rate_Hz, sync::host_now());
@@ -107,7 +111,10 @@ int tactus::audio::run(int argc, char** argv) try {
   // Who does not live by the machine's clock plays into a file, and waits for what is read.
   const bool machine_time = !offline && !sync::VirtualTime::current();
   audio::Output output(options.out, device, kCallbackPriority,
-                       offline ? offline->open() : machine_time ? audio::OpenCard{} : audio::open_files(options.out, device));
+                       offline        ? offline->open()
+                       : machine_time ? audio::OpenCard{}
+                                      : audio::open_files(options.out, no_sound ? "null" : device),
+                       no_sound);
   std::unique_ptr<audio::Impacts> impacts;
   std::unique_ptr<audio::Sliding> sliding;
   std::unique_ptr<audio::Sampler> sampler;
@@ -237,7 +244,7 @@ int tactus::audio::run(int argc, char** argv) try {
       due.handle(now, late, goes_on, sound, drop);
     }
     const sync::Nanoseconds every = output.tell_every(kScrapeLead);
-    const bool tells = now - told_at >= every;
+    const bool tells = !no_sound && now - told_at >= every;
     if (sliding) sliding->tell_every(sync::to_seconds(every));
     const bool slides = tells && sliding && sync::to_seconds(now - slid_at) >= sliding->period_s();
     if (const auto map = contacts.map(now); map && sampler && tells && (slides || sampler->plays())) {

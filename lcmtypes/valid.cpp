@@ -6,22 +6,20 @@
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/measured_modes.h"
+#include "lcmtypes/plausible.h"
 
 namespace tactus {
 namespace {
 
-// Farther than any scene and faster than any body: beyond this a number is garbage, though finite.
-constexpr double kMaxMagnitude = 1e9;
+using tactus::sane;  // of plausible.h, beside those of here
+
 // A minute: what is presented later than that is another event.
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
 constexpr long kMaxDelay_ns = 60'000'000'000;
 constexpr double kMostPush = 1e6;  // N or N m: beyond it nothing of a room withstands
-// 31 years since a machine or a world began: differences of such times do not overflow.
-constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
 // No simulation runs faster: at this rate a second of it lies between two pictures.
 constexpr double kMaxSimRate = 100;
 
-bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
 bool sane_not_negative(double x) { return sane(x) && x >= 0; }
 bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // masses of fixed bodies are huge
 bool sane(const vec3_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
@@ -39,24 +37,13 @@ bool unit(const V& v) {
   return std::isfinite(norm) && std::abs(norm - 1) < 1e-2;
 }
 
-// Of a node or a modality: it becomes a key, a file's column and a line on a terminal.
-bool printable(const std::string& text) {
-  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
-}
-bool name(const std::string& text) { return !text.empty() && text.size() <= 64 && printable(text); }
-
 bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
 bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
-bool between(long value, long low, long high) { return value >= low && value <= high; }
 
 // 36 years of uptime: sums and differences of such times cannot overflow.
 constexpr long kLatestClockTime = 1L << 60;
 bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
 
-bool sane(const header_t& h) {
-  return between(h.sim_time_ns, -1, kMaxTime_ns) && between(h.publish_time_ns, 0, kMaxTime_ns) && h.run_id > 0 &&
-         h.incarnation > 0 && h.seq >= 0;
-}
 bool sane(const sim_clock_t& c) {
   return between(c.sim_ns, 0, kMaxTime_ns) && between(c.host_ns, 0, kMaxTime_ns) && sane_not_negative(c.rate) &&
          c.rate <= kMaxSimRate;

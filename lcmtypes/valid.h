@@ -2,6 +2,7 @@
 // border never meets a NaN. Sizes are checked before, by sync/decode.h.
 #pragma once
 
+#include <tactus/answer_t.hpp>
 #include <tactus/asset_chunk_t.hpp>
 #include <tactus/asset_request_t.hpp>
 #include <tactus/clock_map_t.hpp>
@@ -22,6 +23,7 @@
 #include <tactus/playout_request_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
+#include <tactus/question_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/setting_change_t.hpp>
@@ -41,6 +43,7 @@
 namespace tactus {
 
 // True when every field is in the range that its comment in the .lcm file gives.
+bool valid(const answer_t&);
 bool valid(const asset_chunk_t&);
 bool valid(const asset_request_t&);
 bool valid(const clock_map_t&);
@@ -61,6 +64,7 @@ bool valid(const picture_chunk_t&);
 bool valid(const playout_t&);
 bool valid(const playout_request_t&);
 bool valid(const presented_t&);
+bool valid(const question_t&);
 bool valid(const scene_manifest_t&);
 bool valid(const scene_t&);
 bool valid(const setting_change_t&);

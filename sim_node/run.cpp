@@ -52,7 +52,7 @@ struct Telling {
 
 }  // namespace
 
-int tactus::sim::run(int argc, char** argv) try {
+int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
   const sync::Declaration declaration{.node = "sim_node",
                                       .modality = "",
                                       .rate_Hz = 1000,
@@ -67,7 +67,7 @@ int tactus::sim::run(int argc, char** argv) try {
   sync::parse_or_exit(app, declaration.node, argc, argv);
 
   std::vector<std::string> warnings;
-  const sim::WorldDef world = sim::load_sdf(scene, warnings);
+  const sim::WorldDef world = read_before ? *read_before : sim::load_sdf(scene, warnings);
   for (const std::string& warning : warnings) std::cerr << "sim_node: " << warning << "\n";
   const sim::Settings settings = settings_of(world, options.set);
 

@@ -3,7 +3,10 @@
 
 namespace tactus::sim {
 
-// Returns the exit status, after one sentence on stderr where that is not 0.
-int run(int argc, char** argv);
+struct WorldDef;
+
+// Returns the exit status, after one sentence on stderr where that is not 0. world: what the file of the command line holds, where
+// that has been read already, as for many runs of one scene; null: it is read.
+int run(int argc, char** argv, const WorldDef* world = nullptr);
 
 }  // namespace tactus::sim

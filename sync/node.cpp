@@ -183,7 +183,7 @@ void Node::end_tick(HostTime now) {
   serve_tags(now);
   tick_.add(now - tick_begin_);
   if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
-  if (!demoted_ && !is_realtime()) return;
+  if (VirtualTime::current() || (!demoted_ && !is_realtime())) return;
   const bool too_busy = guard_.tick(tick_begin_, now);
   if (too_busy && !demoted_) {
     leave_realtime();

@@ -17,7 +17,8 @@ constexpr std::array kWithheld{
     kNodeHealth,   kPresented,      kSyncReport,   kClockProbe,    kClockMap,      kMediaClock,   kFrameShown,
     kPlayout,      kPlayoutRequest, kDegradation,  kDegraded,      kSimCommand,    kSimReply,     kSetting,
     kSettingReply, kDeviceForce,    kThermalState, kThermalDevice, kSceneManifest, kAssetRequest, kAssetChunk,
-    kPictureChunk, kLogInfo,        kLogTypes,     kTagRequest,    "LCM_SELF_TEST"};
+    kPictureChunk, kLogInfo,        kLogTypes,     kTagRequest,    kQuestion,
+    kAnswer,       "LCM_SELF_TEST"};
 // A log of noise has more channels than anybody remembers.
 constexpr std::size_t kMostDecided = 4096;
 

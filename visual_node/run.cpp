@@ -5,11 +5,13 @@
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: shapes, lamps, camera
 //        PLAYOUT, FRAME_SHOWN          of a room: its delay on the room's clock; which frames the other walls have drawn
 //        SETTING                       changes of overlays and stream while it runs
+//        QUESTION                      what the participant of a study is asked
 //        CONTACTS, NODE_HEALTH         while an overlay shows them, and whatever a plot names
 //   out  PRESENTED                     every begin and hit
 //        MEDIA_CLOCK                   which frame of the video was out when
 //        FRAME_SHOWN                   of a room: which frame was seen when
 //        SIM_COMMAND, DEVICE_STATE     keys and mouse of a window
+//        ANSWER                        keys and gamepad of a window, to a question
 //        PICTURE_CHUNK                 the picture for who looks on, when streamed
 //
 // Losing WORLD_STATE carries bodies on for 50 ms, then holds them and says so in the picture; the loop waits for
@@ -109,6 +111,8 @@ int tactus::visual::run(int argc, char** argv) try {
   visual::PictureStream stream;
   visual::LiveOverlays overlays(node.bus());
   visual::LiveDesk desk(node.bus());
+  visual::LiveQuestions questions(node.bus());
+  questions.configure(settings);
   sync::LiveSettings live(node);
   visual::Settings own = settings;
   visual::Frame frame;
@@ -131,7 +135,7 @@ int tactus::visual::run(int argc, char** argv) try {
     if (name.starts_with("stream"))
       stream.begin(stage.picture().width(), stage.picture().height(), settings);
     else
-      overlays.configure(settings), composer.change(settings);
+      overlays.configure(settings), questions.configure(settings), composer.change(settings);
   };
   const auto receive = [&](sync::HostTime now) {
     sense.step(now);
@@ -152,6 +156,7 @@ int tactus::visual::run(int argc, char** argv) try {
     trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
     if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
     for (const std::string& sentence : overlays.configure(own = settings)) trouble.push_back(sentence);
+    questions.configure(settings);
     for (const std::string& sentence : trouble) say(sentence);
     lock.load(*scenes.scene(), settings);
     node.set_state(node_health_t::WAITING, "prepares the pictures of the scene");
@@ -193,6 +198,7 @@ int tactus::visual::run(int argc, char** argv) try {
       facts.output = output;
       overlays.append(frame, facts, latched, stage.picture().width(), stage.picture().height());
     }
+    if (stage.draws()) questions.append(frame, latched, stage.picture().width(), stage.picture().height());
     stage.draw_over(frame.list);
     const sync::HostTime ready = clock();
     if (agreed && !offline) lock.drawn(drawn - now, ready - latched), walls.hold(*agreed, receive);
@@ -203,6 +209,7 @@ int tactus::visual::run(int argc, char** argv) try {
     took = fence - now;
     if (agreed && !offline) walls.shown(*agreed);
     const sync::HostTime shown = fence + sync::from_seconds(settings.display_latency_s);
+    questions.presented(shown);
     // An event that arrives just after the latch waits for that of the next frame; not for a picture that a
     // profile holds.
     if (!output.any()) sense.set_output_latency(shown - latched + sync::from_seconds(1 / settings.rate_Hz));
@@ -231,8 +238,9 @@ int tactus::visual::run(int argc, char** argv) try {
     const std::int64_t periods_before = std::exchange(periods, node.deadlines().ticks() + node.deadlines().missed());
     tick += offline ? 1 : agreed ? 1 + agreed->skipped : periods - periods_before;
     const visual::SceneView* view = composer.view();
+    if (stage.draws()) questions.step();
     if (!offline && stage.draws())
-      desk.step(now, stage.display(), overlays, frame.list, view ? std::span(view->geometries()) : std::span<const visual::Triangles>{}, say);
+      desk.step(now, stage.display(), overlays, questions, frame.list, view ? std::span(view->geometries()) : std::span<const visual::Triangles>{}, say);
     const bool fresh = stage.due(now, sense.output());
     if (fresh) draw(agreed ? clock() : now, agreed);
     sense.publish(clock());

@@ -81,6 +81,16 @@ DegradeThus degrade(const json& j) {
   return d;
 }
 
+AnswerThus answer(const json& j) {
+  constexpr double kLongest_ns = 86'400e9;
+  const auto question = j.find("question");
+  if (question == j.end()) throw std::invalid_argument("the page did not say which question it answers; load it again");
+  const double choice = number(j, "choice", -1, 8);
+  if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is no whole number; load the page again");
+  return {text(*question, 64), static_cast<int>(choice), number(j, "number", -1e9, 1e9),
+          static_cast<std::int64_t>(number(j, "after_ns", 0, kLongest_ns))};
+}
+
 }  // namespace
 
 BrowserMessage parse_browser_message(std::string_view bytes) {
@@ -94,6 +104,7 @@ BrowserMessage parse_browser_message(std::string_view bytes) {
   if (kind == "hand") return HandAt{number(j, "x", -1, 1), number(j, "y", -1, 1), number(j, "push_m", -1, 1), flag(j, "down")};
   if (kind == "play") return LogPlay{flag(j, "play"), number(j, "rate", 0.1, 16)};
   if (kind == "seek") return LogSeek{number(j, "to_s", 0, 1e7)};
+  if (kind == "answer") return answer(j);
   throw std::invalid_argument("the page asks for what this server does not know; load it again");
 }
 

@@ -41,7 +41,14 @@ struct LogPlay {
 struct LogSeek {
   double to_s = 0;  // since its beginning
 };
-using BrowserMessage = std::variant<WatchThese, Command, DegradeThus, HandAt, LogPlay, LogSeek>;
+// The answer of a participant to what a study asks; answers.h holds it against the question.
+struct AnswerThus {
+  std::string question;       // its name, as the page was told
+  int choice = -1;            // 0 .. 8; -1: it is none of a choice
+  double number = 0;          // at most 1e9
+  std::int64_t after_ns = 0;  // since the page first showed the question, at most a day
+};
+using BrowserMessage = std::variant<WatchThese, Command, DegradeThus, HandAt, LogPlay, LogSeek, AnswerThus>;
 
 inline constexpr std::size_t kMostWatched = 32;
 inline constexpr std::size_t kMostBrowserBytes = 8192;

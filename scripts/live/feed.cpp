@@ -141,6 +141,12 @@ json Feed::news(sync::HostTime now) {
 
 json Feed::state(sync::HostTime now) const { return {{"health", health(now)}, {"report", report()}}; }
 
+std::string Feed::node_of(std::int32_t source) const {
+  for (const auto& [name, n] : nodes_)
+    if (n.health.header.source == source) return name;
+  return "";
+}
+
 std::set<std::string> Feed::modalities() const {
   std::set<std::string> names;
   for (const auto& [name, n] : nodes_)

@@ -42,6 +42,8 @@ class Feed {
   // All that somebody needs who has just come: the state of all nodes and the newest report.
   nlohmann::json state(sync::HostTime now) const;
   std::set<std::string> modalities() const;
+  // Which node sends as this source; "": none that was heard of.
+  std::string node_of(std::int32_t source) const;
   std::int64_t bad() const { return bad_; }
 
  private:

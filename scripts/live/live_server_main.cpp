@@ -1,7 +1,7 @@
 // live_server: shows a running cluster, or a log, in web pages, and hands on what the pages ask for.
 //
-//   in   all channels that a page shows; SIM_REPLY, SETTING_REPLY, SCENE_MANIFEST, ASSET_CHUNK
-//   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"): only what a page asks
+//   in   all channels that a page shows; QUESTION; SIM_REPLY, SETTING_REPLY, SCENE_MANIFEST, ASSET_CHUNK
+//   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"), ANSWER: only what a page asks
 //
 // Nobody waits for it. A page that does not keep up loses frames of its own, which are counted; without a page nothing is decoded.
 #include <signal.h>
@@ -197,6 +197,7 @@ void show_cluster(const Options& o) {
       if (const auto* command = std::get_if<live::Command>(&m)) controls.command(*command, now);
       else if (const auto* degrade = std::get_if<live::DegradeThus>(&m)) controls.degrade(*degrade, realtime_ns(), now);
       else if (const auto* hand = std::get_if<live::HandAt>(&m)) controls.hand(*hand, station.picture_aspect(), now);
+      else if (const auto* answer = std::get_if<live::AnswerThus>(&m)) station.answers().answer(*answer, now);
       else throw std::invalid_argument("the world cannot be wound back; open its log");
     });
     const sync::HostTime now = sync::host_now();
@@ -207,6 +208,7 @@ void show_cluster(const Options& o) {
         station.take(channel, bytes, arrival);
       });
     }
+    if (auto answer = station.answers().take_answer()) bus.publish(channels::kAnswer, *answer);
     const bool looks = server.anybody();
     if (looks && !looked_on) opened = now;
     // Somebody's own choice of a stream is left as it is: pictures come already, or come on after the last page has gone.

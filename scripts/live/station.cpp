@@ -23,9 +23,11 @@ constexpr std::size_t kMostTags = 4096;                 // in the list of a page
 
 }  // namespace
 
-Station::Station(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id) {}
+Station::Station(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
 bool Station::wants(std::string_view channel) const {
+  // Also while no page is there: what was answered is repeated for who leads a study.
+  if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
   if (Feed::wants(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
       channel == channels::kTagValues)
@@ -36,7 +38,9 @@ bool Station::wants(std::string_view channel) const {
 void Station::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
   feed_.take(channel, bytes, arrival);
   for (auto& [page, w] : watches_) w.take(channel, bytes, arrival);
-  if (channel == channels::kTagList) {
+  if (channel == channels::kQuestion) {
+    if (const auto m = sync::decode<question_t>(bytes.data(), bytes.size())) answers_.push(*m, arrival);
+  } else if (channel == channels::kTagList) {
     if (const auto m = sync::decode<tag_list_t>(bytes.data(), bytes.size())) tags_.push(*m);
   } else if (channel == channels::kTagValues) {
     const auto m = sync::decode<tag_values_t>(bytes.data(), bytes.size());
@@ -62,7 +66,14 @@ void Station::take(std::string_view channel, std::span<const std::uint8_t> bytes
 
 void Station::clear() {
   feed_.clear();
+  answers_.clear();
   picture_.reset();
+}
+
+json Station::study(sync::HostTime now) const {
+  json out = answers_.told(now);
+  if (const auto leader = answers_.leader(now)) out["leader"] = sync::printable(feed_.node_of(*leader));
+  return out;
 }
 
 json Station::tag_list() const {
@@ -94,6 +105,7 @@ std::map<int, std::string> Station::frames(sync::HostTime now, const json& extra
   json all = feed_.news(now);
   all["t"] = "frame";
   all["now"] = sync::to_seconds(now.time_since_epoch());
+  all["study"] = study(now);
   all.update(extra);
   std::size_t tags = 0;
   for (const auto& [key, list] : tags_.lists())

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scripts/live/answers.h"
 #include "scripts/live/feed.h"
 #include "scripts/live/watches.h"
 #include "sync/picture_reader.h"
@@ -51,13 +52,17 @@ class Station {
   // The tagged variables that any page wants, as TAG_REQUEST names them.
   std::vector<std::string> wanted_tags() const;
   const Feed& feed() const { return feed_; }
+  // What a study asks, and what pages have answered.
+  Answers& answers() { return answers_; }
 
  private:
   nlohmann::json tag_list() const;
+  nlohmann::json study(sync::HostTime now) const;
 
   bool live_;
   std::string title_;
   Feed feed_;
+  Answers answers_;
   std::map<int, Watches> watches_;
   sync::TagTable tags_;
   std::size_t tags_told_ = 0;

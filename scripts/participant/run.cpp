@@ -24,8 +24,11 @@ using namespace tactus;
 
 namespace {
 
-const sync::Declaration kParticipant{
-    .node = "participant", .modality = "", .rate_Hz = 1000, .fifo_priority = 55, .about = "Plays a scene's game in place of a person."};
+const sync::Declaration kParticipant{.node = "participant",
+                                     .modality = "",
+                                     .rate_Hz = 1000,
+                                     .fifo_priority = 55,
+                                     .about = "Plays a scene's game in place of a person."};
 // Where the hand rests before the world begins: over the near edge of the dark room.
 constexpr double kRest_m[]{-0.2, 0, 0.13};
 
@@ -37,7 +40,7 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 
 }  // namespace
 
-int tactus::participant::run(int argc, char** argv) try {
+int tactus::participant::run(int argc, char** argv, const Rules* read_before) try {
   CLI::App app;
   sync::NodeOptions options;
   std::string scene_file, device = "player";
@@ -46,15 +49,26 @@ int tactus::participant::run(int argc, char** argv) try {
   ArmDef arm_def;
   PlayerDef player_def;
   options.add_to(app, kParticipant);
-  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game")->required()->check(CLI::ExistingFile);
-  app.add_option("--device", device, "name of the device that it moves: haptic_node --device external:NAME")->capture_default_str();
-  app.add_option("--degrade", options.degrade, "degradation profile (XML): as the senses have it, which are listened in on");
-  app.add_option("--frame-rate", frame_rate_Hz, "of the pictures that it looks at, Hz")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
-  app.add_option("--scatter-along", scatter.along_m, "before it plays it puts each ball elsewhere, as the seed says: so far towards its hole or away, m")->check(CLI::Range(0.0, 0.2));
+  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--device", device, "name of the device that it moves: haptic_node --device external:NAME")
+      ->capture_default_str();
+  app.add_option("--degrade", options.degrade,
+                 "degradation profile (XML): as the senses have it, which are listened in on");
+  app.add_option("--frame-rate", frame_rate_Hz, "of the pictures that it looks at, Hz")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option(
+         "--scatter-along", scatter.along_m,
+         "before it plays it puts each ball elsewhere, as the seed says: so far towards its hole or away, m")
+      ->check(CLI::Range(0.0, 0.2));
   app.add_option("--scatter-aside", scatter.aside_m, "and so far to the side, m")->check(CLI::Range(0.0, 0.2));
-  app.add_option("--reaction", player_def.reaction_s, "from what is seen or heard to what is done, s")->check(CLI::Range(0.0, 2.0))->capture_default_str();
+  app.add_option("--reaction", player_def.reaction_s, "from what is seen or heard to what is done, s")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
   sync::parse_or_exit(app, kParticipant.node, argc, argv);
-  const Rules rules = read_rules(scene_file);
+  const Rules rules = read_before ? *read_before : read_rules(scene_file);
 
   sync::Node node(kParticipant, options);
   sync::SceneReceiver scenes(node.bus());
@@ -76,10 +90,12 @@ int tactus::participant::run(int argc, char** argv) try {
   while (node.running()) {
     const sync::HostTime now = node.wait();
     while (const auto m = forces.pop())
-      if (m->message.device == device && m->message.header.run_id == options.run_id) force = m->message, felt_at = m->arrival;
+      if (m->message.device == device && m->message.header.run_id == options.run_id)
+        force = m->message, felt_at = m->arrival;
     if (scenes.poll(now)) {
       senses.set_scene(*scenes.scene());
-      setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed), options.seed);
+      setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed),
+                    options.seed);
       node.set_state(node_health_t::RUNNING);
     }
     Percept percept = senses.perceive(now);

@@ -3,7 +3,10 @@
 
 namespace tactus::participant {
 
-// Returns the exit status, after one sentence on stderr where that is not 0.
-int run(int argc, char** argv);
+struct Rules;
+
+// Returns the exit status, after one sentence on stderr where that is not 0. rules: of the scene of the command line, where that has
+// been read already; null: it is read.
+int run(int argc, char** argv, const Rules* rules = nullptr);
 
 }  // namespace tactus::participant

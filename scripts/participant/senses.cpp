@@ -2,15 +2,25 @@
 
 #include <utility>
 
+#include "sync/degradation/chance.h"
+
 namespace tactus::participant {
 namespace {
 
 // Those whose senses these are: visual_node and audio_node.
-sync::Declaration of(const char* node, const char* modality, int owes) { return {.node = node, .modality = modality, .owes = owes, .about = ""}; }
+sync::Declaration of(const char* node, const char* modality, int owes) {
+  return {.node = node, .modality = modality, .owes = owes, .about = ""};
+}
 
 // Below the rim by so much, a ball that hits something lies in the hole (design: a third of the shallowest ball).
 constexpr double kBelowRim_m = 0.02;
-constexpr sync::Nanoseconds kGone{300'000'000};  // after so long without a word a node stands still, as sync_node counts it
+constexpr sync::Nanoseconds kGone{
+    300'000'000};  // after so long without a word a node stands still, as sync_node counts it
+// How well it is heard where a sound comes from, standard deviation. A still head tells 3.6 degrees to the side
+// (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor; a little less, and the
+// same for distance, is design: a ball that is heard lies on the floor, and the head moves.
+constexpr double kBlur_m = 0.05;
+constexpr std::uint64_t kOfEars = 13;            // stream of random numbers of the seed
 constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, as audio_node takes them
 
 }  // namespace
@@ -25,6 +35,7 @@ Senses::Senses(sync::Node& node, Rules rules, double frame_rate_Hz)
       bodies_(node.bus().clocks()),
       contacts_(node.bus().clocks()),
       frame_rate_Hz_(frame_rate_Hz),
+      seed_(sync::mixed(node.options().seed, kOfEars)),
       shown_(rules_.goals.size()) {}
 
 void Senses::set_scene(const scene_t& scene) {
@@ -44,7 +55,7 @@ Percept Senses::perceive(sync::HostTime now) {
   Percept percept;
   percept.time_s = sync::to_seconds(now.time_since_epoch());
   percept.balls_m = shown_;
-  percept.fell = listen(now);
+  listen(now, percept);
   return percept;
 }
 
@@ -67,23 +78,32 @@ void Senses::look(sync::HostTime now) {
   }
 }
 
-std::vector<bool> Senses::listen(sync::HostTime now) {
+void Senses::listen(sync::HostTime now, Percept& percept) {
   if (const auto map = contacts_.map(now))
     for (const contact_event_t& e : contacts_.take_events(map->to_sim(now + kEarly)))
       for (std::size_t i = 0; i < rules_.goals.size(); ++i) {
         const Goal& goal = rules_.goals[i];
-        if (e.kind != contact_event_t::HIT || (e.body_a != goal.body && e.body_b != goal.body)) continue;
-        if (e.point_m.z < goal.hole_m.z() - kBelowRim_m - goal.ball_radius_m)
-          sounds_.push_back({ears_.schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), i});
+        if (e.kind != contact_event_t::HIT || e.tool >= 0 || (e.body_a != goal.body && e.body_b != goal.body))
+          continue;
+        const bool falls = e.point_m.z < goal.hole_m.z() - kBelowRim_m - goal.ball_radius_m;
+        const auto off = [&](std::uint64_t axis) {
+          return kBlur_m *
+                 sync::normal_quantile(sync::uniform(seed_, 2 * static_cast<std::uint64_t>(e.event_id) + axis));
+        };
+        const Eigen::Vector3d from(e.point_m.x + off(0), e.point_m.y + off(1), e.point_m.z);
+        sounds_.push_back({ears_.schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), i, falls, from});
       }
   if (!rendered("audio", now)) sounds_.clear();
-  std::vector<bool> fell(rules_.goals.size());
+  percept.fell.assign(rules_.goals.size(), false);
+  percept.heard_m.assign(rules_.goals.size(), std::nullopt);
   std::erase_if(sounds_, [&](const Sound& sound) {
     if (sound.at > now) return false;
-    fell[sound.goal] = true;
+    if (sound.falls)
+      percept.fell[sound.goal] = true;
+    else
+      percept.heard_m[sound.goal] = sound.from_m;
     return true;
   });
-  return fell;
 }
 
 }  // namespace tactus::participant

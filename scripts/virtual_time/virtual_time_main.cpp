@@ -27,9 +27,14 @@ using namespace tactus;
 namespace {
 
 const std::map<std::string, std::function<int(int, char**)>> kPrograms{
-    {"sim_node", sim::run},       {"haptic_node", haptic::run},   {"audio_node", audio::run},
-    {"visual_node", visual::run}, {"thermal_node", thermal::run}, {"sync_node", sync::run_sync_node},
-    {"recorder", sync::run_recorder}, {"participant", participant::run},
+    {"sim_node", [](int argc, char** argv) { return sim::run(argc, argv); }},
+    {"haptic_node", haptic::run},
+    {"audio_node", audio::run},
+    {"visual_node", visual::run},
+    {"thermal_node", thermal::run},
+    {"sync_node", sync::run_sync_node},
+    {"recorder", sync::run_recorder},
+    {"participant", [](int argc, char** argv) { return participant::run(argc, argv); }},
 };
 
 using Words = std::vector<std::string>;

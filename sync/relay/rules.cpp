@@ -21,7 +21,7 @@ const Names& channels_of_the_bus() {
       kTouchModel,    kContactEvents, kContacts,     kWorldState,     kToolState,   kDeviceState, kDeviceForce,
       kThermalState,  kThermalDevice, kPresented,    kNodeHealth,     kSyncReport,  kClockProbe,  kClockMap,
       kMediaClock,    kFrameShown,    kPlayout,      kPlayoutRequest, kDegradation, kDegraded,    kSimCommand,
-      kSimReply,      kSetting,       kSettingReply, kTagRequest,     kTagList,     kTagValues,   kGameState,
+      kSimReply,      kSetting,       kSettingReply, kQuestion,    kAnswer,       kTagRequest,     kTagList,     kTagValues,   kGameState,
       kSceneManifest, kAssetRequest,  kAssetChunk,   kPictureChunk};
   return names;
 }

@@ -1,6 +1,6 @@
 // Draws pictures of the shipped scenes for the documents: each into its own file of the folder given.
 //
-//   bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo]... [--samples N]
+//   bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo | questions]... [--samples N]
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/visual_node/golden/shipped_scene.h"
+#include "visual_node/overlay/question_panel.h"
 #include "visual_node/video/png.h"
 
 using namespace tactus;
@@ -116,21 +117,45 @@ Picture stereo(int samples) {
   return checked(s, half_as_high(picture));
 }
 
+// What the participant of a study is asked, above the cells of the marker.
+Picture asked(const question_t& m, double number, int width, int height, int samples) {
+  constexpr float kMarker_px = 48;
+  ShippedScene s = load("dark_room");
+  std::vector<visual::Rect> overlay;
+  visual::append_question(overlay, m, number,
+                          {0, 0, static_cast<float>(width), static_cast<float>(height) - kMarker_px});
+  Picture picture = s.draw(s.scene, sized(width, height, samples), overlay);
+  return checked(s, std::move(picture));
+}
+
+Picture questions(int samples) {
+  question_t choice{}, number{};
+  choice.kind = question_t::CHOICE;
+  choice.text = "Did you hear the ball and see it touch the floor at the same time?";
+  choice.choices = {"at the same time", "not at the same time", "I do not know"};
+  choice.count = static_cast<std::int32_t>(choice.choices.size());
+  number.kind = question_t::NUMBER;
+  number.text = "How hard was the ball that you pressed?";
+  number.choices = {"as soft as a sponge", "as hard as stone"};
+  number.count = 2;
+  number.lowest = 0, number.highest = 100, number.step = 1;
+  choice.progress = number.progress = "block 1 of 4, 12 of 60";
+  return beside({asked(choice, 0, 640, 480, samples), asked(number, 64, 640, 480, samples)});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const std::vector<std::pair<std::string, Picture (*)(int)>> all{{"dark_room", dark_room},
-                                                                  {"bump_plane", bump_plane},
-                                                                  {"looks", looks},
-                                                                  {"reflecting", reflecting},
-                                                                  {"stereo", stereo}};
+  const std::vector<std::pair<std::string, Picture (*)(int)>> all{
+      {"dark_room", dark_room},   {"bump_plane", bump_plane}, {"looks", looks},
+      {"reflecting", reflecting}, {"stereo", stereo},         {"questions", questions}};
   std::string folder;
   std::vector<std::string> wanted;
   int samples = 4;
   CLI::App app("Draws pictures of the shipped scenes for the documents.");
   app.add_option("FOLDER", folder, "where the PNG files go")->required()->check(CLI::ExistingDirectory);
   app.add_option("PICTURE", wanted, "which; none: all")
-      ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo"}));
+      ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo", "questions"}));
   app.add_option("--samples", samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   for (const auto& [name, draw] : all) {

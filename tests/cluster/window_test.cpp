@@ -2,7 +2,9 @@
 // becomes of the node when window or server go.
 #include <signal.h>
 
+#include <tactus/answer_t.hpp>
 #include <tactus/device_state_t.hpp>
+#include <tactus/question_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "tests/cluster/seeing.h"
@@ -19,6 +21,10 @@ struct Desktop : Seeing {
   sync::Bus bus{sync::Identity::fresh("desktop_test", kRunId), {}};
   sync::Queue<world_state_t>& worlds{bus.queue<world_state_t>(channels::kWorldState, 4096)};
   sync::Queue<device_state_t>& devices{bus.queue<device_state_t>(channels::kDeviceState, 4096)};
+  sync::Queue<answer_t>& answers{bus.queue<answer_t>(channels::kAnswer, 4096)};
+  std::map<std::int64_t, std::vector<answer_t>> answered;  // by id
+  question_t asked_now{};
+  sync::HostTime ask_next{};
   double rate = -1;  // of the world, as last told
   int aimed = 0;     // times that the mouse was told as a device
 
@@ -46,6 +52,7 @@ struct Desktop : Seeing {
     std::vector<std::string> command{"env", "DISPLAY=" + display, "xdotool"};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
+    hear_until([&] { return !processes.running(name); });  // what is asked is repeated meanwhile
     const int status = processes.wait_for_exit(name, kPatience_s);
     INFO("xdotool (Debian package xdotool): " << processes.said(name));
     CHECK(status == 0);
@@ -73,9 +80,18 @@ struct Desktop : Seeing {
           bus.drain(sync::host_now());
           while (const auto m = worlds.pop()) rate = m->message.clock.rate;
           while (const auto m = devices.pop()) aimed += m->message.device == "mouse";
+          while (const auto m = answers.pop()) answered[m->message.id].push_back(m->message);
+          if (asked_now.id > 0 && sync::host_now() >= ask_next) {
+            bus.publish(channels::kQuestion, asked_now);
+            ask_next = sync::host_now() + std::chrono::milliseconds(200);
+          }
           return condition();
         },
         kPatience_s);
+  }
+  void hear_for(double seconds) {
+    const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
+    hear_until([&] { return sync::host_now() >= end; });
   }
   // As a window manager asks a window to close (ICCCM 4.2.8.1).
   void ask_to_close() {
@@ -141,6 +157,73 @@ TEST_CASE(
   c.ear.listen(1);
   CHECK_THAT(c.geometry(), Catch::Contains("640x480"));
   CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+}
+
+TEST_CASE(
+    "A question of a study is drawn in the window, and answered by its keys, which do nothing else meanwhile") {
+  Desktop c;
+  c.start_window();
+  c.ear.listen(1);
+  c.x({"mousemove", "300", "300"});
+  c.x({"key", "space"});
+  REQUIRE(c.hear_until([&] { return c.rate == 0; }));  // a picture that stands still
+  const Grey still = c.later_picture();
+  const auto ask = [&](std::int64_t id, std::int8_t kind, const std::string& text) {
+    question_t m{};
+    m.header.sim_time_ns = -1;
+    m.id = id, m.kind = kind, m.text = text;
+    if (kind == question_t::CHOICE) m.count = 2, m.choices = {"at the same time", "not at the same time"};
+    if (kind == question_t::NUMBER) m.lowest = 0, m.highest = 10, m.step = 1;
+    m.progress = "block 1 of 4";
+    c.asked_now = m;
+    c.ask_next = {};
+    c.hear_for(1);  // until a picture has it
+  };
+  const auto answer = [&](std::int64_t id) {
+    REQUIRE(c.hear_until([&] { return c.answered[id].size() >= 3; }));  // each repetition is answered
+    for (const answer_t& a : c.answered[id]) {
+      CHECK((a.choice == c.answered[id][0].choice && a.number == c.answered[id][0].number));
+      CHECK(a.after_ns == c.answered[id][0].after_ns);
+      CHECK((a.by == "key" && a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+    }
+    return c.answered[id][0];
+  };
+
+  ask(11, question_t::CHOICE, "Did you hear the ball and see it touch the floor at the same time?");
+  CHECK(apart(still, c.picture()) > 3);
+  c.x({"key", "3"});  // there is no third choice, and no overlay either
+  c.hear_for(0.5);
+  CHECK(c.answered.empty());
+  c.x({"key", "2"});
+  CHECK((answer(11).choice == 1 && answer(11).number == 0));
+  c.hear_for(0.5);
+  CHECK(apart(still, c.picture()) < 1);  // it is gone, and no overlay was laid
+
+  ask(12, question_t::NUMBER, "How hard was it?");
+  for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.x({"key", key});  // 5 and 1, 1, 1, less 2
+  c.x({"key", "Return"});
+  CHECK((answer(12).number == 6 && answer(12).choice == -1));
+
+  ask(13, question_t::READ, "Read this.");
+  c.x({"key", "space"});
+  CHECK(answer(13).choice == -1);
+  CHECK(c.rate == 0);  // space did not let the world go on
+
+  // A second window shows none.
+  c.set({"questions=false"});
+  ask(14, question_t::READ, "Not here.");
+  CHECK(apart(still, c.picture()) < 1);
+  c.set({"questions=true"});
+  c.hear_for(1);
+  CHECK(apart(still, c.picture()) > 1);
+
+  // Who asked is gone.
+  c.asked_now = {};
+  c.hear_for(3.5);
+  CHECK(apart(still, c.picture()) < 1);
+  CHECK(c.answered.find(14) == c.answered.end());
+  c.x({"key", "space"});
+  CHECK(c.hear_until([&] { return c.rate > 0; }));
 }
 
 TEST_CASE("The mouse in the window is a device that points at what is seen under it") {

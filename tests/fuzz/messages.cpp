@@ -27,10 +27,10 @@ int types_that_fit(const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
   const int fit =
-      types_that_fit<asset_chunk_t, asset_request_t, clock_map_t, clock_probe_t, contact_events_t, contact_frame_t,
+      types_that_fit<answer_t, asset_chunk_t, asset_request_t, clock_map_t, clock_probe_t, contact_events_t, contact_frame_t,
                      degradation_t, degraded_t, device_force_t, device_state_t, frame_shown_t, game_state_t,
                      log_info_t, media_clock_t, mesh_t, node_health_t, picture_chunk_t, playout_request_t,
-                     playout_t, presented_t, scene_manifest_t, scene_t, setting_change_t, setting_reply_t,
+                     playout_t, presented_t, question_t, scene_manifest_t, scene_t, setting_change_t, setting_reply_t,
                      sim_command_t, sim_reply_t, sync_report_t, tag_list_t, tag_request_t, tag_values_t,
                      thermal_device_t, thermal_state_t, tool_state_t, touch_model_t, world_state_t>(data, size);
   if (fit > 1) std::abort();  // a message begins with the fingerprint of its type

@@ -20,7 +20,7 @@ namespace {
       thermal_device_t, presented_t, node_health_t, sync_report_t, clock_map_t, media_clock_t, frame_shown_t,     \
       picture_chunk_t, degradation_t, degraded_t, playout_t, setting_change_t, sim_command_t, sim_reply_t,        \
       game_state_t, log_info_t, scene_manifest_t, asset_request_t, asset_chunk_t, scene_t, mesh_t, \
-      tag_list_t, tag_request_t, tag_values_t
+      tag_list_t, tag_request_t, tag_values_t, question_t, answer_t
 
 const Schema& schema() {
   static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");

@@ -76,7 +76,7 @@ Bytes encoded_sample(Samples& samples) {
       node_health_t, sync_report_t, clock_probe_t, clock_map_t, media_clock_t, scene_manifest_t, asset_request_t, \
       asset_chunk_t, scene_t, mesh_t, log_info_t, degradation_t, degraded_t, playout_t,           \
       playout_request_t, setting_change_t, setting_reply_t, sim_command_t, sim_reply_t, game_state_t, thermal_device_t, \
-      tag_list_t, tag_request_t, tag_values_t
+      tag_list_t, tag_request_t, tag_values_t, question_t, answer_t
 
 }  // namespace
 

@@ -247,6 +247,17 @@ class Samples {
   void fill(setting_reply_t& m) {
     fill(m.header), m.id = whole(1, 1 << 30), m.done = static_cast<std::int8_t>(whole(0, 1)), m.text = name(200);
   }
+  void fill(question_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.kind = static_cast<std::int8_t>(whole(1, 3)), m.text = name(600);
+    m.count = m.kind == question_t::CHOICE ? static_cast<std::int32_t>(whole(2, 9)) : 0;
+    for (int i = 0; i < m.count; ++i) m.choices.push_back(name(40));
+    if (m.kind == question_t::NUMBER) m.lowest = real(-9, 0), m.highest = real(1, 9), m.step = real(0.01, 1);
+    m.trial = static_cast<std::int32_t>(whole(0, 999)), m.condition = name(), m.progress = name();
+  }
+  void fill(answer_t& m) {
+    fill(m.header), m.id = whole(1, 1 << 30), m.choice = static_cast<std::int32_t>(whole(-1, 8)), m.number = real(-9, 9);
+    m.after_ns = whole(0, 99), m.by = name();
+  }
   void fill(tag_def_t& t) { t.name = name(), t.unit = "N", t.rate_Hz = real(0, 99); }
   void fill(tag_list_t& m) {
     fill(m.header), m.node = name(), m.list = whole(1, 1 << 30), m.first = static_cast<std::int16_t>(whole(0, 9));

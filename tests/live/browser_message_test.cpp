@@ -19,6 +19,7 @@ const std::vector<std::string> kGood{
     R"({"t":"hand","x":-0.5,"y":1,"push_m":0,"down":true})",
     R"({"t":"play","play":true,"rate":2})",
     R"({"t":"seek","to_s":12.5})",
+    R"({"t":"answer","question":"4.11","choice":1,"number":0,"after_ns":350000000})",
 };
 
 // What a message may hold at the most, whatever was sent.
@@ -40,6 +41,9 @@ void check_bounds(const BrowserMessage& m) {
     CHECK((std::abs(h->x) <= 1 && std::abs(h->y) <= 1 && std::abs(h->push_m) <= 1));
   } else if (const auto* p = std::get_if<LogPlay>(&m)) {
     CHECK((p->rate >= 0.1 && p->rate <= 16));
+  } else if (const auto* a = std::get_if<AnswerThus>(&m)) {
+    CHECK((!a->question.empty() && a->question.size() <= 64));
+    CHECK((a->choice >= -1 && a->choice <= 8 && std::abs(a->number) <= 1e9 && a->after_ns >= 0));
   } else {
     CHECK((std::get<LogSeek>(m).to_s >= 0 && std::get<LogSeek>(m).to_s <= 1e7));
   }
@@ -79,6 +83,8 @@ TEST_CASE("Each message of a page is read as what it says") {
   const auto play = std::get<LogPlay>(parse_browser_message(kGood[5]));
   CHECK((play.play && play.rate == 2));
   CHECK(std::get<LogSeek>(parse_browser_message(kGood[6])).to_s == 12.5);
+  const auto answer = std::get<AnswerThus>(parse_browser_message(kGood[7]));
+  CHECK((answer.question == "4.11" && answer.choice == 1 && answer.number == 0 && answer.after_ns == 350'000'000));
 }
 
 TEST_CASE("What is no message of a page, or beyond its range, is refused with a sentence") {
@@ -94,7 +100,13 @@ TEST_CASE("What is no message of a page, or beyond its range, is refused with a 
         R"({"t":"degrade","clear":false,"senses":{"a\"/>":{"delay_ms":1,"rate_Hz":0,"loss":0}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0.05,"loss":0}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":2001,"rate_Hz":0,"loss":0}}})",
-        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0}}})"}) {
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0}}})",
+        R"({"t":"answer","choice":1,"number":0,"after_ns":0})", R"({"t":"answer","question":11,"choice":1,"number":0,"after_ns":0})",
+        R"({"t":"answer","question":"4.11","choice":0.5,"number":0,"after_ns":0})",
+        R"({"t":"answer","question":"4.11","choice":9,"number":0,"after_ns":0})",
+        R"({"t":"answer","question":"4.11","choice":-1,"number":null,"after_ns":0})",
+        R"({"t":"answer","question":"4.11","choice":-1,"number":1e10,"after_ns":0})",
+        R"({"t":"answer","question":"4.11","choice":1,"number":0,"after_ns":-1})"}) {
     INFO(text);
     CHECK_FALSE(taken(text));
   }

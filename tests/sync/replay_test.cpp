@@ -329,7 +329,7 @@ TEST_CASE("What would be mistaken for the live run stays in the log, and what th
        {"TOUCH_MODEL", "CONTACT_EVENTS", "CONTACTS", "WORLD_STATE", "GAME_STATE", "TOOL_STATE", "MY_OWN"})
     CHECK(choice.channel_of(event_of(c, {})) == std::string_view(c));
   for (const char* c : {"NODE_HEALTH", "PRESENTED", "SYNC_REPORT", "CLOCK_MAP", "CLOCK_PROBE", "PLAYOUT",
-                        "PLAYOUT_REQUEST", "DEGRADATION", "DEGRADED", "SETTING", "SIM_COMMAND", "DEVICE_FORCE",
+                        "PLAYOUT_REQUEST", "DEGRADATION", "DEGRADED", "SETTING", "QUESTION", "ANSWER", "SIM_COMMAND", "DEVICE_FORCE",
                         "THERMAL_STATE", "MEDIA_CLOCK", "SCENE_MANIFEST", "LOG_INFO"})
     CHECK_FALSE(choice.channel_of(event_of(c, {})));
   CHECK(ReplayChoice({.as_recorded = true}).channel_of(event_of("DEGRADATION", {})));

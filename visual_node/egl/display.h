@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "visual_node/egl/gamepad.h"
+
 namespace tactus::visual {
 
 // What a person did in a window.
@@ -14,6 +16,7 @@ struct Inputs {
   std::vector<int> keys;  // pressed, in order: as overlay/keys.h has them
   // Where the cursor is while the left button is held: shares of the window from its upper left.
   std::optional<std::pair<float, float>> aim;
+  std::vector<Button> buttons;  // of any gamepad, pressed anew
 };
 
 struct WindowOptions {

@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "visual_node/egl/call_guard.h"
@@ -30,6 +31,23 @@ constexpr unsigned char kBadWindow = 3, kBadDrawable = 9;
 
 constexpr std::size_t kMostKeys = 64;  // between two frames
 
+// A mark is moved on while an arrow is held; no other key means more when it is held.
+bool repeats(int key) {
+  return key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN;
+}
+
+GamepadStand stand_of(const GLFWgamepadstate& s) {
+  constexpr std::array<int, kButtons> kAs{GLFW_GAMEPAD_BUTTON_A,         GLFW_GAMEPAD_BUTTON_B,
+                                          GLFW_GAMEPAD_BUTTON_X,         GLFW_GAMEPAD_BUTTON_Y,
+                                          GLFW_GAMEPAD_BUTTON_DPAD_LEFT, GLFW_GAMEPAD_BUTTON_DPAD_RIGHT,
+                                          GLFW_GAMEPAD_BUTTON_DPAD_UP,   GLFW_GAMEPAD_BUTTON_DPAD_DOWN};
+  GamepadStand out;
+  for (std::size_t i = 0; i < kButtons; ++i) out.held[i] = s.buttons[kAs[i]] == GLFW_PRESS;
+  out.sticks = {{{s.axes[GLFW_GAMEPAD_AXIS_LEFT_X], s.axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
+                 {s.axes[GLFW_GAMEPAD_AXIS_RIGHT_X], s.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]}}};
+  return out;
+}
+
 class Window : public Display {
  public:
   Window(const std::string& title, const WindowOptions& o) : windowed_width_(o.width), windowed_height_(o.height) {
@@ -50,7 +68,8 @@ class Window : public Display {
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       auto& keys = static_cast<Window*>(glfwGetWindowUserPointer(w))->keys_;
-      if (action == GLFW_PRESS && keys.size() < kMostKeys) keys.push_back(key);
+      if ((action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key))) && keys.size() < kMostKeys)
+        keys.push_back(key);
     });
     survive_the_server();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
@@ -124,7 +143,8 @@ class Window : public Display {
   }
 
   Inputs inputs_now() {
-    Inputs inputs{std::exchange(keys_, {}), std::nullopt};
+    Inputs inputs{std::exchange(keys_, {}), std::nullopt, {}};
+    if (!lost_) inputs.buttons = buttons_now();
     if (lost_ || glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) != GLFW_PRESS) return inputs;
     int width = 0, height = 0;
     double x = 0, y = 0;
@@ -133,6 +153,20 @@ class Window : public Display {
     if (width > 0 && height > 0 && x >= 0 && y >= 0 && x <= width && y <= height)
       inputs.aim.emplace(static_cast<float>(x / width), static_cast<float>(y / height));
     return inputs;
+  }
+
+  std::vector<Button> buttons_now() {
+    std::vector<Button> all;
+    for (int i = 0; i <= GLFW_JOYSTICK_LAST; ++i) {
+      GLFWgamepadstate state;
+      if (!glfwGetGamepadState(i, &state)) {
+        gamepads_[static_cast<std::size_t>(i)].forget();
+        continue;
+      }
+      const auto pressed = gamepads_[static_cast<std::size_t>(i)].pressed(stand_of(state));
+      all.insert(all.end(), pressed.begin(), pressed.end());
+    }
+    return all;
   }
 
   void choose_monitor(int number) {
@@ -231,6 +265,7 @@ class Window : public Display {
   static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
   std::vector<int> keys_;
+  std::array<Gamepad, GLFW_JOYSTICK_LAST + 1> gamepads_;
 };
 
 }  // namespace

@@ -11,6 +11,11 @@ constexpr std::uint64_t kBeginning = 0b0110;
 
 }  // namespace
 
+int marker_height_px(bool events, bool motion) {
+  const int rows = motion ? kMarkerRows + kMotionRows : events ? kMarkerRows : 0;
+  return rows * kMarkerCell_px;
+}
+
 void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,
                           int height) {
   const std::size_t rows = std::min<std::size_t>(samples.size(), kMotionRows);

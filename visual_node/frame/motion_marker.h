@@ -30,6 +30,9 @@ struct MotionMarker {
   std::uint32_t sample = 0;  // modulo 2^28: at 1 kHz three days
 };
 
+// What programs read at the lower edge of a picture: nothing is drawn over it.
+int marker_height_px(bool events, bool motion);
+
 void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,
                           int height);
 // row: 0 .. kMotionRows - 1.

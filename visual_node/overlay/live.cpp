@@ -33,10 +33,7 @@ std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
   } catch (const std::invalid_argument& e) {
     trouble.emplace_back(e.what());
   }
-  const int rows = settings.motion_marker == "strip"  ? kMarkerRows + kMotionRows
-                   : settings.event_marker == "strip" ? kMarkerRows
-                                                      : 0;
-  markers_px_ = rows * kMarkerCell_px;
+  markers_px_ = marker_height_px(settings.event_marker == "strip", settings.motion_marker == "strip");
   force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
   plots_ = Plots(parse_plots(settings.plots, trouble), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);

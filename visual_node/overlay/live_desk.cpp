@@ -13,13 +13,15 @@ void LiveDesk::heed(const Wish& wish, Display& display, LiveOverlays& overlays) 
   }
 }
 
-void LiveDesk::step(sync::HostTime now, Display& display, LiveOverlays& overlays, const DrawList& list,
-                    std::span<const Triangles> geometries, const Say& say) {
+void LiveDesk::step(sync::HostTime now, Display& display, LiveOverlays& overlays, LiveQuestions& questions,
+                    const DrawList& list, std::span<const Triangles> geometries, const Say& say) {
   if (!display.has_screen()) return;
   if (!replies_) replies_ = &bus_.queue<sim_reply_t>(channels::kSimReply, 64);
   const Inputs inputs = display.take_inputs();
   for (const int key : inputs.keys)
-    if (const auto wish = wish_of(key)) heed(*wish, display, overlays);
+    if (!questions.press(key, now))
+      if (const auto wish = wish_of(key)) heed(*wish, display, overlays);
+  for (const Button button : inputs.buttons) questions.press(button, now);
   if (inputs.aim)
     if (const auto hit = hit_at(list, geometries, inputs.aim->first, inputs.aim->second))
       pointer_.aim(hit->cast<double>());

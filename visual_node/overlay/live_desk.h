@@ -8,6 +8,7 @@
 #include "sync/bus.h"
 #include "visual_node/overlay/desk.h"
 #include "visual_node/overlay/live.h"
+#include "visual_node/overlay/live_questions.h"
 
 namespace tactus::visual {
 
@@ -18,8 +19,9 @@ class LiveDesk {
 
   void push(const world_state_t& m) { wishes_.push(m); }
   // Once a tick. list, geometries: of the picture that is shown; say: hears one sentence on each thing worth one.
-  void step(sync::HostTime now, Display& display, LiveOverlays& overlays, const DrawList& list,
-            std::span<const Triangles> geometries, const Say& say);
+  // What a study asks comes first: a key that answers it does nothing else.
+  void step(sync::HostTime now, Display& display, LiveOverlays& overlays, LiveQuestions& questions,
+            const DrawList& list, std::span<const Triangles> geometries, const Say& say);
   bool closing() const { return closing_; }
 
  private:

@@ -41,8 +41,8 @@ class ShippedScene {
     look_files = visual::look_files_of(scenes_, trouble);
   }
 
-  // It and its lamps and looks may be changed; what it names by hash stays.
-  Picture draw(const scene_t& of, const visual::Settings& settings) {
+  // It and its lamps and looks may be changed; what it names by hash stays. overlay: drawn over it.
+  Picture draw(const scene_t& of, const visual::Settings& settings, std::vector<visual::Rect> overlay = {}) {
     static const auto display = [] {
       visual::quiet_software_renderer();
       return visual::make_headless(-1);
@@ -55,7 +55,9 @@ class ShippedScene {
     std::vector<Eigen::Isometry3d> poses;
     for (const body_def_t& body : of.bodies) poses.push_back(to_eigen(body.pose));
     renderer.draw_scene(view.draw(poses, {}));
-    renderer.draw_over({});
+    visual::DrawList over;
+    over.overlay = std::move(overlay);
+    renderer.draw_over(over);
     renderer.wait();
     Picture picture{view.width(), view.height(), {}};
     picture.rgba.resize(static_cast<std::size_t>(4 * picture.width * picture.height));

@@ -7,6 +7,7 @@ import { Picture } from "./picture";
 import { Raster } from "./raster";
 import { Senses } from "./senses";
 import { Sliders } from "./sliders";
+import { StudyPanel } from "./study";
 import { Variables } from "./variables";
 
 let live = true, paused = false, playing = true, now_s = 0, at_ms = 0, profile = "0", seeking = false, restored = false;
@@ -14,6 +15,7 @@ const send = (m: object): void => connection.send(m);
 const variables = new Variables((names) => send({ t: "watch", names }));
 const senses = new Senses(), raster = new Raster();
 const picture = new Picture(send);
+const study = new StudyPanel(send);
 const sliders = new Sliders((senses, clear) => send({ t: "degrade", senses, clear }));
 
 let toastTimer = 0;
@@ -54,6 +56,7 @@ function frame(m: Frame): void {
   if (m.values) variables.take(m.values);
   raster.take(m.events, m.presented);
   if (m.presented) senses.presented(m.presented);
+  if (m.study !== undefined) study.take(m.study);
   if (m.scene) element("title").textContent = m.scene.name;
   if (m.world?.known) {
     paused = m.world.rate === 0;
@@ -77,6 +80,7 @@ const connection = new Connection((m: Said) => {
 }, (jpeg) => picture.show(jpeg), (open) => {
   element("link").textContent = open ? "connected" : "not connected";
   element("link").className = open ? "good" : "bad";
+  if (!open) study.take(null);
 });
 
 element("pause").addEventListener("click", () => send({ t: "command", what: paused ? "resume" : "pause" }));

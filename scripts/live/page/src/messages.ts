@@ -15,10 +15,16 @@ export interface Common { now: number; health?: NodeHealth[]; report?: { senses:
 export interface Slid { delay_ms: number; rate_Hz: number; loss: number }
 // The profile in force; more: that it says of a sense what no slider shows.
 export interface Degradation { name: string; senses: Record<string, Slid & { more: boolean }> }
+// question: its name; kind "nothing": a trial is under way. leader: the node that leads; "": none that tells of itself.
+export interface Study {
+  question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;
+  trial: number; condition: string; progress: string; answered: boolean; leader: string;
+}
 export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: Named[] }
 export interface Frame extends Common {
   t: "frame"; values?: Value[]; events?: Event[]; presented?: Presentation[]; left_out?: number; wound?: boolean;
   world?: { known: boolean; sim_s: number; rate: number }; profile?: string; degradation?: Degradation;
+  study?: Study | null;
   scene?: { name: string; bodies: string[]; tools: string[] };
   pages?: { open: number; dropped: number; refused: number };
   log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number };

@@ -1,0 +1,56 @@
+"""What is degraded, as one axis: how the levels of an operator become a severity that is 0 when nothing is degraded and grows with it."""
+import dataclasses
+import math
+
+REMOVALS = ("off", "freeze", "remove")  # an operator without levels: the sense is not there
+# Less is worse. Their severity is 1/level: the period of a rate, the time constant of a low-pass; of shares of what there was, 1/level - 1.
+FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")
+FROM_ONE = ("resolution", "gain")
+GAIN_ABOVE = "gain_above_1"  # a gain above 1 is another degradation than one below: it grows
+NAME = {"haptic": "touch", "audio": "sound", "visual": "vision", "thermal": "warmth"}
+
+
+def factor(modality, operator, unit="", level=math.nan):
+    """The Factor of a row of a table; what it is called depends on the level of a gain only."""
+    return Factor(modality, GAIN_ABOVE if operator == "gain" and level > 1 else operator, unit)
+
+
+@dataclasses.dataclass(frozen=True, order=True)
+class Factor:
+    """A sense and what is done to it."""
+    modality: str
+    operator: str
+    unit: str = ""
+
+    @property
+    def removal(self):
+        return self.operator in REMOVALS
+
+    @property
+    def falling(self):
+        """Whether less is worse."""
+        return self.operator in FALLING
+
+    def severity(self, level):
+        """0 or more; raises ZeroDivisionError for a level of 0 of what falls, which is a removal."""
+        return 1.0 / level - (self.operator in FROM_ONE) if self.falling else level - (self.operator == GAIN_ABOVE)
+
+    def level(self, severity):
+        """The level that has this severity; the other way round."""
+        if not self.falling:
+            return severity + (self.operator == GAIN_ABOVE)
+        inverse = severity + (self.operator in FROM_ONE)
+        return 1.0 / inverse if inverse else math.inf
+
+    def undegraded(self, level):
+        """Whether the level does nothing."""
+        return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.falling else 0)
+
+    def words(self):
+        return f"{NAME.get(self.modality, self.modality)}: {self.operator.replace('_', ' ')}"
+
+    def axis(self):
+        return f"{self.operator.replace('_', ' ')} of {NAME.get(self.modality, self.modality)}" + (f" ({self.unit})" if self.unit else "")
+
+    def severity_axis(self):
+        return f"1 / {self.axis()}" if self.falling else self.axis()

@@ -1,0 +1,51 @@
+// What the conductor is told to do, a JSON object with one member a line. Pure.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <tactus/question_t.hpp>
+#include <variant>
+
+namespace tactus::conductor {
+
+// {"profile": "<profile .../>"}: is put in force, and said when every sense has it.
+struct ProfileOrder {
+  std::string text;
+};
+// {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest":
+// , "step": , "trial": , "condition": , "progress": }}: is asked until it is answered. "nothing": a trial is under
+// way.
+struct QuestionOrder {
+  question_t question;
+};
+// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: what a simulated participant says to the question that
+// is asked.
+struct AnswerOrder {
+  int choice = -1;
+  double number = 0;
+};
+// {"tap": {"depth_m": 0.012}}: the hand strikes what lies below it. Needs --hand.
+struct TapOrder {
+  double depth_m = 0;
+};
+// {"press": {"depth_m": 0.012, "period_s": 1, "times": 2}}: the hand goes down and up so often, smoothly; what it
+// feels is said.
+struct PressOrder {
+  double depth_m = 0, period_s = 0;
+  int times = 0;
+};
+// {"command": {"kind": "reset" | "pause" | "resume"}}, or "snapshot" and "restore" with a "name".
+struct CommandOrder {
+  std::int8_t kind = 0;
+  std::string name;
+};
+// {"end": true}
+struct EndOrder {};
+
+using Order = std::variant<ProfileOrder, QuestionOrder, AnswerOrder, TapOrder, PressOrder, CommandOrder, EndOrder>;
+
+// Throws std::invalid_argument with one sentence for a line that is none of these.
+Order parse_order(std::string_view line);
+
+}  // namespace tactus::conductor

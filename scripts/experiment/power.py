@@ -1,0 +1,98 @@
+"""What a study can find, by simulation: its own procedures, answered by observers whose thresholds are known, fitted as the analysis does.
+
+Of yes/no answers: how narrow the 95 % interval of each estimate will be. Of ratings and matchings: the smallest difference between two levels
+that a t-test finds. Games are in power_games.py.
+"""
+import dataclasses
+import math
+
+import numpy as np
+
+import fits
+import intervals
+import power_games
+import procedures
+import study_file
+from observers import SimulatedObserver
+from plan import Plan
+
+WANTED, ALPHA = 0.8, 0.05  # power and size of a test that are usual (Cohen 1988, Statistical Power Analysis, sections 2.4 and 1.2)
+FIXED = {"two_interval": {"guess": 0.5}}
+
+
+@dataclasses.dataclass(frozen=True)
+class Assumed:
+    """participants: numbers of them of which power is told. games: power_games.Games, how these go with nothing degraded."""
+    simulations: int = 100
+    seed: int = 1
+    participants: tuple = (1, 12, 24)
+    games: power_games.Games = power_games.Games()
+
+
+def of(study, assumed):
+    """[{...}] as the functions below say; [] where nothing is simulated."""
+    if study.response == "performance":
+        return power_games.of(study, assumed, WANTED, ALPHA)
+    if study.response not in study_file.YES_OR_NO:
+        return differences(study, assumed)
+    return [row for condition in study.conditions if study.observer(condition) is not None for row in estimates(study, condition, assumed)]
+
+
+def estimates(study, condition, assumed):
+    """[{condition, parameter, truth, half_width, bias, sd, no_fit, trials, groups}]. half_width: median over simulated participants of half the 95 %
+    interval of one; sd: of their estimates; no_fit: share whose answers place no threshold; groups: {participants: half width of the interval of
+    the mean of so many, who are all alike}."""
+    observer = study.observer(condition)
+    histories = []
+    for n in range(assumed.simulations):
+        plan = Plan(dataclasses.replace(study, conditions=(condition,)), f"P{n + 1}", assumed.seed)
+        histories.append(procedures.run(plan.procedures[0], SimulatedObserver(observer.function, observer.params, [assumed.seed, n])))
+    fitted = fits.fit_many(*procedures.stacked(histories), observer.function, FIXED.get(study.response))
+    placed, rows = fitted.placed(), []
+    for name in fitted.function.parameters[:2]:
+        low, high = intervals.of_many(fitted, name)
+        off = fitted.estimates(name)[placed] - observer.params[name]
+        sd = float(off.std(ddof=1)) if len(off) > 1 else math.nan
+        rows.append({"condition": condition.id, "parameter": name, "truth": observer.params[name], "half_width": float(np.median((high - low) / 2)),
+                     "bias": float(off.mean()) if len(off) else math.nan, "sd": sd, "no_fit": float(1 - placed.mean()),
+                     "trials": float(np.mean([len(h) for h in histories])), "groups": {n: of_mean(sd, n) for n in assumed.participants if n > 1}})
+    return rows
+
+
+def of_mean(sd, n):
+    """Half the 95 % interval of the mean of n with this standard deviation (Student 1908)."""
+    from scipy.stats import t
+    return float(t.ppf(1 - ALPHA / 2, n - 1) * sd / math.sqrt(n))
+
+
+def differences(study, assumed):
+    """[{participants, answers, smallest_in_sd}]: the smallest difference of the means of two levels, in standard deviations of one answer, that a t-test
+    finds with the power WANTED: of one participant between his answers, of several between their means, in pairs."""
+    from statsmodels.stats.power import TTestIndPower, TTestPower
+    answers, found = study.procedure["repetitions"], []
+    for n in assumed.participants:
+        smallest = None
+        if n > 1:
+            smallest = TTestPower().solve_power(nobs=n, alpha=ALPHA, power=WANTED) * math.sqrt(2 / answers)
+        elif answers > 1:
+            smallest = TTestIndPower().solve_power(nobs1=answers, alpha=ALPHA, power=WANTED)
+        found.append({"participants": n, "answers": answers, "smallest_in_sd": None if smallest is None else float(smallest)})
+    return found
+
+
+def words(study, found, assumed):
+    """Lines for a terminal."""
+    if study.response == "performance":
+        return power_games.words(found, assumed, WANTED)
+    if study.response not in study_file.YES_OR_NO:
+        return ["smallest difference between two levels that a t-test finds with 80 % power, in standard deviations of one answer (that of people's own means is not in it):",
+                *(f"  {f['participants']:4d} participants, {f['answers']} answers a level: " + ("none, one answer has no spread" if f["smallest_in_sd"] is None else f"{f['smallest_in_sd']:.2f}")
+                  for f in found)]
+    lines = []
+    for f in found:
+        lines.append(f"{f['condition']}: {f['parameter']} of {f['truth']:g} will be known to +-{f['half_width']:.3g} (95 %) from one participant, bias {f['bias']:+.2g} "
+                     f"({assumed.simulations} simulated participants, {f['trials']:.0f} trials each" + (f"; no threshold found in {f['no_fit']:.0%}" if f["no_fit"] else "") + ")"
+                     + "".join(f"; the mean of {n} to +-{w:.3g}" for n, w in f["groups"].items()))
+    if lines:
+        lines.append("means are of participants who are all alike; how much people differ comes on top")
+    return lines or ["the study file has no <observer>: what it can find is not simulated"]

@@ -1,0 +1,112 @@
+"""What happens in a trial on the live cluster: the profile is in force everywhere, the stimulus comes, and what was really presented is
+read back."""
+import dataclasses
+import random
+
+import numpy as np
+
+IN_FORCE_WITHIN_S = 5.0      # health comes ten times a second; longer, and a sense is stuck
+FOREPERIOD_S = (0.3, 0.7)    # from when all is ready to the stimulus, drawn: it cannot be awaited to the tenth of a second (design)
+SETTLES_S = 0.2              # after a profile has changed, what was on its way under the one before has come out (design)
+REPORTED_WITHIN_S = 1.5      # a sense reports twice, 20 ms apart, once it has presented
+PART = {"haptic": "transient"}  # what answers a hit when it is due; the push of a surface never waits
+
+
+@dataclasses.dataclass
+class Observed:
+    """missed: why the apparatus did not do what was wanted; "": it did. times_ns: {modality: when}, uncertainties_ns likewise. soa_ms of the pair,
+    uncertainty_ms: what it may be wrong by. stiffnesses_N_m: felt in each interval of a press."""
+    missed: str = ""
+    event: str = ""
+    times_ns: dict = dataclasses.field(default_factory=dict)
+    uncertainties_ns: dict = dataclasses.field(default_factory=dict)
+    soa_ms: float = None
+    uncertainty_ms: float = None
+    stiffnesses_N_m: tuple = ()
+    reached_N: float = None
+    sensed_ms: float = None  # what a simulated participant perceived of it
+    row: dict = dataclasses.field(default_factory=dict)
+
+    def words(self):
+        return ""
+
+
+def wait(lead, seconds):
+    lead.wait_for(lambda: False, seconds)
+
+
+def ready(lead, profile):
+    """"" when the profile is in force everywhere, else why it is not."""
+    if not lead.put_in_force(profile, IN_FORCE_WITHIN_S):
+        return f"the profile was not in force in {', '.join(lead.missing()) or 'any sense'} after {IN_FORCE_WITHIN_S:g} s"
+    wait(lead, SETTLES_S)
+    return ""
+
+
+def first_hit(lead, known):
+    """The first hit that is none of the known events; None: there is none yet."""
+    return next((e for i, e in lead.events.items() if i not in known and e["kind"] == "hit"), None)
+
+
+def tap(lead, study, trial, seed):
+    """One tap under the trial's profile."""
+    senses = trial.condition.senses
+    missed = ready(lead, study.profile(trial.condition, trial.level))
+    if missed:
+        return Observed(missed=missed)
+    wait(lead, random.Random(seed).uniform(*FOREPERIOD_S))
+    known = set(lead.events)
+    if study.stimulus.by == "apparatus":
+        lead.order(tap={"depth_m": study.stimulus.depth_m})
+    longest_s = study.base_delay_ms / 1e3 + abs(trial.level or 0) / 1e3 + REPORTED_WITHIN_S
+    if not lead.wait_for(lambda: first_hit(lead, known) is not None, longest_s if study.stimulus.by == "apparatus" else 3600):
+        return Observed(missed="the tap made no hit")
+    event = first_hit(lead, known)["event"]
+    report = lambda sense: lead.presented.get((event, sense, PART.get(sense, "whole")))
+    lead.wait_for(lambda: all(report(s) for s in senses), longest_s)
+    observed = Observed(event=event)
+    for sense in senses:
+        r = report(sense)
+        if r is None or r["at_ns"] is None:
+            return dataclasses.replace(observed, missed=f"{sense} did not present it" + (f" ({r['outcome'].replace('_', ' ')})" if r else ""))
+        observed.times_ns[sense], observed.uncertainties_ns[sense] = r["at_ns"], r["uncertainty_ns"]
+    a, b = senses
+    observed.soa_ms = (observed.times_ns[b] - observed.times_ns[a]) * 1e-6
+    observed.uncertainty_ms = sum(observed.uncertainties_ns.values()) * 1e-6
+    error = observed.soa_ms - trial.level
+    if abs(error) > study.tolerance_ms:
+        observed.missed = f"the asynchrony was {observed.soa_ms:.1f} ms instead of {trial.level:g} ms, more than {study.tolerance_ms:g} ms off"
+    wait(lead, 0.3)  # the hand is back, and what rings has died away
+    return observed
+
+
+def felt_stiffness(samples):
+    """N/m of one press: the slope of force over depth, by least squares, over samples (at_ns, z_m, force_N) in which anything is felt; None: nothing was."""
+    data = np.array([s for s in samples if s[2] > 0.02], dtype=float).reshape(-1, 3)  # below what a fingertip notices, and the device's own noise (design)
+    if len(data) < 10 or np.ptp(data[:, 1]) < 1e-4:
+        return None
+    depth = data[:, 1].max() - data[:, 1]
+    return float(np.polyfit(depth, data[:, 2], 1)[0])
+
+
+def press(lead, study, trial, seed):
+    """Two presses, one of them under the trial's profile, the other under the base alone."""
+    stiffnesses, strongest = [], 0.0
+    for interval in (0, 1):
+        level = trial.level if interval == trial.degraded_interval else 0
+        missed = ready(lead, study.profile(trial.condition, level))
+        if missed:
+            return Observed(missed=missed)
+        wait(lead, random.Random(seed + interval).uniform(*FOREPERIOD_S))
+        lead.felt.clear()
+        lead.moved = False
+        s = study.stimulus
+        lead.order(press={"depth_m": s.depth_m, "period_s": s.period_s, "times": s.times})
+        if not lead.wait_for(lambda: lead.moved, s.period_s * s.times + 5):
+            return Observed(missed="the hand did not come back from the press")
+        stiffness = felt_stiffness(lead.felt)
+        if stiffness is None:
+            return Observed(missed=f"nothing was felt in interval {interval + 1}")
+        stiffnesses.append(stiffness)
+        strongest = max(strongest, max(f for _, _, f in lead.felt))
+    return Observed(stiffnesses_N_m=tuple(stiffnesses), reached_N=strongest)

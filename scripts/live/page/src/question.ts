@@ -1,0 +1,105 @@
+// What a participant does to a question, whatever he does it with, and the answer that comes of it. Knows no document.
+import { Study } from "./messages";
+
+// One press may mean several things; the question that is asked says which of them counts.
+export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; goesOn?: boolean }
+// As live_server reads it.
+export interface Answer { t: "answer"; question: string; choice: number; number: number; after_ns: number }
+
+// key: KeyboardEvent.key.
+export function pressOfKey(key: string): Press | undefined {
+  if (/^[1-9]$/.test(key)) return { choice: Number(key) - 1 };
+  switch (key) {
+    case "ArrowLeft": return { fine: -1 };
+    case "ArrowRight": return { fine: 1 };
+    case "ArrowDown": return { coarse: -1 };
+    case "ArrowUp": return { coarse: 1 };
+    case "Enter": return { confirms: true, goesOn: true };
+    case " ": return { goesOn: true };
+    default: return undefined;
+  }
+}
+
+// The mark of a number: it begins in the middle; both ends can be answered, though the last step be a shorter one.
+export class Mark {
+  static readonly MOST_STEPS = 10000;  // design: a mark is not moved finer than that
+  readonly steps: number;
+  private readonly step: number;
+  private at: number;
+  constructor(private readonly lowest: number, private readonly highest: number, step: number) {
+    const steps = Math.ceil((highest - lowest) / step - 1e-9);
+    this.steps = steps <= Mark.MOST_STEPS ? steps : Mark.MOST_STEPS;
+    this.step = steps <= Mark.MOST_STEPS ? step : (highest - lowest) / Mark.MOST_STEPS;
+    this.at = Math.floor(this.steps / 2);
+  }
+  get place(): number { return this.at; }
+  set place(at: number) { this.at = Math.max(0, Math.min(this.steps, Math.round(at))); }
+  move(fine: number, coarse: number): void { this.place = this.at + fine + coarse * Math.max(1, Math.round(this.steps / 10)); }
+  get number(): number { return Math.min(this.lowest + this.at * this.step, this.highest); }
+  text(number = this.number): string {
+    let decimals = 0;
+    for (let s = this.step; decimals < 6 && Math.abs(s - Math.round(s)) > 1e-6 * Math.max(1, s); s *= 10) ++decimals;
+    return (number === 0 ? 0 : number).toFixed(decimals);
+  }
+}
+
+// Which question is on, since when it is seen, and whether its answer is on its way. Times: performance.now(), ms.
+export class Desk {
+  static readonly LOST_MS = 1500;  // design: an answer that the server has not taken by then may be given again
+  private asked: Study | undefined;
+  private seen_ms: number | undefined;
+  private sent_ms: number | undefined;
+  mark: Mark | undefined;
+
+  // True when another question is on than before, or none any more.
+  take(study: Study | null): boolean {
+    const asked = study && study.kind !== "nothing" && !study.answered ? study : undefined;
+    const other = asked?.question !== this.asked?.question;
+    this.asked = asked;
+    if (other) {
+      this.seen_ms = this.sent_ms = undefined;
+      this.mark = asked?.kind === "number" ? new Mark(asked.lowest, asked.highest, asked.step) : undefined;
+    }
+    return other;
+  }
+  get on(): Study | undefined { return this.asked; }
+  seen(question: string, at_ms: number): void { if (this.asked?.question === question && this.seen_ms === undefined) this.seen_ms = at_ms; }
+  // Nothing answers before the question was seen, nor while an answer is on its way.
+  waits(at_ms: number): boolean {
+    return this.asked !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + Desk.LOST_MS);
+  }
+  // used: it means something to the question that is on.
+  press(p: Press, at_ms: number): { used: boolean; answer?: Answer } {
+    const m = this.asked;
+    if (!m) return { used: false };
+    if (m.kind === "read") return p.goesOn ? { used: true, answer: this.answer(-1, at_ms) } : { used: false };
+    if (m.kind === "choice") return p.choice !== undefined && p.choice < m.choices.length ? { used: true, answer: this.answer(p.choice, at_ms) } : { used: false };
+    if (p.fine || p.coarse) { this.mark?.move(p.fine ?? 0, p.coarse ?? 0); return { used: true }; }
+    return p.confirms ? { used: true, answer: this.answer(-1, at_ms) } : { used: false };
+  }
+  private answer(choice: number, at_ms: number): Answer | undefined {
+    if (!this.asked || !this.waits(at_ms)) return undefined;
+    this.sent_ms = at_ms;
+    return { t: "answer", question: this.asked.question, choice, number: this.mark?.number ?? 0, after_ns: Math.max(0, Math.round((at_ms - this.seen_ms!) * 1e6)) };
+  }
+}
+
+// Presses of a gamepad of the W3C's standard mapping: A, B, X and Y choose, sticks and pad move the mark.
+export class Pad {
+  private before: boolean[] | undefined;
+  private static readonly presses: Press[] = [
+    { choice: 0, confirms: true, goesOn: true }, { choice: 1 }, { choice: 2 }, { choice: 3 }, { fine: -1 }, { fine: 1 }, { coarse: 1 }, { coarse: -1 }];
+  // What was pressed anew; what is held at the first look counts as pressed before.
+  pressed(buttons: readonly boolean[], axes: readonly number[]): Press[] {
+    const held = [0, 1, 2, 3, 14, 15, 12, 13].map((i) => buttons[i] ?? false);
+    for (const stick of [0, 2]) {
+      const x = axes[stick] ?? 0, y = axes[stick + 1] ?? 0, sideways = Math.abs(x) >= Math.abs(y), far = sideways ? x : y;
+      const way = (sideways ? 4 : 6) + (far < 0 ? 0 : 1);
+      // Design: past the half is meant, and what rests within a third has been let go.
+      held[way] = held[way]! || Math.abs(far) > (this.before?.[way] ? 0.35 : 0.6);
+    }
+    const fresh = this.before ? held.flatMap((h, i) => (h && !this.before![i] ? [Pad.presses[i]!] : [])) : [];
+    this.before = held;
+    return fresh;
+  }
+}

@@ -1,0 +1,103 @@
+// The panel of a study: with ?participant in the address the question and what answers it, else who leads and what is asked.
+import { Study, element, make } from "./messages";
+import { Desk, Pad, Press, pressOfKey } from "./question";
+
+export const participant = new URLSearchParams(location.search).has("participant");
+
+export class StudyPanel {
+  private desk = new Desk();
+  private pads = new Map<number, Pad>();
+  private box = element("study");
+  private shown = "";
+  private slider: HTMLInputElement | undefined;
+  constructor(private send: (m: object) => void) {
+    document.body.classList.toggle("participant", participant);
+    if (!participant) return;
+    document.addEventListener("keydown", (e) => {
+      const press = e.ctrlKey || e.altKey || e.metaKey ? undefined : pressOfKey(e.key);
+      if (!press || (e.repeat && !press.fine && !press.coarse)) return;
+      if (this.press(press, e.timeStamp)) e.preventDefault();
+    });
+    const look = (): void => { this.lookAtPads(); requestAnimationFrame(look); };
+    requestAnimationFrame(look);
+  }
+  take(study: Study | null): void {
+    if (!participant) return this.watch(study);
+    if (this.desk.take(study)) this.ask();
+    this.box.classList.toggle("sent", !this.desk.waits(performance.now()));
+  }
+  private press(p: Press, at_ms: number): boolean {
+    const { used, answer } = this.desk.press(p, at_ms);
+    if (answer) this.send(answer);
+    this.box.classList.toggle("sent", !this.desk.waits(performance.now()));
+    this.showMark();
+    return used;
+  }
+  private lookAtPads(): void {
+    const there = navigator.getGamepads().flatMap((g) => (g ? [g] : []));
+    for (const index of this.pads.keys()) if (!there.some((g) => g.index === index)) this.pads.delete(index);
+    for (const g of there) {
+      if (!this.pads.has(g.index)) this.pads.set(g.index, new Pad());
+      for (const p of this.pads.get(g.index)!.pressed(g.buttons.map((b) => b.pressed), g.axes)) this.press(p, performance.now());
+    }
+  }
+  private ask(): void {
+    const m = this.desk.on;
+    this.box.hidden = !m;
+    this.slider = undefined;
+    this.box.replaceChildren();
+    if (!m) return;
+    this.box.append(make("p", "asked", m.text));
+    const answers = make("div", "answers");
+    if (m.kind === "choice") m.choices.forEach((c, i) => answers.append(this.button(c, String(i + 1), { choice: i })));
+    if (m.kind === "number") this.box.append(this.slide(m));
+    if (m.kind === "number") answers.append(this.button("answer", "Enter", { confirms: true }));
+    if (m.kind === "read") answers.append(this.button("go on", "Enter", { goesOn: true }));
+    this.box.append(answers, make("p", "quiet", m.progress));
+    this.showMark();
+    // Once it is painted: a message that is sent just before a frame is drawn comes just after it.
+    requestAnimationFrame(() => {
+      const channel = new MessageChannel();
+      channel.port1.onmessage = () => { this.desk.seen(m.question, performance.now()); this.box.classList.toggle("sent", !this.desk.waits(performance.now())); };
+      channel.port2.postMessage(0);
+    });
+  }
+  private button(text: string, key: string, press: Press): HTMLElement {
+    const button = make("button", "answer");
+    button.append(make("kbd", "", key), make("span", "", text));
+    button.addEventListener("click", (e) => this.press(press, e.timeStamp));
+    return button;
+  }
+  private slide(m: Study): HTMLElement {
+    const box = make("div", "slide"), input = document.createElement("input"), ends = make("div", "ends"), mark = this.desk.mark!;
+    Object.assign(input, { type: "range", id: "mark", min: "0", max: String(mark.steps), step: "1" });
+    input.addEventListener("input", () => { mark.place = Number(input.value); this.showMark(); });
+    const words = m.choices.length === 2 ? m.choices : [mark.text(m.lowest), mark.text(m.highest)];
+    ends.append(...words.map((w) => make("span", "", w)));
+    box.append(make("output", "marked"), input, ends);
+    this.slider = input;
+    return box;
+  }
+  private showMark(): void {
+    const mark = this.desk.mark, output = this.box.querySelector("output");
+    if (!mark || !this.slider || !output) return;
+    this.slider.value = String(mark.place);
+    output.textContent = mark.text();
+  }
+  // For who leads: nothing of it can be answered.
+  private watch(study: Study | null): void {
+    const text = JSON.stringify(study);
+    if (text === this.shown) return;
+    this.shown = text;
+    this.box.hidden = study === null;
+    if (!study) return;
+    const facts = [study.progress, study.trial ? `trial ${study.trial}` : "", study.condition].filter((s) => s !== "").join(" · ");
+    const head = make("h2", "", "Study");
+    head.append(make("span", "", `led by ${study.leader || "a program that has no name here"}`));
+    const asked = study.kind === "nothing" ? "nothing is asked: a trial is under way" : study.text;
+    const state = study.kind === "nothing" ? "" : study.answered ? "answered in a page" : "waits for the participant";
+    const offered = study.kind === "number" ? `${study.lowest} to ${study.highest}${study.choices.length ? `: ${study.choices.join(" to ")}` : ""}`
+      : study.choices.map((c, i) => `${i + 1} ${c}`).join("   ");
+    this.box.replaceChildren(head, make("p", "facts", facts), make("p", "asked", asked), make("p", "offered quiet", offered), make("p", "quiet", state));
+  }
+}

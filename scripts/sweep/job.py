@@ -1,0 +1,80 @@
+"""Plays chunks of games of a sweep: what each job of GNU parallel and each task of a Slurm array runs.
+
+    job.py FOLDER CHUNK...                     those
+    job.py FOLDER --of-array LIST.txt          every SLURM_ARRAY_TASK_COUNT-th line of the list, from SLURM_ARRAY_TASK_ID on
+
+What was played before is not played again. One process of bin/play_games plays all games of a chunk.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [p for p in (str(HERE), str(HERE.parent / "supervise"), str(HERE.parent / "experiment")) if p not in sys.path]
+import virtual_games
+from chunk_file import Busy, ChunkFile
+from refusal import Refusal
+from sweep_folder import SweepFolder
+
+PROGRAM = pathlib.Path(os.environ.get("TACTUS_BIN") or HERE.parents[1] / "build" / "dev" / "bin").absolute() / "play_games"
+
+
+def play(folder, number):
+    """The games of a chunk that are not there yet. Raises Refusal, OSError."""
+    try:
+        file = ChunkFile(folder.file(number))
+    except Busy:
+        return
+    left = [g for g in folder.chunks[number] if g.number not in file.done]
+    study = folder.study
+    with tempfile.TemporaryDirectory(prefix="games-") as scratch:
+        player = subprocess.Popen([str(PROGRAM), str(study.scene), "--out", scratch], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True)
+        try:
+            for game in left:
+                level = game.condition.fixed
+                player.stdin.write(json.dumps({"game": str(game.number), "seed": game.seed(study), "limit_s": study.stimulus.limit_s,
+                                               "profile": study.profile(game.condition, level)}) + "\n")
+                player.stdin.flush()
+                told = player.stdout.readline()
+                if not told:
+                    raise BrokenPipeError
+                file.append(virtual_games.row(study, game, json.loads(told)))
+        except BrokenPipeError:
+            player.kill()
+            said = (player.communicate()[1].strip().splitlines() or ["it says nothing"])[-1]
+            raise Refusal(f"play_games has left before game {game.number}: {said}") from None
+        finally:
+            if player.poll() is None:
+                player.stdin.close()
+                player.wait()
+            file.close()
+
+
+def chunks_of(words):
+    if words[:1] != ["--of-array"]:
+        return [int(w) for w in words]
+    listed = pathlib.Path(words[1]).read_text(encoding="utf-8").split()
+    first, step = int(os.environ["SLURM_ARRAY_TASK_ID"]), int(os.environ["SLURM_ARRAY_TASK_COUNT"])
+    return [int(w) for w in listed[first::step]]
+
+
+def main(words):
+    if not words or words[0] in ("-h", "--help"):
+        print(__doc__)
+        return 0
+    try:
+        folder = SweepFolder(words[0])
+        for number in chunks_of(words[1:]):
+            play(folder, number)
+        return 0
+    except (Refusal, OSError, ValueError) as error:
+        print(f"sweep job: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

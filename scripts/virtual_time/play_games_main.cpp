@@ -1,0 +1,202 @@
+// play_games: games of the artificial player in virtual time, one after the other, each on its own seed and under
+// its own profile.
+//
+// It reads a line for each game from stdin and writes a line for each to stdout, JSON both; a game that fails says
+// why in its line. The scene is read once. Each game is a process of its own, begun as a copy of this one: what
+// one leaves behind, or dies of, no other meets, and one seed gives the same game whatever was played before.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "audio_node/run.h"
+#include "haptic_node/run.h"
+#include "scripts/participant/rules.h"
+#include "scripts/participant/run.h"
+#include "scripts/virtual_time/referee.h"
+#include "sim_node/run.h"
+#include "sim_node/scene/load_sdf.h"
+#include "sync/node.h"
+#include "sync/sync_node.h"
+#include "sync/virtual_time/virtual_time.h"
+#include "visual_node/run.h"
+
+using namespace tactus;
+using nlohmann::json;
+
+namespace {
+
+constexpr sync::Nanoseconds kTurn{50'000'000};
+constexpr sync::Nanoseconds kWorldBegins{60'000'000'000};  // at the latest: a scene's grace is some seconds
+
+struct Loaded {
+  std::string scene, out;
+  std::vector<std::string> scatter;
+  sim::WorldDef world;
+  participant::Rules rules;
+};
+
+struct GameDef {
+  std::uint64_t seed = 1;
+  double limit_s = 30;
+  std::string profile;  // XML; empty: none
+};
+
+// The words of a program, as main() gets them.
+int run_with(std::vector<std::string> words, const std::function<int(int, char**)>& program) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return program(static_cast<int>(words.size()), argv.data());
+}
+
+// Throws std::runtime_error with one sentence.
+GameVerdict play(const Loaded& loaded, const GameDef& game) {
+  std::vector<std::string> common{"--seed", std::to_string(game.seed), "--run-id", "1", "--out", loaded.out};
+  std::vector<std::string> degraded = common;
+  if (!game.profile.empty()) {
+    const std::string file = loaded.out + "/profile.xml";
+    if (!(std::ofstream(file) << game.profile).flush())
+      throw std::runtime_error("cannot write " + file + "; choose another --out");
+    degraded.insert(degraded.end(), {"--degrade", file});
+  }
+  const auto words = [](std::vector<std::string> own, const std::vector<std::string>& more) {
+    own.insert(own.end(), more.begin(), more.end());
+    return own;
+  };
+  sync::VirtualPlan plan;
+  plan.seed = game.seed;
+  sync::VirtualTime time(plan);
+  Referee referee;
+  time.wire().tell([&](sync::HostTime, std::string_view channel, std::span<const std::uint8_t> data) {
+    referee.hear(channel, data);
+  });
+  const auto add = [&](const std::string& name, std::vector<std::string> line,
+                       std::function<int(int, char**)> program) {
+    time.add(name, [line = std::move(line), program = std::move(program)] { return run_with(line, program); });
+  };
+  add("sync_node", words({"sync_node"}, degraded), sync::run_sync_node);
+  add("haptic_node", words({"haptic_node", "--device", "external:participant"}, degraded), haptic::run);
+  add("audio_node", words({"audio_node", "--no-sound"}, degraded), audio::run);
+  add("visual_node", words({"visual_node", "--no-pictures"}, degraded), visual::run);
+  add("participant",
+      words(words({"participant", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
+      [&](int argc, char** argv) { return participant::run(argc, argv, &loaded.rules); });
+  add("sim_node", words({"sim_node", loaded.scene}, common),
+      [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
+  const sync::HostTime latest = time.now() + kWorldBegins;
+  while (!referee.begun() && time.now() < latest) time.run_for(kTurn);
+  if (!referee.begun()) throw std::runtime_error("the world does not begin");
+  const sync::HostTime until = time.now() + sync::from_seconds(game.limit_s);
+  while (time.now() < until && !referee.decided()) time.run_for(kTurn);
+  for (const char* name : {"sync_node", "haptic_node", "audio_node", "visual_node", "participant", "sim_node"})
+    if (time.result(name) > 0) throw std::runtime_error(std::string(name) + " left");
+  return referee.verdict();
+}
+
+json told(const Loaded& loaded, const GameDef& game) try {
+  const GameVerdict v = play(loaded, game);
+  const bool won = v.won && v.time_s <= game.limit_s;
+  return {{"won", won},       {"time_s", won ? v.time_s : game.limit_s}, {"filled", v.filled},
+          {"wrong", v.wrong}, {"peak_force_N", v.peak_force_N},          {"path_m", v.path_m}};
+} catch (const std::exception& e) {
+  return {{"trouble", e.what()}};
+}
+
+// What a game says on stderr is kept for the sentence that tells why it failed.
+std::string last_line(int fd) {
+  std::string text(4096, '\0');
+  const off_t size = lseek(fd, 0, SEEK_END);
+  const off_t from = std::max<off_t>(0, size - static_cast<off_t>(text.size()));
+  const ssize_t got = pread(fd, text.data(), text.size(), from);
+  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
+json in_a_process(const Loaded& loaded, const GameDef& game) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(std::string("no pipe to a game: ") + std::strerror(errno));
+  const int said = memfd_create("game", MFD_CLOEXEC);
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw std::runtime_error(std::string("no process for a game: ") + std::strerror(errno));
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);
+    if (said >= 0) dup2(said, STDERR_FILENO);
+    const std::string line = told(loaded, game).dump();
+    for (std::size_t done = 0; done < line.size();) {
+      const ssize_t n = write(ends[1], line.data() + done, line.size() - done);
+      if (n <= 0) _exit(1);
+      done += static_cast<std::size_t>(n);
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  std::string line;
+  char part[4096];
+  for (ssize_t n = 0; (n = read(ends[0], part, sizeof part)) > 0;) line.append(part, static_cast<std::size_t>(n));
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  json result = json::parse(line, nullptr, false);
+  if (!result.is_object())
+    result = {{"trouble", "the game's process ended with status " + std::to_string(status)}};
+  if (result.contains("trouble") && said >= 0) result["said"] = last_line(said);
+  close(said);
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app(
+      "Plays games of the artificial player in virtual time: a JSON line on stdin for each, "
+      "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, and one on stdout.");
+  Loaded loaded;
+  std::string
+      along = "0.08",
+      aside = "0.08";  // design: the balls of the dark room stay apart from each other and from what stands there
+  app.add_option("SCENE", loaded.scene, "SDF file of a world with a game")->required()->check(CLI::ExistingFile);
+  app.add_option("--out", loaded.out, "empty folder for what the nodes write")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--scatter-along", along, "balls begin so far nearer to their holes or further, m")
+      ->capture_default_str();
+  app.add_option("--scatter-aside", aside, "and so far to the side, m")->capture_default_str();
+  sync::parse_or_exit(app, "play_games", argc, argv);
+  loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
+  std::vector<std::string> warnings;
+  loaded.world = sim::load_sdf(loaded.scene, warnings);
+  loaded.rules = participant::read_rules(loaded.scene);
+  for (std::string line; std::getline(std::cin, line);) {
+    const json asked = json::parse(line, nullptr, false);
+    if (!asked.is_object() || !asked.contains("game") || !asked["game"].is_string())
+      throw std::runtime_error("this line names no game: " + line.substr(0, 200));
+    json result;
+    try {
+      result = in_a_process(loaded, {asked.value("seed", std::uint64_t{1}), asked.value("limit_s", 30.0),
+                                     asked.value("profile", "")});
+    } catch (const json::exception& e) {
+      throw std::runtime_error(
+          "a game is {\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, which this line is not: " +
+          line.substr(0, 200));
+    }
+    result["game"] = asked["game"];
+    std::cout << result.dump() << std::endl;
+    if (!std::cout) return 1;
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("play_games", e);
+}

@@ -1,0 +1,111 @@
+// A study's questions in the live page: asked on the bus by the test, answered by scripts/live/page/test in a real browser, and
+// the answers heard on the bus.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <tactus/answer_t.hpp>
+#include <tactus/question_t.hpp>
+#include <thread>
+
+#include "lcmtypes/channels.h"
+#include "sync/bus.h"
+#include "tests/cluster/processes.h"
+
+using namespace tactus;
+using namespace tactus::cluster;
+
+namespace {
+
+constexpr double kPatience_s = 60;  // liveness, not speed
+constexpr std::int64_t kRunId = 4712;
+constexpr const char* kToken = "0123456789abcdef0123";
+constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double holds it: JavaScript must not either
+
+question_t question(std::int64_t id, int kind, const std::string& text, std::vector<std::string> choices = {}) {
+  question_t m{};
+  m.header.sim_time_ns = -1;
+  m.id = id;
+  m.kind = static_cast<std::int8_t>(kind);
+  m.text = text;
+  m.count = static_cast<std::int32_t>(choices.size());
+  m.choices = std::move(choices);
+  m.progress = "block 1 of 4";
+  m.trial = static_cast<std::int32_t>(id - kFirst + 1);
+  m.condition = "audio +80 ms";
+  return m;
+}
+
+// In this order, each until it is answered and for a second more; study.test.mjs knows them by their text.
+std::vector<question_t> study() {
+  std::vector<question_t> all{
+      question(kFirst, question_t::READ, "You will see a ball fall and hear it."),
+      question(kFirst + 1, question_t::CHOICE, "Was it at the same time?", {"at the same time", "not at the same time"}),
+      question(kFirst + 2, question_t::CHOICE, "Which was first?", {"sound", "flash", "neither"}),
+      question(kFirst + 3, question_t::NUMBER, "How hard was it?", {"very soft", "very hard"}),
+      question(kFirst + 4, question_t::NUMBER, "How warm was it?")};
+  all[3].lowest = 0, all[3].highest = 100, all[3].step = 1;
+  all[4].lowest = -1, all[4].highest = 1, all[4].step = 0.05;
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("What a study asks is answered in the live page by click, key and slider, and onlookers and what is malformed answer nothing") {
+  INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
+  const std::filesystem::path page = repository() / "scripts/live/page";
+  REQUIRE(std::filesystem::exists("/usr/bin/chromium"));
+  REQUIRE(std::filesystem::exists(page / "node_modules/puppeteer-core/package.json"));
+  REQUIRE(std::filesystem::exists(page / "dist/main.js"));
+  Folder folder;
+  Processes processes(folder.path(), kRunId);
+  constexpr const char* kPort = "8093";
+  processes.spawn("live_server", {programs() / "live_server", "--run-id", std::to_string(kRunId), "--page", page / "dist", "--token",
+                                  kToken, "--http-port", kPort});
+  std::vector<std::string> command{"node", page / "test/study.test.mjs",
+                                   std::string("http://127.0.0.1:") + kPort + "/?token=" + kToken};
+  if (const char* keep = std::getenv("TACTUS_SCREENSHOTS")) command.emplace_back(keep);
+  processes.spawn("browser", command);
+
+  sync::Bus bus(sync::Identity::fresh("conductor", kRunId), {});
+  auto& heard = bus.queue<answer_t>(channels::kAnswer, 1024);
+  std::map<std::int64_t, std::vector<answer_t>> answers;
+  std::vector<question_t> left = study();
+  sync::HostTime over{};  // of the question that has been answered
+  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kPatience_s);
+  for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
+    const sync::HostTime now = sync::host_now();
+    bus.drain(now);
+    while (const auto m = heard.pop()) answers[m->message.id].push_back(m->message);
+    if (!left.empty() && answers.contains(left.front().id)) {
+      if (over == sync::HostTime{}) over = now + sync::from_seconds(1);
+      if (now >= over) left.erase(left.begin()), over = {};
+    }
+    if (now < next) continue;
+    next = now + std::chrono::milliseconds(200);
+    question_t m = left.empty() ? question(kFirst + 5, question_t::NOTHING, "") : left.front();
+    bus.publish(channels::kQuestion, m);
+  }
+  const int status = processes.wait_for_exit("browser", kPatience_s);
+  INFO(processes.said("browser"));
+  INFO(processes.said("live_server"));
+  CHECK(status == 0);
+  CHECK(left.empty());
+  const std::vector<question_t> asked = study();
+  CHECK(answers.size() == asked.size());  // to nothing else
+  for (const question_t& m : asked) {
+    CAPTURE(m.text);
+    REQUIRE(answers.contains(m.id));
+    CHECK(answers[m.id].size() >= 3);  // again for each repetition
+    for (const answer_t& a : answers[m.id]) {
+      CHECK((a.choice == answers[m.id][0].choice && a.number == answers[m.id][0].number));
+      CHECK(a.by == "page");
+      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+    }
+  }
+  CHECK(answers[kFirst][0].choice == -1);
+  CHECK(answers[kFirst + 1][0].choice == 1);
+  CHECK(answers[kFirst + 2][0].choice == 2);
+  CHECK(answers[kFirst + 3][0].number == 64);
+  CHECK(answers[kFirst + 4][0].number == Approx(0.15));
+}

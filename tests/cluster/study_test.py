@@ -1,0 +1,85 @@
+"""A study on a live cluster: what was asked for is what was presented, and a session that was killed goes on where it was."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+sys.path[:0] = [str(SCRIPTS / d) for d in ("experiment", "supervise", "psychophysics")]
+import journal
+from refusal import Refusal
+
+SOON_S = 90  # a cluster starts within seconds; beside other work it takes longer
+
+
+class AStudyOnALiveCluster(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = pathlib.Path(folder.name)
+        self.said = self.out / "said.log"
+
+    def start(self, study, *words):
+        said = open(self.said, "ab")
+        self.addCleanup(said.close)
+        return subprocess.Popen([str(SCRIPTS / "study"), "run", study, "--participant", "P01", "--simulated", "--out", str(self.out), *words], stdout=said, stderr=said)
+
+    def trials(self, study):
+        try:
+            return [e for e in journal.read(self.out / study / "P01") if e["kind"] == "trial"]
+        except Refusal:
+            return []
+
+    def wait_for_trials(self, study, count, process):
+        end = time.monotonic() + SOON_S
+        while len([t for t in self.trials(study) if not t["missed"]]) < count:
+            self.assertIsNone(process.poll(), self.said.read_text(errors="replace")[-2000:])
+            self.assertLess(time.monotonic(), end, self.said.read_text(errors="replace")[-2000:])
+            time.sleep(0.1)
+
+    def test_what_was_asked_for_is_presented_and_a_killed_session_goes_on(self):
+        study = "audio_haptic_synchrony"
+        first = self.start(study)
+        try:
+            self.wait_for_trials(study, 2, first)
+        finally:
+            first.send_signal(signal.SIGKILL)
+            first.wait()
+        second = self.start(study, "--most", "3")
+        self.assertEqual(second.wait(SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        counted = [t for t in self.trials(study) if not t["missed"]]
+        self.assertEqual([t["trial"] for t in counted], list(range(1, len(counted) + 1)))
+        self.assertGreaterEqual(len(counted), 5)
+        for t in counted:
+            self.assertLessEqual(abs(t["row"]["soa_achieved_ms"] - t["level"]), 5)  # the study's tolerance: else it would be missed
+            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)   # samples of the WAV against what was reported
+            self.assertEqual((t["by"], t["row"]["observer"]), ("simulated", "simulated"))
+        self.assertTrue((self.out / study / "P01" / "trials.csv").exists())
+
+    def test_of_two_presses_each_is_felt(self):
+        study = "haptic_delay_stiffness"
+        process = self.start(study, "--most", "6")
+        self.assertEqual(process.wait(SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        pressed = [t for t in self.trials(study) if not t["missed"]]
+        self.assertEqual(len(pressed), 6)
+        for t in pressed:
+            self.assertTrue(all(k > 0 for k in t["stiffnesses_N_m"]), t)
+
+    def test_a_game_is_a_trial(self):
+        study = "senses_removed"
+        process = self.start(study, "--most", "2")
+        self.assertEqual(process.wait(2 * SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        games = [t["row"] for t in self.trials(study) if not t["missed"]]
+        self.assertEqual(len(games), 2)
+        for row in games:
+            self.assertIn(row["success"], (0, 1))
+            self.assertLessEqual(row["completion_time_s"], 30)
+
+
+if __name__ == "__main__":
+    unittest.main()

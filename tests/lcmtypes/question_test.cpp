@@ -1,0 +1,53 @@
+#include <catch2/catch.hpp>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/valid.h"
+
+using namespace tactus;
+
+namespace {
+
+question_t choice() {
+  question_t q{};
+  q.header.run_id = q.header.incarnation = 1;
+  q.header.sim_time_ns = -1;
+  q.id = 7, q.kind = question_t::CHOICE, q.text = "Together?", q.choices = {"yes", "no"}, q.count = 2;
+  return q;
+}
+
+question_t number() {
+  question_t q = choice();
+  q.kind = question_t::NUMBER, q.choices.clear(), q.count = 0, q.lowest = -1, q.highest = 1, q.step = 0.1;
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("The largest question fits in one datagram") {
+  question_t q = choice();
+  q.text.assign(600, 'a');
+  q.choices.assign(9, std::string(40, 'b')), q.count = 9;
+  q.condition.assign(64, 'c'), q.progress.assign(64, 'd');
+  REQUIRE(valid(q));
+  CHECK(q.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
+}
+
+TEST_CASE("A question that cannot be answered as it stands is refused") {
+  CHECK(valid(choice()));
+  CHECK(valid(number()));
+  const auto refused = [](question_t q, auto change) {
+    change(q);
+    return !valid(q);
+  };
+  CHECK(refused(choice(), [](question_t& q) { q.id = 0; }));
+  CHECK(refused(choice(), [](question_t& q) { q.choices.pop_back(), q.count = 1; }));
+  CHECK(refused(choice(), [](question_t& q) { q.choices[1] = ""; }));
+  CHECK(refused(choice(), [](question_t& q) { q.choices[1] = "n\no"; }));
+  CHECK(refused(choice(), [](question_t& q) { q.text.assign(601, 'a'); }));
+  CHECK(refused(choice(), [](question_t& q) { q.step = 1; }));
+  CHECK(refused(choice(), [](question_t& q) { q.kind = question_t::NOTHING; }));
+  CHECK(refused(choice(), [](question_t& q) { q.kind = 4; }));
+  CHECK(refused(number(), [](question_t& q) { q.highest = q.lowest; }));
+  CHECK(refused(number(), [](question_t& q) { q.step = 0; }));
+  CHECK(refused(number(), [](question_t& q) { q.step = 2.1; }));
+}

@@ -1,0 +1,111 @@
+#include "scripts/live/answers.h"
+
+#include <catch2/catch.hpp>
+
+#include "lcmtypes/valid.h"
+#include "tests/sync/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::live;
+
+namespace {
+
+constexpr std::int64_t kBig = 4'611'686'018'427'387'901;  // no double holds it
+
+sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
+
+question_t question(int kind, std::int64_t seq = 0, std::int64_t id = kBig, std::int64_t run = 7) {
+  question_t m{};
+  m.header = sync::header_of("conductor", 5, seq, 1, run);
+  m.id = id;
+  m.kind = static_cast<std::int8_t>(kind);
+  if (kind != question_t::NOTHING) m.text = "Which was first?";
+  if (kind == question_t::CHOICE) m.count = 2, m.choices = {"sound", "flash"};
+  if (kind == question_t::NUMBER) m.lowest = -1, m.highest = 1, m.step = 0.1;
+  m.trial = 3, m.condition = "audio +80 ms", m.progress = "block 1 of 4";
+  REQUIRE(valid(m));
+  return m;
+}
+
+std::string why_not(Answers& answers, const AnswerThus& answer, sync::HostTime now) {
+  try {
+    answers.answer(answer, now);
+  } catch (const std::invalid_argument& e) {
+    CHECK(std::string(e.what()).find(';') != std::string::npos);  // what is wrong; what to do
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A page is told what is asked, and its answer carries the id of the question and how it was given") {
+  Answers a(7);
+  CHECK(a.told(at(0)).is_null());
+  a.push(question(question_t::CHOICE), at(0));
+  const auto told = a.told(at(0.1));
+  CHECK((told["kind"] == "choice" && told["text"] == "Which was first?" && told["choices"][1] == "flash"));
+  CHECK((told["trial"] == 3 && told["condition"] == "audio +80 ms" && told["progress"] == "block 1 of 4"));
+  CHECK(told["answered"] == false);
+  a.answer({told["question"], 1, 0, 350'000'000}, at(0.4));
+  const auto sent = a.take_answer();
+  REQUIRE(sent);
+  CHECK(valid(*sent));
+  CHECK((sent->id == kBig && sent->choice == 1 && sent->number == 0 && sent->after_ns == 350'000'000 && sent->by == "page"));
+  CHECK(a.told(at(0.5))["answered"] == true);
+  CHECK_FALSE(a.take_answer());
+}
+
+TEST_CASE("An answer of a page is sent again for each repetition of its question, and not with the next question") {
+  Answers a(7);
+  a.push(question(question_t::CHOICE, 0), at(0));
+  a.answer({a.told(at(0))["question"], 0, 0, 0}, at(0));
+  CHECK(a.take_answer());
+  a.push(question(question_t::CHOICE, 1), at(0.2));
+  CHECK(a.take_answer());
+  a.push(question(question_t::CHOICE, 2), at(0.4));
+  a.push(question(question_t::READ, 3, 12), at(0.6));  // before it was taken
+  CHECK_FALSE(a.take_answer());
+  CHECK(a.told(at(0.6))["answered"] == false);
+}
+
+TEST_CASE("An answer that fits no question is refused with what is wrong, and none is sent") {
+  Answers a(7);
+  CHECK_THAT(why_not(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("not asked any more"));
+  a.push(question(question_t::CHOICE, 0), at(0));
+  const std::string name = a.told(at(0))["question"];
+  CHECK_THAT(why_not(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("not asked any more"));
+  CHECK_THAT(why_not(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(why_not(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(why_not(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("ends of its slider"));
+  CHECK_THAT(why_not(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("not asked any more"));
+  CHECK_FALSE(a.take_answer());
+  CHECK(why_not(a, {name, 0, 0, 0}, at(1)).empty());
+  CHECK_THAT(why_not(a, {name, 1, 0, 0}, at(1)), Catch::Contains("has been answered"));
+  CHECK(a.take_answer()->choice == 0);
+
+  a.push(question(question_t::NUMBER, 1, 12), at(2));
+  const std::string number = a.told(at(2))["question"];
+  CHECK_FALSE(why_not(a, {number, -1, 1.01, 0}, at(2)).empty());
+  CHECK_FALSE(why_not(a, {number, 0, 0.5, 0}, at(2)).empty());
+  CHECK(why_not(a, {number, -1, -1, 0}, at(2)).empty());
+  CHECK(a.take_answer()->number == -1);
+
+  a.push(question(question_t::NOTHING, 2, 13), at(3));
+  CHECK_FALSE(why_not(a, {a.told(at(3))["question"], -1, 0, 0}, at(3)).empty());
+}
+
+TEST_CASE("A page sees who leads, and that nobody leads any more. Another run is not heeded, but in a log") {
+  Answers a(7), log(0);
+  a.push(question(question_t::READ, 0, 3, 8), at(0));
+  log.push(question(question_t::READ, 0, 3, 8), at(0));
+  CHECK(a.told(at(0)).is_null());
+  CHECK_FALSE(a.leader(at(0)));
+  CHECK(log.told(at(0))["kind"] == "read");
+  a.push(question(question_t::NOTHING), at(0));
+  CHECK(a.told(at(0))["kind"] == "nothing");
+  CHECK(a.leader(at(0)) == static_cast<std::int32_t>(sync::fnv1a_32("conductor")));
+  CHECK(a.told(at(2.1)).is_null());
+  log.clear();
+  CHECK(log.told(at(0)).is_null());
+}

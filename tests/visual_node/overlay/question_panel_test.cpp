@@ -1,0 +1,142 @@
+#include "visual_node/overlay/question_panel.h"
+
+#include <catch2/catch.hpp>
+
+#include "lcmtypes/valid.h"
+#include "tests/visual_node/overlay/question_messages.h"
+#include "visual_node/frame/text.h"
+
+using namespace tactus;
+using namespace tactus::test;
+using namespace tactus::visual;
+
+namespace {
+
+struct Picture {
+  float width, height;
+};
+constexpr Picture kPictures[] = {{320, 240}, {640, 480}, {960, 540}, {1280, 720}, {1920, 1080}, {4096, 240}};
+constexpr float kMarkers_px = 48;
+
+std::vector<Rect> drawn(const question_t& m, double number, const Picture& p) {
+  std::vector<Rect> overlay;
+  append_question(overlay, m, number, {0, 0, p.width, p.height - kMarkers_px});
+  return overlay;
+}
+// Height of the smallest part of a letter.
+float finest(const std::vector<Rect>& overlay) {
+  float least = 1000;
+  for (const Rect& r : overlay) least = std::min(least, r.height);
+  return least;
+}
+std::size_t area(const std::vector<Rect>& overlay, float red, float green, float blue) {
+  double sum = 0;
+  for (const Rect& r : overlay)
+    if (r.red == red && r.green == green && r.blue == blue) sum += r.width * r.height;
+  return static_cast<std::size_t>(sum);
+}
+std::size_t pixels(std::string_view text, float size) {
+  std::vector<Rect> letters;
+  append_letters(letters, text, 0, 0, size);
+  return area(letters, 1, 1, 1);
+}
+
+// As long as the message may be.
+question_t longest() {
+  question_t m = choice(1, std::vector<std::string>(9, std::string(40, 'W')));
+  m.text.clear();
+  while (m.text.size() + 8 <= 600) m.text += "wherever ";
+  m.text.resize(600, 'x');
+  m.progress = std::string(64, 'p');
+  m.header.run_id = 1;
+  REQUIRE(valid(m));
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Words go on in the next line at a blank, and one that is too long where the line ends") {
+  using Lines = std::vector<std::string>;
+  CHECK(words_in_lines("", 10).empty());
+  CHECK(words_in_lines("ten letter", 10) == Lines{"ten letter"});
+  CHECK(words_in_lines("ten letters", 10) == Lines{"ten", "letters"});
+  CHECK(words_in_lines("ten  letters go", 11) == Lines{"ten ", "letters go"});
+  CHECK(words_in_lines("unbelievable", 5) == Lines{"unbel", "ievab", "le"});
+  CHECK(words_in_lines("ab cd", 2) == Lines{"ab", "cd"});
+  for (const std::string& line : words_in_lines(longest().text, 17)) CHECK(line.size() <= 17);
+}
+
+TEST_CASE("A number has as many decimals as its step") {
+  CHECK(number_text(3, 1) == "3");
+  CHECK(number_text(0.25, 0.25) == "0.25");
+  CHECK(number_text(-1.5, 0.1) == "-1.5");
+  CHECK(number_text(20, 10) == "20");
+  CHECK(number_text(-0.0, 0.5) == "0.0");
+  CHECK(number_text(1.0 / 3, 1.0 / 3) == "0.333333");
+}
+
+TEST_CASE(
+    "A question of usual length is in the lower two thirds, in large letters, and every letter of it is there") {
+  question_t yes_no = choice(1, {"yes", "no"}), stiff = number(2, 0, 100, 1), read = question(3, question_t::READ);
+  stiff.count = 2, stiff.choices = {"very soft", "very hard"};
+  for (question_t* m : {&yes_no, &stiff, &read}) {
+    m->progress = "block 1 of 4";
+    for (const Picture& p : kPictures) {
+      CAPTURE(static_cast<int>(m->kind), p.width, p.height);
+      const auto rects = drawn(*m, 50, p);
+      REQUIRE(rects.size() > 100);
+      const Rect& plate = rects.front();
+      CHECK(plate.alpha < 1);
+      CHECK(plate.y >= (p.height - kMarkers_px) / 3 - 1);
+      // No pixel leaves the plate, or lies where programs read.
+      for (const Rect& r : rects) {
+        CHECK(r.x >= plate.x);
+        CHECK(r.y >= plate.y);
+        CHECK(r.x + r.width <= plate.x + plate.width + 0.01f);
+        CHECK(r.y + r.height <= plate.y + plate.height + 0.01f);
+        CHECK(r.y + r.height <= p.height - kMarkers_px);
+      }
+      const float size = std::max(1.0f, std::round((p.height - kMarkers_px) / 180));
+      std::size_t wanted = pixels(m->text, size);
+      if (m->kind == question_t::CHOICE) wanted += pixels("yes", size) + pixels("no", size);
+      if (m->kind == question_t::NUMBER) wanted += pixels("very soft", size) + pixels("very hard", size);
+      CHECK(area(rects, 1, 1, 1) == wanted);
+    }
+  }
+}
+
+TEST_CASE("The longest question that there can be is there whole, within the picture") {
+  const question_t m = longest();
+  for (const Picture& p : kPictures) {
+    CAPTURE(p.width, p.height);
+    const auto rects = drawn(m, 0, p);
+    for (const Rect& r : rects) {
+      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= p.width));
+      CHECK(r.y + r.height <= p.height - kMarkers_px + 0.01f);
+    }
+    std::size_t wanted = 0;
+    const float size = finest(rects);
+    for (const std::string& c : m.choices) wanted += pixels(c, size);
+    CHECK(area(rects, 1, 1, 1) >= wanted);  // whatever is left out, no choice is
+    if (p.height >= 480) {
+      for (const char c : m.text) wanted += pixels(std::string(1, c), size);
+      CHECK(area(rects, 1, 1, 1) >= wanted);
+    }
+  }
+}
+
+TEST_CASE("The mark of a number is where its share of the way is, and never off its slider") {
+  const question_t m = number(1, -1, 1, 0.1);
+  const auto mark_x = [&](double at) {
+    const auto rects = drawn(m, at, {640, 480});
+    const Rect* mark = nullptr;  // the highest of its colour
+    for (const Rect& r : rects)
+      if (r.green == 0.78f && (!mark || r.height > mark->height)) mark = &r;
+    REQUIRE(mark);
+    return mark->x + mark->width / 2;
+  };
+  CHECK(mark_x(0) == Approx(320).margin(0.51));
+  CHECK(mark_x(-1) + mark_x(1) == Approx(640).margin(1.01));
+  CHECK(mark_x(0.5) == Approx((mark_x(0) + mark_x(1)) / 2));
+  CHECK(mark_x(-1) > 32);
+}

@@ -1,0 +1,41 @@
+#include "visual_node/overlay/presses.h"
+
+namespace tactus::visual {
+namespace {
+
+// As GLFW numbers them.
+constexpr int kEnter = 257, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPad1 = 321, kPad9 = 329,
+              kPadEnter = 335;
+
+}  // namespace
+
+std::optional<Press> press_of(int key) {
+  if (key >= '1' && key <= '9') return Press{.choice = key - '1'};
+  if (key >= kPad1 && key <= kPad9) return Press{.choice = key - kPad1};
+  switch (key) {
+    case kLeft: return Press{.fine = -1};
+    case kRight: return Press{.fine = 1};
+    case kDown: return Press{.coarse = -1};
+    case kUp: return Press{.coarse = 1};
+    case kEnter:
+    case kPadEnter: return Press{.confirms = true, .goes_on = true};
+    case ' ': return Press{.goes_on = true};
+    default: return std::nullopt;
+  }
+}
+
+Press press_of(Button button) {
+  switch (button) {
+    case Button::kA: return {.choice = 0, .confirms = true, .goes_on = true};
+    case Button::kB: return {.choice = 1};
+    case Button::kX: return {.choice = 2};
+    case Button::kY: return {.choice = 3};
+    case Button::kLeft: return {.fine = -1};
+    case Button::kRight: return {.fine = 1};
+    case Button::kUp: return {.coarse = 1};
+    case Button::kDown: return {.coarse = -1};
+  }
+  return {};
+}
+
+}  // namespace tactus::visual
