@@ -5,6 +5,7 @@ import random
 
 import pairs
 import shipment
+from reach import Failed, Unreachable
 from refusal import Refusal
 from terminal import tell
 
@@ -17,7 +18,7 @@ def run(operator, seconds):
     """(figures for a program, what is wrong: a sentence each). Prints as it goes."""
     operator.files = shipment.parts()
     operator.identity = shipment.identity(operator.files)
-    looked = operator.ask_all("look", patience_s=15)
+    looked = ask_again(operator, "look", list(operator.reaches), patience_s=15)
     wrong = [str(a) for a in looked.values() if isinstance(a, Exception)]
     hosts = [h for h, a in looked.items() if not isinstance(a, Exception)]
     if not hosts:
@@ -26,8 +27,8 @@ def run(operator, seconds):
     operator.install(looked, hosts)
     tell(f"{'host':14} {'reached in':>10}  cores  load  priority  what is not good")
     figures = {"hosts": {}, "pairs": {}, "wrong": wrong, "remarks": []}
-    answers = operator.ask_all("on_the_bus", hosts, patience_s=HOST_S + 5, patience=HOST_S, words=examination(operator))
-    states = operator.ask_all("state", hosts)
+    answers = ask_again(operator, "on_the_bus", hosts, patience_s=HOST_S + 5, patience=HOST_S, words=examination(operator))
+    states = ask_again(operator, "state", hosts)
     for host in hosts:
         wrong += of_host(operator, host, looked[host], answers[host], states[host], figures)
     for site in dict.fromkeys(operator.cluster.hosts[h].site for h in hosts):
@@ -37,6 +38,17 @@ def run(operator, seconds):
     for sentence in figures["remarks"]:
         tell(f"remark: {sentence}")
     return figures, wrong
+
+
+def ask_again(operator, what, hosts, **request):
+    """operator.ask_all, and once more of who could not be reached: a cable that is bad enough to be found also breaks connections."""
+    answers = operator.ask_all(what, hosts, **request)
+    away = unreachable(answers)
+    return answers | operator.ask_all(what, away, **request) if away else answers
+
+
+def unreachable(answers):
+    return [h for h, a in answers.items() if isinstance(a, Unreachable)]
 
 
 def examination(operator):
@@ -53,15 +65,23 @@ def of_host(operator, host, looked, answer, state, figures):
     except ValueError:
         return [f"{host}: its examination failed ({(answer['err'].strip().splitlines() or ['nothing is said'])[-1]})"]
     not_good = [line for line in said["lines"] if line["verdict"] != "good" and line["what"] not in unneeded(operator, host)]
-    took_s = operator.reaches[host].measure_s()
-    load = state["load"] if not isinstance(state, Exception) else float("nan")
+    late = []
+    try:
+        took_s = operator.reaches[host].measure_s()
+    except (Unreachable, Failed) as error:
+        took_s, late = None, [f"{error}, and did a moment before; look at the cable, switch or wireless on the way to it"]
+    load = state["load"] if not isinstance(state, Exception) else None
     figures["hosts"][host] = {**said, "reached_s": took_s, "machine": looked["machine"], "cores": looked["cores"], "load": load}
     priority = next((line["verdict"] for line in said["lines"] if line["what"] == "real-time priority"), "?")
-    tell(f"{host:14} {took_s * 1000:7.0f} ms  {looked['cores']:5d} {load:5.1f}  {priority:8}  {', '.join(line['what'] for line in not_good) or '-'}")
+    tell(f"{host:14} {shown(took_s, 1000, 7, 0)} ms  {looked['cores']:5d} {shown(load, 1, 5, 1)}  {priority:8}  {', '.join(line['what'] for line in not_good) or '-'}")
     sentence = lambda line: f"{host}: {line['found']}" + (f"; {line['remedy']}" if line["remedy"] else "")
     bad = [line for line in not_good if line["verdict"] == "missing" or line["what"] in NEEDED]
     figures["remarks"] += [sentence(line) for line in not_good if line not in bad]
-    return [sentence(line) for line in bad]
+    return late + [sentence(line) for line in bad]
+
+
+def shown(value, factor, width, digits):
+    return "-".rjust(width) if value is None else f"{value * factor:{width}.{digits}f}"
 
 
 def unneeded(operator, host):
@@ -77,10 +97,13 @@ def unneeded(operator, host):
 
 def of_pairs(operator, hosts, seconds, figures):
     bus = operator.cluster.bus
-    round_ = random.getrandbits(60)
-    words = lambda h: ["@BUILD@/bin/probe_pairs", "--host", h, "--expect", ",".join(hosts), "--round", str(round_), "--seconds", f"{seconds:g}", "--group", bus.group,
+    words = lambda h, round_: ["@BUILD@/bin/probe_pairs", "--host", h, "--expect", ",".join(hosts), "--round", str(round_), "--seconds", f"{seconds:g}", "--group", bus.group,
                        "--port", str(bus.port + BESIDE), "--ttl", str(bus.ttl)]
-    answers = operator.ask_all("on_the_bus", hosts, patience_s=seconds + 20, patience=seconds + 15, words=words)
+    for _ in range(2):  # all of them once more when one is missing: their probes are of one round
+        round_ = random.getrandbits(60)
+        answers = operator.ask_all("on_the_bus", hosts, patience_s=seconds + 20, patience=seconds + 15, words=lambda h: words(h, round_))
+        if not unreachable(answers):
+            break
     wrong, said = [], {}
     for host, a in answers.items():
         if isinstance(a, Exception):
