@@ -303,7 +303,7 @@ bool valid(const frame_shown_t& m) {
          between(m.stage, frame_shown_t::READY, frame_shown_t::SHOWN);
 }
 bool valid(const picture_chunk_t& m) {
-  return sane(m.header) && m.picture >= 0 && m.width > 0 && m.height > 0 && page_of(m.chunk, m.chunks) &&
+  return sane(m.header) && m.picture >= 0 && m.presented_ns >= -1 && m.width > 0 && m.height > 0 && page_of(m.chunk, m.chunks) &&
          between(m.size, 1, 1024);
 }
 bool valid(const thermal_device_t& m) {

@@ -32,7 +32,7 @@ std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
   if (!chunk.empty() || p.missing == 0) return std::nullopt;  // again
   chunk = m.data;
   if (--p.missing > 0) return std::nullopt;
-  StreamedPicture whole{m.header.source, m.picture, m.header.sim_time_ns, m.width, m.height, {}};
+  StreamedPicture whole{m.header.source, m.picture, m.header.sim_time_ns, m.presented_ns, m.width, m.height, {}};
   for (auto& c : p.chunks) whole.jpeg.insert(whole.jpeg.end(), c.begin(), c.end());
   return whole;
 }

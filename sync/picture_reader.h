@@ -14,6 +14,7 @@ struct StreamedPicture {
   std::int32_t source = 0;  // header.source: which wall
   std::int64_t picture = 0;
   std::int64_t sim_time_ns = -1;
+  std::int64_t presented_ns = -1;  // by the clock of its source
   int width = 0, height = 0;
   std::vector<std::uint8_t> jpeg;
 };

@@ -256,7 +256,7 @@ int tactus::visual::run(int argc, char** argv) try {
       if (fresh && settings.motion_marker == "strip")
         for (media_clock_t& m : visual::stages_of(*pair, times)) node.bus().publish(channels::kMediaClock, m);
     }
-    if (fresh && stage.draws()) stream.add(now, frame.instant ? sync::to_ns(*frame.instant) : -1, read);
+    if (fresh && stage.draws()) stream.add(now, frame.instant ? sync::to_ns(*frame.instant) : -1, fence + sync::from_seconds(settings.display_latency_s), read);
     for (picture_chunk_t& chunk : stream.take_chunks()) node.bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
     if (const std::string trouble = recording.trouble(); trouble != said) say(said = trouble);
     const std::string walls_note = lock.note(now), video = walls_note.empty() ? recording.note() : walls_note;

@@ -1,6 +1,8 @@
 #include "scripts/conductor/observations.h"
 
+#include <cmath>
 #include <string_view>
+#include <utility>
 
 namespace tactus::conductor {
 namespace {
@@ -96,15 +98,25 @@ std::optional<json> Observations::push(const game_state_t& m) {
   return line;
 }
 
-std::optional<json> Observations::push(const picture_chunk_t& m) {
-  if (m.picture < picture_) return std::nullopt;
-  if (m.picture > picture_) pieces_.clear(), picture_ = m.picture;
-  pieces_[m.chunk].assign(m.data.begin(), m.data.begin() + m.size);
-  if (static_cast<int>(pieces_.size()) < m.chunks) return std::nullopt;
-  std::vector<std::uint8_t> jpeg;
-  for (const auto& [number, piece] : pieces_) jpeg.insert(jpeg.end(), piece.begin(), piece.end());
-  pieces_.clear();
-  return json{{"picture", m.picture}, {"sim_ns", m.header.sim_time_ns}, {"jpeg", base64(jpeg)}};
+std::optional<json> Observations::push(const picture_chunk_t& m, sync::HostTime arrival) {
+  const sync::SenderClock* clock = clock_of(m.header, arrival);
+  auto whole = pictures_.take(m);
+  if (!clock || !whole) return std::nullopt;
+  json line{{"picture", whole->picture}, {"sim_ns", whole->sim_time_ns}, {"at_ns", nullptr}};
+  if (whole->presented_ns >= 0) line["at_ns"] = sync::to_ns(clock->to_host(whole->presented_ns, arrival));
+  line["jpeg"] = base64(whole->jpeg);
+  return line;
+}
+
+std::optional<json> Observations::push(const tool_state_t& m, sync::HostTime arrival) {
+  const sync::SenderClock* clock = clock_of(m.header, arrival);
+  if (!clock) return std::nullopt;
+  const double force_N = std::hypot(m.transient_N.x, m.transient_N.y, m.transient_N.z);
+  if (std::exchange(vibrates_[m.header.source], force_N > 0) || force_N == 0) return std::nullopt;
+  return json{{"pulse",
+               {{"tool", m.tool},
+                {"at_ns", sync::to_ns(clock->to_host(m.header.publish_time_ns, arrival))},
+                {"force_N", force_N}}}};
 }
 
 }  // namespace tactus::conductor

@@ -11,9 +11,11 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/picture_chunk_t.hpp>
 #include <tactus/presented_t.hpp>
+#include <tactus/tool_state_t.hpp>
 #include <vector>
 
 #include "sync/clock_maps.h"
+#include "sync/picture_reader.h"
 #include "sync/sender_clock.h"
 
 namespace tactus::conductor {
@@ -35,8 +37,11 @@ class Observations {
   std::optional<nlohmann::json> push(const media_clock_t& m, sync::HostTime arrival);
   // {"game": {"won": , "won_sim_ns": , "filled": , "wrong": }}, when it has changed.
   std::optional<nlohmann::json> push(const game_state_t& m);
-  // {"picture": number, "sim_ns": , "jpeg": base64}, of a picture whose pieces have all come.
-  std::optional<nlohmann::json> push(const picture_chunk_t& m);
+  // {"picture": number, "sim_ns": , "at_ns": when it was out, null where nobody knows, "jpeg": base64}, of a picture
+  // whose pieces have all come.
+  std::optional<nlohmann::json> push(const picture_chunk_t& m, sync::HostTime arrival);
+  // {"pulse": {"tool": , "at_ns": , "force_N": }} of the first tick in which a hit vibrates in the hand.
+  std::optional<nlohmann::json> push(const tool_state_t& m, sync::HostTime arrival);
 
  private:
   bool fresh(std::set<std::vector<std::int64_t>>& known, std::vector<std::int64_t> key);
@@ -46,8 +51,8 @@ class Observations {
   std::set<std::vector<std::int64_t>> events_, reports_;
   std::map<std::int32_t, sync::SenderClock> clocks_;  // by source
   std::string game_;
-  std::int64_t picture_ = -1;
-  std::map<int, std::vector<std::uint8_t>> pieces_;
+  sync::PictureReader pictures_;
+  std::map<std::int32_t, bool> vibrates_;  // by source
 };
 
 }  // namespace tactus::conductor

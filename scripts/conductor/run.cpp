@@ -7,7 +7,7 @@
 //        CONTACT_EVENTS, PRESENTED     what happened and what each sense made of it
 //        MEDIA_CLOCK, PICTURE_CHUNK    which sample was heard when; the pictures, when told to look
 //        GAME_STATE, SIM_REPLY         how the game stands; what became of a command
-//        TOOL_STATE                    buttons of the device, which answer
+//        TOOL_STATE                    buttons of the device, which answer; in which tick a hit vibrates
 //        DEVICE_FORCE                  what its hand feels
 //        ANSWER                        of a window or a page
 //   out  DEGRADATION, QUESTION, ANSWER (of buttons and of simulated participants), SIM_COMMAND
@@ -204,14 +204,17 @@ class Conductor {
     while (const auto m = answers_.pop())
       if (ours(m->message.header)) heed(m->message);
     while (const auto m = tools_.pop())
-      if (ours(m->message.header)) push_button(m->message, now);
+      if (ours(m->message.header)) {
+        push_button(m->message, now);
+        if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+      }
     while (const auto m = forces_.pop())
       if (ours(m->message.header) && m->message.device == state_.device) force_N_ = m->message.force_N.z;
     while (pictures_) {
       const auto m = pictures_->pop();
       if (!m) break;
       if (!ours(m->message.header)) continue;
-      if (const auto line = observations_.push(m->message)) say(*line);
+      if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
     }
   }
 

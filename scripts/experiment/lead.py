@@ -13,16 +13,18 @@ sys.path[:0] = [p for p in (str(HERE.parent / "supervise"),) if p not in sys.pat
 from refusal import Refusal
 
 MOST_KEPT = 512  # events, and felt samples times ten; design: a trial has a handful
+PICTURES_KEPT = 240  # 4 s at 60 Hz; design: longer than from a hit to when the eye is asked of it
 ENDS_WITHIN_S = 3
 
 
 class Lead:
-    """A conductor inside the cluster that writes to `out`. hand: (x, y, z, above) in m where it holds the device."""
+    """A conductor inside the cluster that writes to `out`. hand: (x, y, z, above) in m where it holds the device. looks: it keeps the pictures, too."""
 
-    def __init__(self, out, hand=None):
+    def __init__(self, out, hand=None, looks=False):
         words = [str(HERE.parent / "attach"), str(out), "conductor", "--out", str(out)]
         if hand is not None:
             words += ["--hand", *(f"{x:g}" for x in hand[:3]), "--above", f"{hand[3]:g}"]
+        words += ["--look"] if looks else []
         self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         os.set_blocking(self.process.stdout.fileno(), False)
         os.set_blocking(self.process.stderr.fileno(), False)
@@ -32,6 +34,8 @@ class Lead:
         self.presented = collections.OrderedDict()  # (id, modality, part): report
         self.media = {}                             # medium: deque of (index, at_ns)
         self.felt = collections.deque(maxlen=10 * MOST_KEPT)  # (at_ns, z_m, force_N)
+        self.pulses = collections.deque(maxlen=MOST_KEPT)      # (at_ns, force_N): a hit begins to vibrate in the hand
+        self.pictures = collections.deque(maxlen=PICTURES_KEPT)  # (at_ns, JPEG in base64)
         self.game, self.answer, self.in_force, self.moved, self.reply, self.asked = None, None, None, False, None, None
         self.refused = collections.deque(maxlen=16)
 
@@ -75,6 +79,11 @@ class Lead:
             self.media.setdefault(line["medium"], collections.deque(maxlen=64)).append((line["index"], line["at_ns"]))
         elif "felt" in line:
             self.felt.append((line["felt"]["at_ns"], line["felt"]["z_m"], line["felt"]["force_N"]))
+        elif "pulse" in line:
+            self.pulses.append((line["pulse"]["at_ns"], line["pulse"]["force_N"]))
+        elif "picture" in line:
+            if line["at_ns"] is not None:
+                self.pictures.append((line["at_ns"], line["jpeg"]))
         elif "refused" in line:
             self.refused.append(line["refused"])
         elif "moved" in line:

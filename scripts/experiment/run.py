@@ -52,6 +52,11 @@ def parsed(words):
     return a
 
 
+def sees(study, options):
+    """Whether a simulated participant looks at the pictures of this study."""
+    return options.simulated and any("visual" in c.senses for c in study.conditions)
+
+
 def cluster_words(study, options):
     """The words of scripts/run."""
     words = [str(study.scene), "--policy", "experiment", "--base", f"{study.base_delay_ms:g}ms", "--seed", str(study.seed)]
@@ -63,6 +68,10 @@ def cluster_words(study, options):
         words += ["--live", options.live]
         if not options.window:  # the page asks over the picture; it need not be in the picture, too
             words += ["--set", "visual_node.questions=false"]
+    if sees(study, options):
+        import eye
+        for setting in eye.SETTINGS:
+            words += ["--set", f"visual_node.{setting}"]
     for setting in options.set:
         words += ["--set", setting]
     return words

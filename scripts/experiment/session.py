@@ -15,7 +15,7 @@ from lead import Lead
 from live_cluster import LiveCluster
 from plan import Plan
 from refusal import Refusal
-from run import TASKS, cluster_words
+from run import TASKS, cluster_words, sees
 from simulated import Participant
 from study_file import YES_OR_NO
 from terminal import tell
@@ -91,7 +91,7 @@ class Session:
         if (page := self.cluster.page()) is not None:
             tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
         s = self.study.stimulus
-        self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m))
+        self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
         if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
             raise Refusal(f"the senses are not ready after a minute; see {out}/logs")
         if self.options.simulated:
@@ -169,9 +169,9 @@ class Session:
             return self.ask(question, trial)
         level = trial.level
         if trial.condition.kind == "asynchrony":
-            level = observed.sensed_ms = self.participant.perceived_ms(observed)
-            if level is None:
-                observed.missed = "the sound of the hit is not in the samples"
+            level, observed.missed = self.participant.perceived_ms(observed)
+            observed.sensed_ms = level
+            if observed.missed:
                 return None
         self.ask(question, trial)
         if self.study.response in YES_OR_NO:

@@ -1,90 +1,31 @@
 """A simulated participant on the live cluster: he hears the samples of audio.wav, feels the ticks and sees the frames, and answers as a
 psychometric function says of what he perceived. Everything that he answers is marked observer=simulated."""
-import pathlib
-import sys
-
-import numpy as np
-
 import observers
+from ear import Ear
+from eye import Eye
+from skin import Skin
 
-HERE = pathlib.Path(__file__).resolve().parent
-HEARD_WITHIN_S = 1.5  # until the samples are on the disk: the writer wakes a few times a second
-QUIET_S, NEAR_S = 0.030, (0.018, 0.025)  # before the expected onset, and around it: as scripts/measure_onsets
-RISE = 1e-4  # of a tap, in a scene where nothing else sounds: the first sample of it can be told (scripts/measure_soa)
-
-
-class Ear:
-    """Listens to audio.wav while it is written."""
-
-    def __init__(self, out, lead):
-        self.path, self.lead = pathlib.Path(out) / "audio.wav", lead
-        self.layout = None
-
-    def _layout(self):
-        """(first byte of the samples, dtype, channels, rate), from the header; None: it is not written yet. Only what the sound sense writes is understood."""
-        if self.layout is None and self.path.exists():
-            head = self.path.read_bytes()[:4096]
-            at, form = 12, None
-            while at + 8 <= len(head):
-                name, size = head[at:at + 4], int.from_bytes(head[at + 4:at + 8], "little")
-                body = head[at + 8:at + 8 + size]
-                if name == b"fmt ":
-                    kind = int.from_bytes(body[0:2], "little")
-                    kind = int.from_bytes(body[24:26], "little") if kind == 0xFFFE else kind
-                    form = {(3, 32): "<f4", (1, 16): "<i2", (1, 32): "<i4"}[kind, int.from_bytes(body[14:16], "little")], \
-                        int.from_bytes(body[2:4], "little"), int.from_bytes(body[4:8], "little")
-                if name == b"data" and form:
-                    self.layout = (at + 8, *form)
-                    break
-                at += 8 + size + size % 2
-        return self.layout
-
-    def _samples(self, begin, end):
-        """Mean over the channels of samples begin .. end; None: they are not all on the disk yet."""
-        first, dtype, channels, _ = self.layout
-        width = np.dtype(dtype).itemsize * channels
-        if begin < 0 or self.path.stat().st_size < first + end * width:
-            return None
-        with open(self.path, "rb") as file:
-            file.seek(first + begin * width)
-            data = np.frombuffer(file.read((end - begin) * width), dtype)
-        return data.astype(float).reshape(-1, channels).mean(axis=1)
-
-    def onset_ns(self, expected_ns):
-        """When the first sample of a sound near that instant was out, host time; None: nothing stands out there."""
-        pairs = self.lead.media.get("audio.wav")
-        if self._layout() is None or not pairs:
-            return None
-        rate = self.layout[3]
-        index, at_ns = min(pairs, key=lambda p: abs(p[1] - expected_ns))
-        expected = index + (expected_ns - at_ns) * 1e-9 * rate
-        begin, end = int(expected - QUIET_S * rate), int(expected + NEAR_S[1] * rate)
-        if not self.lead.wait_for(lambda: self._samples(begin, end) is not None, HEARD_WITHIN_S):
-            return None
-        samples = np.abs(self._samples(begin, end))
-        quiet = int((QUIET_S - NEAR_S[0]) * rate)
-        level, near = samples[:quiet].max() + 1e-5, samples[quiet:]
-        if near.max() < 4 * level:
-            return None
-        found = begin + quiet + int(np.argmax(near > 1.5 * level + RISE * near.max()))
-        return at_ns + (found - index) / rate * 1e9
+UNPERCEIVED = {"audio": "the sound of the hit is not in the samples", "visual": "the frame that shows the hit first was not seen",
+               "haptic": "the vibration of the hit is not in the ticks"}
 
 
 class Participant:
     def __init__(self, study, name, seed, out, lead):
         self.study, self.name, self.seed, self.lead = study, name, seed, lead
-        self.ear = Ear(out, lead)
+        ear, eye, skin = Ear(out, lead), Eye(lead), Skin(lead)
+        self.organs = {"audio": lambda o: ear.onset_ns(o.times_ns["audio"]), "visual": lambda o: eye.onset_ns(int(o.event), o.times_ns["visual"]),
+                       "haptic": lambda o: skin.onset_ns(o.times_ns["haptic"])}
 
     def perceived_ms(self, observed):
-        """Asynchrony of what was really heard, felt and seen; None: the sound of the hit is not in the samples."""
-        times = dict(observed.times_ns)
-        if "audio" in times:
-            heard = self.ear.onset_ns(times["audio"])
-            if heard is None:
-                return None
-            times["audio"] = heard
-        a, b = times
-        return (times[b] - times[a]) * 1e-6
+        """(asynchrony of what was really heard, felt and seen, ""), or (None, what of it was not perceived). Of warmth, which has no onset, it is the
+        tick that its sense reports."""
+        times = {}
+        for sense, reported_ns in observed.times_ns.items():
+            times[sense] = self.organs[sense](observed) if sense in self.organs else reported_ns
+            if times[sense] is None:
+                return None, UNPERCEIVED[sense]
+        a, b = times.values()
+        return (b - a) * 1e-6, ""
 
     def says_yes(self, trial, attempt, level):
         """Of a synchrony: together; of an order: the first sense came first; of two intervals: he has found the degraded one."""

@@ -24,7 +24,8 @@ presented_t presented(std::int64_t event, std::int64_t at_ns) {
 
 picture_chunk_t piece(std::int64_t picture, int chunk, int chunks, const std::string& bytes) {
   picture_chunk_t m{};
-  m.picture = picture, m.chunk = chunk, m.chunks = chunks, m.size = static_cast<int>(bytes.size());
+  m.header.run_id = 1, m.header.clock = 5, m.header.source = 3, m.header.incarnation = 9;
+  m.picture = picture, m.presented_ns = 40, m.chunk = chunk, m.chunks = chunks, m.size = static_cast<int>(bytes.size());
   m.data.assign(bytes.begin(), bytes.end());
   return m;
 }
@@ -62,12 +63,42 @@ TEST_CASE("An event of 64 bits survives JSON, where numbers are doubles") {
 
 TEST_CASE("A picture is said when all of its pieces have come, in whatever order, and not otherwise") {
   Observations o(kOwn);
-  CHECK_FALSE(o.push(piece(1, 0, 2, "ab")));
-  CHECK_FALSE(o.push(piece(2, 1, 2, "d")));
-  const auto whole = o.push(piece(2, 0, 2, "abc"));
+  const std::string full(1024, 'a');
+  const auto arrival = sync::host_time(100);
+  CHECK_FALSE(o.push(piece(1, 0, 2, full), arrival));
+  CHECK_FALSE(o.push(piece(2, 1, 2, "d"), arrival));
+  const auto whole = o.push(piece(2, 0, 2, full), arrival);
   REQUIRE(whole);
-  CHECK(whole->at("jpeg") == "YWJjZA==");
-  CHECK_FALSE(o.push(piece(1, 1, 2, "x")));
+  const std::string jpeg = whole->at("jpeg");
+  CHECK(jpeg.size() == 1368);  // RFC 4648 of 1025 bytes
+  CHECK(jpeg.substr(0, 8) == "YWFhYWFh");
+  CHECK(jpeg.substr(1364) == "YWQ=");
+  CHECK(whole->at("at_ns") == 40);
+  CHECK_FALSE(o.push(piece(1, 1, 2, "x"), arrival));
+  auto unknown = piece(3, 0, 1, "ab");
+  unknown.presented_ns = -1;
+  CHECK(o.push(unknown, arrival)->at("at_ns").is_null());
+}
+
+TEST_CASE("The tick in which a hit begins to vibrate in the hand is said, of each tool by itself") {
+  Observations o(kOwn);
+  std::int64_t at_ns = 1'000'000;
+  const auto tick = [&](float transient_N, int source) {
+    tool_state_t m{};
+    m.header.run_id = 1, m.header.clock = 5, m.header.source = source, m.header.incarnation = 9;
+    m.header.publish_time_ns = at_ns += 1'000'000;
+    m.tool = source, m.transient_N = {0, 0, transient_N};
+    return o.push(m, sync::host_time(at_ns + 50'000));
+  };
+  CHECK_FALSE(tick(0, 3));
+  const auto begins = tick(0.5F, 3);
+  REQUIRE(begins);
+  CHECK(begins->at("pulse").at("at_ns") == 3'000'000);
+  CHECK(begins->at("pulse").at("force_N") == 0.5);
+  CHECK_FALSE(tick(-0.4F, 3));
+  CHECK(tick(0.2F, 4));
+  CHECK_FALSE(tick(0, 3));
+  CHECK(tick(0.1F, 3));
 }
 
 TEST_CASE("How a game stands is said when it changes") {

@@ -214,7 +214,7 @@ class Samples {
     m.stage = static_cast<std::int8_t>(whole(0, 1));
   }
   void fill(picture_chunk_t& m) {
-    fill(m.header), m.picture = whole(0, 99), m.width = m.height = 8, m.chunks = whole(1, 9), m.chunk = whole(0, m.chunks - 1);
+    fill(m.header), m.picture = whole(0, 99), m.presented_ns = whole(-1, 99), m.width = m.height = 8, m.chunks = whole(1, 9), m.chunk = whole(0, m.chunks - 1);
     m.size = whole(1, 1024);
     m.data.assign(static_cast<std::size_t>(m.size), 7);
   }

@@ -15,6 +15,7 @@ namespace tactus::visual {
 
 struct Picture {
   std::int64_t tick = 0;
+  std::int64_t presented_ns = -1;  // when it was out, for who is told
   std::vector<std::uint8_t> rgba;  // sRGB, the lowest row first
 };
 

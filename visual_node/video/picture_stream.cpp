@@ -12,12 +12,14 @@ struct PictureStream::Outbox {
   std::int64_t pictures = 0, dropped = 0;
 };
 
-std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, std::int64_t sim_time_ns) {
+std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, std::int64_t sim_time_ns,
+                                       std::int64_t presented_ns) {
   std::vector<picture_chunk_t> chunks((jpeg.bytes.size() + kPictureChunkBytes - 1) / kPictureChunkBytes);
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     picture_chunk_t& c = chunks[i];
     c.header.sim_time_ns = sim_time_ns;
     c.picture = picture;
+    c.presented_ns = presented_ns;
     c.width = static_cast<std::int16_t>(jpeg.width);
     c.height = static_cast<std::int16_t>(jpeg.height);
     c.chunk = static_cast<std::int32_t>(i);
@@ -46,7 +48,7 @@ void PictureStream::begin(int width, int height, const Settings& s) {
     if (jpeg.bytes.empty()) return false;
     const std::lock_guard lock(box->mutex);
     if (!box->ready.empty()) ++box->dropped;
-    box->ready = chunks_of(jpeg, box->pictures++, p.tick);
+    box->ready = chunks_of(jpeg, box->pictures++, p.tick, p.presented_ns);
     return true;
   };
   constexpr std::size_t kWaiting = 1;
@@ -54,14 +56,16 @@ void PictureStream::begin(int width, int height, const Settings& s) {
       kWaiting, static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4, make);
 }
 
-void PictureStream::add(sync::HostTime now, std::int64_t sim_time_ns,
+void PictureStream::add(sync::HostTime now, std::int64_t sim_time_ns, sync::HostTime presented,
                         const std::function<void(std::span<std::uint8_t>)>& read) {
-  if (!sink_ || now < next_) return;
+  // A tick may wake a little before its turn: where as many pictures are wanted as there are, none is left out for that.
+  if (!sink_ || now + period_ / 4 < next_) return;
   auto picture = sink_->take_empty();
   if (!picture) return;  // the one before is still being made: at the next tick
   // Keeps to its grid of periods, without catching up.
   next_ = std::max(next_ + period_, now + period_ / 2);
   picture->tick = sim_time_ns;  // what tells pictures apart here
+  picture->presented_ns = sync::to_ns(presented);
   read(picture->rgba);
   sink_->push(std::move(*picture));
 }

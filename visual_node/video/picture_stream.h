@@ -18,7 +18,8 @@ namespace tactus::visual {
 inline constexpr int kPictureChunkBytes = 1024;
 
 // The pieces of one picture, in order; the bus fills the header.
-std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, std::int64_t sim_time_ns);
+std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, std::int64_t sim_time_ns,
+                                       std::int64_t presented_ns);
 
 class PictureStream {
  public:
@@ -30,8 +31,9 @@ class PictureStream {
   // Pictures of that size from now on, as the settings say; the stream is off while `stream` is 0.
   void begin(int width, int height, const Settings& settings);
   // The picture of the tick at `now` can be read: takes it when one is due and there is room. sim_time_ns: which
-  // instant it shows, -1: none.
-  void add(sync::HostTime now, std::int64_t sim_time_ns, const std::function<void(std::span<std::uint8_t>)>& read);
+  // instant it shows, -1: none. presented: when it was out.
+  void add(sync::HostTime now, std::int64_t sim_time_ns, sync::HostTime presented,
+           const std::function<void(std::span<std::uint8_t>)>& read);
   // What is to be sent in this tick.
   std::vector<picture_chunk_t> take_chunks();
   // Pictures that were made and not sent because the one before was still on its way.

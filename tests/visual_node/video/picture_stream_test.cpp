@@ -60,7 +60,7 @@ Jpeg some_jpeg(std::size_t bytes) {
 }
 
 std::vector<picture_chunk_t> sent(std::size_t bytes, std::int64_t number, int source = 1) {
-  auto chunks = chunks_of(some_jpeg(bytes), number, 77);
+  auto chunks = chunks_of(some_jpeg(bytes), number, 77, 88);
   for (picture_chunk_t& c : chunks) c.header.source = source, c.header.incarnation = 5, c.header.run_id = 1;
   return chunks;
 }
@@ -108,6 +108,7 @@ TEST_CASE("Pieces are valid messages, and a reader makes the same bytes of them 
     REQUIRE(whole);
     CHECK(whole->jpeg == some_jpeg(bytes).bytes);
     CHECK(whole->sim_time_ns == 77);
+    CHECK(whole->presented_ns == 88);
     CHECK(whole->picture == 3);
     for (const picture_chunk_t& c : chunks) CHECK_FALSE(reader.take(c));  // repeated
   }
@@ -175,7 +176,7 @@ TEST_CASE("A stream sends a bounded number of pieces a tick, and leaves pictures
   sync::PictureReader reader;
   std::vector<sync::StreamedPicture> got;
   for (int tick = 0; got.size() < 2 && tick < 2'000'000; ++tick) {
-    stream.add(at_ms(tick), tick, read);
+    stream.add(at_ms(tick), tick, at_ms(tick + 5), read);
     const auto chunks = stream.take_chunks();
     REQUIRE(chunks.size() <= PictureStream::kMostChunksATick);
     for (picture_chunk_t c : chunks) {
@@ -187,6 +188,7 @@ TEST_CASE("A stream sends a bounded number of pieces a tick, and leaves pictures
   REQUIRE(got.size() == 2);
   CHECK(decode(got[1].jpeg).width == 640);
   CHECK(got[1].picture > got[0].picture);
+  CHECK(got[1].presented_ns == got[1].sim_time_ns * 1'000'000 + 5'000'000);
   CHECK(reader.skipped() == 0);
   CHECK(reads >= 2);
 }
@@ -197,11 +199,11 @@ TEST_CASE("A stream reads no more pictures than it was asked for, and none when 
   int reads = 0;
   const auto read = [&](std::span<std::uint8_t>) { ++reads; };
   stream.begin(16, 16, settings);
-  for (int ms = 0; ms < 1000; ++ms) stream.add(at_ms(ms), 0, read);
+  for (int ms = 0; ms < 1000; ++ms) stream.add(at_ms(ms), 0, at_ms(ms), read);
   CHECK(reads == 0);
   settings.stream_Hz = 10;
   stream.begin(16, 16, settings);
-  for (int ms = 0; ms < 2000; ++ms) stream.add(at_ms(ms), 0, read);
+  for (int ms = 0; ms < 2000; ++ms) stream.add(at_ms(ms), 0, at_ms(ms), read);
   CHECK(reads >= 1);
   CHECK(reads <= 21);  // 2 s at 10 Hz, both ends
 }
