@@ -28,6 +28,7 @@
 #include "sync/node.h"
 #include "sync/sync_node.h"
 #include "sync/virtual_time/virtual_time.h"
+#include "thermal_node/run.h"
 #include "visual_node/run.h"
 
 using namespace tactus;
@@ -88,6 +89,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("haptic_node", words({"haptic_node", "--device", "external:participant"}, degraded), haptic::run);
   add("audio_node", words({"audio_node", "--no-sound"}, degraded), audio::run);
   add("visual_node", words({"visual_node", "--no-pictures"}, degraded), visual::run);
+  add("thermal_node", words({"thermal_node"}, degraded), thermal::run);
   add("participant",
       words(words({"participant", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
       [&](int argc, char** argv) { return participant::run(argc, argv, &loaded.rules); });
@@ -98,7 +100,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   if (!referee.begun()) throw std::runtime_error("the world does not begin");
   const sync::HostTime until = time.now() + sync::from_seconds(game.limit_s);
   while (time.now() < until && !referee.decided()) time.run_for(kTurn);
-  for (const char* name : {"sync_node", "haptic_node", "audio_node", "visual_node", "participant", "sim_node"})
+  for (const char* name : {"sync_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "participant", "sim_node"})
     if (time.result(name) > 0) throw std::runtime_error(std::string(name) + " left");
   return referee.verdict();
 }

@@ -61,6 +61,15 @@ class AStudyOnALiveCluster(unittest.TestCase):
             self.assertEqual((t["by"], t["row"]["observer"]), ("simulated", "simulated"))
         self.assertTrue((self.out / study / "P01" / "trials.csv").exists())
 
+    def test_a_simulated_participant_sees_the_frames_themselves(self):
+        study = "audio_visual_synchrony"
+        process = self.start(study, "--most", "4")
+        self.assertEqual(process.wait(SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        counted = [t for t in self.trials(study) if not t["missed"]]
+        self.assertGreaterEqual(len(counted), 4)
+        for t in counted:
+            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)  # pixels and samples against what was reported
+
     def test_of_two_presses_each_is_felt(self):
         study = "haptic_delay_stiffness"
         process = self.start(study, "--most", "6")
