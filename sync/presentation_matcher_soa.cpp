@@ -19,7 +19,9 @@ std::int64_t SoaHistogram::bin_of(Nanoseconds soa) {
 }
 
 void SoaHistogram::add(Nanoseconds soa, Nanoseconds uncertainty) {
-  ++bins_[static_cast<std::size_t>(bin_of(soa))];
+  const std::int64_t bin = bin_of(soa);
+  ++bins_[static_cast<std::size_t>(bin)];
+  first_ = std::min(first_, bin), last_ = std::max(last_, bin);
   ++count_;
   uncertainty_ = std::max(uncertainty_, uncertainty);
 }
@@ -28,8 +30,8 @@ Nanoseconds SoaHistogram::quantile(double q) const {
   if (count_ == 0) return Nanoseconds(0);
   const double target = q * static_cast<double>(count_);
   double below = 0;
-  std::int64_t bin = 0;
-  for (; bin < kBins - 1; ++bin) {
+  std::int64_t bin = first_;
+  for (; bin < last_; ++bin) {
     const double here = bins_[static_cast<std::size_t>(bin)];
     if (here > 0 && below + here >= target) break;
     below += here;
@@ -42,7 +44,7 @@ Nanoseconds SoaHistogram::quantile(double q) const {
 
 std::int64_t SoaHistogram::beyond(Nanoseconds before, Nanoseconds after) const {
   std::int64_t count = 0;
-  for (std::int64_t bin = 0; bin < kBins; ++bin) {
+  for (std::int64_t bin = first_; bin <= last_; ++bin) {
     const Nanoseconds middle = (begin_of(bin) + begin_of(bin + 1)) / 2;
     if (middle < -before || middle > after) count += bins_[static_cast<std::size_t>(bin)];
   }

@@ -33,6 +33,7 @@ class SoaHistogram {
   static Nanoseconds begin_of(std::int64_t bin);
   static std::int64_t bin_of(Nanoseconds soa);
   std::vector<std::int32_t> bins_ = std::vector<std::int32_t>(kBins, 0);
+  std::int64_t first_ = kBins - 1, last_ = 0;  // bins that hold something: few of all, and asked for ten times a second
   std::int64_t count_ = 0;
   Nanoseconds uncertainty_{0};
 };

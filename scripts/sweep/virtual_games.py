@@ -2,7 +2,7 @@
 import dataclasses
 import hashlib
 
-CHUNK = 20  # games that one job plays, one after the other; design: some seconds to a minute, so that little waits for the last
+CHUNK = 50  # games that one job plays, one after the other; design: a quarter of a minute, so that little waits for the last, and reading the scene is little of it
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,7 +7,7 @@ namespace tactus::visual {
 FrameSink::FrameSink(std::size_t capacity, std::size_t bytes, std::function<bool(const Picture&)> consume,
                      std::function<void()> at_end)
     : consume_(std::move(consume)), at_end_(std::move(at_end)) {
-  for (std::size_t i = 0; i < capacity; ++i) empty_.push_back({0, std::vector<std::uint8_t>(bytes)});
+  for (std::size_t i = 0; i < capacity; ++i) empty_.push_back({.rgba = std::vector<std::uint8_t>(bytes)});
   thread_ = std::thread([this] { run(); });
 }
 
