@@ -67,8 +67,17 @@ def play_anew(session, trial, attempt):
     profile.write_text(study.profile(trial.condition, trial.level), encoding="utf-8")
     seed = session.plan.draw(f"game {trial.number} {attempt}")
     out = runs / f"game{trial.number}_{attempt}"
-    words = [str(study.scene), "--player", "--seed", str(seed), "--degrade", str(profile)]
-    cluster = LiveCluster(out, words + [w for s in session.options.set for w in ("--set", s)])
+    played = in_a_world_of_its_own(out, study.scene, profile, seed, study.stimulus.limit_s, session.options.set)
+    played.row["seed"] = seed
+    played.row["log_file"] = str((out / "run.lcmlog").relative_to(session.folder))
+    return played
+
+
+def in_a_world_of_its_own(out, scene, profile, seed, limit_s, settings):
+    """The artificial player's game in a live cluster that begins and ends with it and leaves its results in `out`; a Played. profile: a file.
+    settings: of the cluster, NODE.NAME=VALUE each. Raises Refusal."""
+    words = [str(scene), "--player", "--seed", str(seed), "--degrade", str(profile)]
+    cluster = LiveCluster(out, words + [w for s in settings for w in ("--set", s)])
     lead = None
     try:
         cluster.wait_until_it_runs()
@@ -76,10 +85,7 @@ def play_anew(session, trial, attempt):
         if not lead.wait_for(lambda: lead.sim_ns is not None and lead.sim_ns > 0, BEGINS_WITHIN_S):
             raise Refusal(f"the world has not begun after {BEGINS_WITHIN_S} s; see {cluster.log}")
         lead.sim_ns = 0  # the player begins with the world
-        played = outcome(lead, study.stimulus.limit_s)
-        played.row["seed"] = seed
-        played.row["log_file"] = str((out / "run.lcmlog").relative_to(session.folder))
-        return played
+        return outcome(lead, limit_s)
     finally:
         if lead is not None:
             lead.end()
