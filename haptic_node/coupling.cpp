@@ -62,6 +62,10 @@ void LoopDelay::pass(double age_s, double dt) {
   held_s_ = std::max(mean_s_, held_s_ * std::exp(-dt / kHold_s));
 }
 
+void LoopDelay::relieve(double by_s) {
+  for (double* s : {&peak_s_, &mean_s_, &held_s_}) *s = std::max(0.0, *s - by_s);
+}
+
 Gains felt_gains(const Surface& s, double factor, double pressed_m) {
   // The damping ratio stays as it is when the stiffness is lowered.
   const double share = s.moves() ? factor : 1;

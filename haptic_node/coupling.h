@@ -51,6 +51,8 @@ class LoopDelay {
   // Once a tick, with the age of the model in use, s: the worst is forgotten slowly, so that the stiffness does
   // not flicker.
   void pass(double age_s, double dt);
+  // From now on models are held back on purpose by so much less: that part of what was learnt is over at once.
+  void relieve(double by_s);
   double value_s(double step_s, double period_s) const { return std::max(peak_s_, held_s_) + step_s + period_s; }
 
  private:

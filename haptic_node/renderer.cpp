@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "haptic_node/turns.h"
 #include "lcmtypes/vectors.h"
@@ -138,6 +139,9 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   model_age_s_ = age_s;
+  // Else a hand would feel for seconds a delay that a profile has ended.
+  const auto before = std::exchange(touch_delay_, in.touch_delay);
+  if (in.touch_delay < before) loop_delay_.relieve(sync::to_seconds(before - in.touch_delay));
   loop_delay_.pass(age_s, dt);
   if (in.fresh) {
     loop_delay_.observe(age_s);

@@ -101,6 +101,7 @@ class Renderer {
   Rendering rendering_;
   Handover handover_, torque_handover_;
   LoopDelay loop_delay_;
+  sync::Nanoseconds touch_delay_{0};  // of the tick before
   Passivity passivity_;
   Transients transients_;
   Safety& safety_;

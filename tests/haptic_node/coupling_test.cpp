@@ -54,6 +54,20 @@ TEST_CASE("The loop delay is the worst age lately, and forgets it slowly") {
   CHECK(delay.value_s(0, 0) == Approx(0.1));
 }
 
+TEST_CASE("What models are held back less is forgotten at once, and what else was learnt of the way stays") {
+  LoopDelay delay;
+  delay.observe(0.043);
+  constexpr double kLearnt_s = 1e-5;  // the mean is that near after ten of its time constants
+  for (int k = 0; k < 5000; ++k) delay.pass(0.043, 1e-3);
+  CHECK(delay.value_s(0, 0) == Approx(0.043).margin(kLearnt_s));
+  delay.relieve(0.04);
+  CHECK(delay.value_s(0, 0) == Approx(0.003).margin(kLearnt_s));
+  delay.relieve(0.04);
+  CHECK(delay.value_s(0, 0) == 0);
+  for (int k = 0; k < 5000; ++k) delay.pass(0.002, 1e-3);
+  CHECK(delay.value_s(0, 0) == Approx(0.002).margin(kLearnt_s));
+}
+
 TEST_CASE("A touch model that is held for a while counts as late by half of that") {
   LoopDelay delay;
   const int held_ms = GENERATE(10, 33, 50);

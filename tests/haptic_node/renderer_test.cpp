@@ -275,6 +275,27 @@ TEST_CASE("A force in steps, as a profile asks for, keeps its direction and is p
   CHECK(levels == std::set<long>{0, 1, 2, 3, 4});
 }
 
+TEST_CASE("What moves is coupled softly while touch is held back on purpose, and as before within a tenth of a second after") {
+  constexpr int kDelay_ms = 40, kPhase_ms = 3000;
+  Bench bench;
+  const auto pressed = [&](int begin_ms, int for_ms, int delay_ms) {
+    double force_N = 0;
+    for (int ms = begin_ms; ms < begin_ms + for_ms; ++ms) {
+      auto body = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+      body.effective_mass_kg = 0.5;
+      const auto m = model(ms - delay_ms, {body});
+      TickInput in;
+      in.touch_delay = sync::Nanoseconds(delay_ms * kMs);
+      force_N = bench.tick(ms, {0, 0, 0.004}, &m, {}, in).force_N.z();
+    }
+    return force_N;
+  };
+  const double fresh_N = pressed(100, kPhase_ms, 0);
+  const double late_N = pressed(100 + kPhase_ms, kPhase_ms, kDelay_ms);
+  CHECK(late_N < fresh_N / 4);
+  CHECK(pressed(100 + 2 * kPhase_ms, 100, 0) == Approx(fresh_N).epsilon(0.03));
+}
+
 TEST_CASE("A force in steps has passed the limits of force and slew, whatever the step") {
   const Settings settings;
   const double step_N = GENERATE(1e-6, 0.1, 3.0, 5.0, 100.0);
