@@ -1,4 +1,5 @@
-"""L_appear: the level at which a felt property is off by more than its JND, from what participants matched or rated it to be.
+"""L_appear: the level at which a felt property is off by more than its JND, from what participants matched or rated it to be; presses.py adds what was
+measured of what they felt.
 
 Each answer is held against the mean of the same participant's answers about the undegraded stimulus: people use scales differently.
 The JND is a published one (just_noticeable.csv), a share of that reference or an absolute step.
@@ -32,6 +33,7 @@ class Felt:
     toward: str  # less, more: where the property goes
     left_out: int  # answers of participants who never judged the undegraded stimulus
     observer: str
+    measured: bool = False  # what the hand was given; else what it was judged to be
 
 
 def property_of(text, known):
@@ -74,12 +76,17 @@ def of_factor(property, jnd, factor, rows, baseline, own, left_out, rng):
     shift = lambda t: np.array([value / own[p] - 1 if relative else value - own[p] for p, value in zip(t["participant_id"], t["answer_value"])])
     bound = jnd.jnd / 100 if relative else jnd.jnd
     base, _ = resampler.of_cell(baseline["participant_id"], shift(baseline)[:, None])
+    return of_levels(property, jnd, bound, factor, rows, shift, resampler, base[:, 0], float(np.mean(list(own.values()))), left_out)
+
+
+def of_levels(property, jnd, bound, factor, rows, shift, resampler, base, reference, left_out, measured=False):
+    """Felt of the shifts, shift(Trials) -> (n,), at each level. bound: the JND as a shift. base: draws of the shift of the undegraded, or 0."""
     groups = sorted(rows.groups("level"), key=lambda g: factor.severity(g[0][0]))
     levels, shifts, intervals, counts, draws = [], [], [], [], []
     for (level,), cell in groups:
         values = shift(cell)
         drawn, _ = resampler.of_cell(cell["participant_id"], values[:, None])
-        drawn = drawn[:, 0] - base[:, 0]
+        drawn = drawn[:, 0] - base
         levels.append(level), shifts.append(float(values.mean())), counts.append(len(values)), draws.append(drawn)
         intervals.append(resampling.interval(drawn))
     sign = 1 if shifts[int(np.argmax(np.abs(shifts)))] >= 0 else -1
@@ -87,7 +94,7 @@ def of_factor(property, jnd, factor, rows, baseline, own, left_out, rng):
     drawn = np.stack(draws)
     drawn = drawn[:, ~np.isnan(drawn).any(axis=0)]
     point = crossing(severities, sign * np.array(shifts)[:, None], weights, bound)[0]
-    limit = limits.of_draws("appear", factor, property, point, crossing(severities, sign * drawn, weights, bound), float(severities.max()),
+    limit = limits.of_draws("appear", factor, f"{property}, measured" if measured else property, point, crossing(severities, sign * drawn, weights, bound), float(severities.max()),
                             rows.observer(), len(rows))
-    return Felt(property, factor, levels, shifts, intervals, counts, float(np.mean(list(own.values()))), bound, jnd, limit,
-                "more" if sign > 0 else "less", left_out, rows.observer())
+    return Felt(property, factor, levels, shifts, intervals, counts, reference, bound, jnd, limit,
+                "more" if sign > 0 else "less", left_out, rows.observer(), measured)

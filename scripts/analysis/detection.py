@@ -2,7 +2,7 @@
 
   synchrony judgement   the edges of the window, where the curve is at 75 % of its peak; one for each sense being late
   temporal order        PSS ± JND, where 75 % of the orders are right, lapses aside
-  two intervals         75 % correct
+  two intervals         75 % correct; where the study asks which of two felt softer, that is L_appear as it was judged
 
 Of FEWEST_PARTICIPANTS people or more, the mean of the people's own values, with draws over people; of fewer, that of their answers taken
 together, with draws from the fit's interval: a normal distribution of either half's width. (PSS and JND of an order judgement are
@@ -46,8 +46,8 @@ def severities(factor, levels):
     return np.array([factor.severity(v) if v > 0 and np.isfinite(v) else max(v, 0.0) for v in levels])
 
 
-def of_condition(condition, curves, rng):
-    """[Limit] of one condition from its curves."""
+def of_condition(condition, curves, rng, felt=""):
+    """[Limit] of one condition from its curves. felt: the property that its two intervals were judged by, or ""."""
     fitted = [c for c in curves if c.fit is not None]
     everybody = [c for c in fitted if c.participant == EVERYBODY]
     people = [c for c in fitted if c.participant != EVERYBODY]
@@ -56,7 +56,7 @@ def of_condition(condition, curves, rng):
     for sign, late, early in sides:
         factor = Factor(late, "delay", "ms") if condition.pair else condition.factor
         one = (lambda c, r: edges(c, sign, r)) if condition.pair else threshold
-        by = f"{early} → {late}, {condition.kind}" if condition.pair else condition.kind
+        by = f"{early} → {late}, {condition.kind}" if condition.pair else f"{felt}, judged" if felt else condition.kind
         if len(people) >= resampling.FEWEST_PARTICIPANTS:
             values = severities(factor, [one(c, None)[0] for c in people])
             point = float(values.mean())
@@ -68,18 +68,19 @@ def of_condition(condition, curves, rng):
             continue
         used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else everybody
         tried = np.abs(np.concatenate([c.levels for c in used]))
-        made.append(limits.of_draws("detect", factor, by, point, draws, max(factor.severity(float(v)) for v in tried if v),
+        made.append(limits.of_draws("appear" if felt else "detect", factor, by, point, draws, max(factor.severity(float(v)) for v in tried if v),
                                     " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used))))
     return made
 
 
-def detected(curves, seed):
-    """[Limit] of all conditions."""
+def detected(curves, seed, felt=lambda study: ""):
+    """[Limit] of all conditions. felt(study): the property that its file asks for, or ""."""
     made = []
     conditions = []
     for c in curves:
         if c.condition not in conditions:
             conditions.append(c.condition)
     for i, condition in enumerate(conditions):
-        made += of_condition(condition, [c for c in curves if c.condition == condition], np.random.default_rng([seed, 1000 + i]))
+        made += of_condition(condition, [c for c in curves if c.condition == condition], np.random.default_rng([seed, 1000 + i]),
+                             felt(condition.study) if condition.kind == "2ifc" else "")
     return made

@@ -79,6 +79,6 @@ def felt_figure(felt):
         if len(ends) == 2:
             axes.axvspan(*ends, color=BREAK, alpha=0.1, linewidth=0)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.06), fontsize=7)
-    axes.set(xlabel=felt.factor.axis(), ylabel=f"felt {felt.property}: shift ({unit})")
+    axes.set(xlabel=felt.factor.axis(), ylabel=f"{'measured' if felt.measured else 'felt'} {felt.property}: shift ({unit})")
     stamp(fig, felt.observer)
     return fig

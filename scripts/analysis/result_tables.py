@@ -74,7 +74,7 @@ def frontier_rows(analysis):
 def felt_rows(analysis):
     for f in analysis.felt:
         for level, shift, (low, high), n in zip(f.levels, f.shifts, f.intervals, f.counts):
-            yield {"property": f.property, "modality": f.factor.modality, "operator": f.factor.operator, "level": level, "unit": f.factor.unit, "shift": shift,
+            yield {"property": f.property, "by": "measured" if f.measured else "judged", "modality": f.factor.modality, "operator": f.factor.operator, "level": level, "unit": f.factor.unit, "shift": shift,
                    "low": low, "high": high, "jnd": f.jnd, "n": n, "source": f.source.source, "observer": f.observer}
 
 

@@ -9,6 +9,7 @@ import frontier
 import limits
 import mixed
 import performance
+import presses
 import published
 import trials as tables
 from answers import kind_of
@@ -133,9 +134,9 @@ def analyse(trials, settings):
     kept, left_out = tables.usable(trials)
     rng = np.random.default_rng([settings.seed, 3000])
     curves = curves_of(kept, settings.seed)
-    felt = [f for (name, rows) in appearance.judged(kept, settings.felt) for f in appearance.felt(name, rows, rng)]
+    felt = [f for (name, rows) in appearance.judged(kept, settings.felt) for f in appearance.felt(name, rows, rng)] + presses.felt(kept, rng)
     performances = performances_of(kept, settings)
-    found = detection.detected(curves, settings.seed) if curves else []
+    found = detection.detected(curves, settings.seed, settings.felt) if curves else []
     found += [f.limit for f in felt]
     for p in performances:
         several = f" ({p.study})" if len(performances) > 1 else ""  # whose games, where there are those of more than one study

@@ -10,7 +10,7 @@ HIGHEST = 3  # design: folders above a table in which the study may lie: OUT/stu
 
 @dataclasses.dataclass(frozen=True)
 class Stated:
-    """margin_success, margin_time: shares. limit_s: of a game. felt: the property that was matched, or ""."""
+    """margin_success, margin_time: shares. limit_s: of a game. felt: the property that was matched, or judged of two presses, or ""."""
     margin_success: float
     margin_time: float
     limit_s: float
@@ -29,8 +29,6 @@ def stated(tables):
     for path in sorted({p for p in map(beside, tables) if p}):
         sys.path.append(str(HERE.parent / "experiment"))
         import study_file
-        from lxml import etree
         study = study_file.read(path)
-        felt = etree.parse(str(path)).find("response")
-        found[study.name] = Stated(study.margin["success"], study.margin["time"], study.stimulus.limit_s, felt.get("of", "") if felt is not None else "")
+        found[study.name] = Stated(study.margin["success"], study.margin["time"], study.stimulus.limit_s, study.of)
     return found

@@ -158,7 +158,7 @@ def felt_section(report):
     for f in felt:
         left = f" {f.left_out} answers of participants who never judged the undegraded stimulus are left out." if f.left_out else ""
         parts.append(report.keep(limit_plots.felt_figure(f), f"felt_{f.property}_{f.factor.modality}_{f.factor.operator}",
-                                 f"Felt {f.property} under {safe(f.factor.words())}, against the undegraded, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
+                                 f"{'Measured' if f.measured else 'Felt'} {f.property} under {safe(f.factor.words())}, against the undegraded, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
                                  f"({safe(f.source.situation)}). L_appear: {safe(value_of(f.limit))}; the property is felt as {f.toward}.{left}"))
     return "".join(parts)
 

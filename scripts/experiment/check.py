@@ -1,5 +1,6 @@
 """scripts/study check: is the file right, what will happen, how long does it take, and how much can it find?"""
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
@@ -33,7 +34,7 @@ def parsed(words):
     p.add_argument("study", help="a study file, or the name of a shipped one")
     p.add_argument("--participant", default="P01", help="whose plan; default: P01")
     p.add_argument("--participants", default="1,12,24", metavar="N,...", help="numbers of participants of whom is told what they can show; default: 1,12,24")
-    p.add_argument("--pilot", metavar="TRIALS.csv", help="how games go with nothing degraded, from a table of trials instead of assumed")
+    p.add_argument("--pilot", metavar="TRIALS.csv", help="how games go with nothing degraded, or what was felt in presses at each level, from a table of trials")
     p.add_argument("--simulations", type=int, default=100, help="simulated participants; default: 100")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--json", metavar="FILE", help="writes the same here")
@@ -78,18 +79,25 @@ def sequence(plan):
         plan.answered(trial, True)
 
 
-def assumed_of(options):
+def assumed_of(study, options):
     """power.Assumed of the command line."""
+    import observers
     import power
+    import power_felt
     import power_games
     import trial_table
-    games = power_games.Games()
-    if options.pilot:
-        try:
-            games = power_games.pilot(trial_table.read(options.pilot), options.pilot)
-        except ValueError as error:
-            raise Refusal(str(error)) from None
-    return power.Assumed(options.simulations, options.seed, options.participants, games)
+    assumed = power.Assumed(options.simulations, options.seed, options.participants)
+    if not options.pilot:
+        return assumed
+    presses = any(o.function in observers.PERCEPTS for o in study.observers.values())
+    if study.response != "performance" and not presses:
+        raise Refusal(f"--pilot is of games, or of presses whose <observer> judges what he feels; {study.name} asks for neither")
+    try:
+        rows = trial_table.read(options.pilot)
+        made = {"presses": power_felt.pilot(rows, options.pilot)} if presses else {"games": power_games.pilot(rows, options.pilot)}
+    except ValueError as error:
+        raise Refusal(str(error)) from None
+    return dataclasses.replace(assumed, **made)
 
 
 def checked(study, options):
@@ -97,7 +105,7 @@ def checked(study, options):
     import duration
     import power
     from plan import Plan
-    plan, assumed = Plan(study, options.participant), assumed_of(options)
+    plan, assumed = Plan(study, options.participant), assumed_of(study, options)
     lines = [*plan.describe(), profiles(study)]
     parts, about = duration.of_session(study, plan.expected_trials), "at most" if study.task == "game" else "about"
     minutes = sum(seconds for _, seconds in parts) / 60

@@ -38,7 +38,9 @@ class Condition:
     fixed: object = None  # the level of a performance condition
 
     def elements(self, level):
-        """Elements of the profile at this level."""
+        """Elements of the profile at this level; None: of what is varied nothing is degraded."""
+        if level is None and self.levels:
+            return []
         if self.kind == "asynchrony":
             later = self.senses[1] if level > 0 else self.senses[0]
             return [] if level == 0 else [quantities.degrade(later, "delay", abs(level))]

@@ -3,6 +3,7 @@ import stimuli
 
 IN_FORCE_S = 0.15  # a sense says ten times a second which profile it has: half of that, and the way there and back
 AFTER_S = 0.34     # reports of a sense come twice, 20 ms apart; then the hand goes back (stimuli.py). Sums of these agree with live sessions to 0.1 s a trial
+APPROACH_S = 0.5   # of the hand to the surface before a press, and back after it (scripts/conductor/hand.cpp)
 ANSWER_S = 1.5     # design: a choice between two, at leisure
 NUMBER_S = 4.0     # design: a slider
 BETWEEN_GAMES_S = 5.0  # design: the word that he is ready, and the world put back
@@ -22,7 +23,7 @@ def of_trial(study):
     if study.task == "game":
         return [("game, at the most", s.limit_s), ("between games", BETWEEN_GAMES_S)]
     if study.task == "press":
-        return [("profiles and foreperiods", 2 * ready), ("presses", 2 * s.period_s * s.times), answer]
+        return [("profiles and foreperiods", 2 * ready), ("presses", 2 * (s.period_s * s.times + 2 * APPROACH_S)), answer]
     levels = [abs(level) for condition in study.conditions for level in condition.levels]
     return [("profile and foreperiod", ready), ("base delay", study.base_delay_ms / 1e3), ("asynchrony", sum(levels) / len(levels) / 1e3), ("reports, hand back", AFTER_S), answer]
 

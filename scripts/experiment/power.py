@@ -1,7 +1,7 @@
 """What a study can find, by simulation: its own procedures, answered by observers whose thresholds are known, fitted as the analysis does.
 
 Of yes/no answers: how narrow the 95 % interval of each estimate will be. Of ratings and matchings: the smallest difference between two levels
-that a t-test finds. Games are in power_games.py.
+that a t-test finds. Games are in power_games.py, presses that are judged by what was felt in power_felt.py.
 """
 import dataclasses
 import math
@@ -10,10 +10,12 @@ import numpy as np
 
 import fits
 import intervals
+import power_felt
 import power_games
 import procedures
 import study_file
-from observers import SimulatedObserver
+from functions import function
+from observers import PERCEPTS, SimulatedObserver
 from plan import Plan
 
 WANTED, ALPHA = 0.8, 0.05  # power and size of a test that are usual (Cohen 1988, Statistical Power Analysis, sections 2.4 and 1.2)
@@ -22,11 +24,13 @@ FIXED = {"two_interval": {"guess": 0.5}}
 
 @dataclasses.dataclass(frozen=True)
 class Assumed:
-    """participants: numbers of them of which power is told. games: power_games.Games, how these go with nothing degraded."""
+    """participants: numbers of them of which power is told. games: power_games.Games, how these go with nothing degraded. presses: power_felt.Presses of a
+    pilot, or None."""
     simulations: int = 100
     seed: int = 1
     participants: tuple = (1, 12, 24)
     games: power_games.Games = power_games.Games()
+    presses: power_felt.Presses = None
 
 
 def of(study, assumed):
@@ -35,25 +39,38 @@ def of(study, assumed):
         return power_games.of(study, assumed, WANTED, ALPHA)
     if study.response not in study_file.YES_OR_NO:
         return differences(study, assumed)
-    return [row for condition in study.conditions if study.observer(condition) is not None for row in estimates(study, condition, assumed)]
+    return [row for condition in study.conditions if study.observer(condition) is not None for row in of_condition(study, condition, assumed)]
 
 
-def estimates(study, condition, assumed):
-    """[{condition, parameter, truth, half_width, bias, sd, no_fit, trials, groups}]. half_width: median over simulated participants of half the 95 %
+def of_condition(study, condition, assumed):
+    observer = study.observer(condition)
+    if observer.function not in PERCEPTS:
+        make = lambda n: SimulatedObserver(observer.function, observer.params, [assumed.seed, n])
+        return estimates(study, condition, assumed, make, observer.function, {name: observer.params[name] for name in function(observer.function).parameters[:2]})
+    told = power_felt.differences(study, condition, assumed.participants, WANTED, ALPHA)
+    levels = assumed.presses.felt.get(condition.id) if assumed.presses else None
+    truth = power_felt.truth(levels, observer) if levels else math.nan
+    if math.isnan(truth):
+        return told
+    return told + estimates(study, condition, assumed, lambda n: power_felt.Felt(levels, observer, [assumed.seed, n]), power_felt.FIT, {power_felt.PARAMETER: truth})
+
+
+def estimates(study, condition, assumed, make, fit, truths):
+    """[{condition, parameter, truth, half_width, bias, sd, no_fit, trials, groups}] of each of truths, {parameter: value}. make(n): observer of the n-th
+    simulated participant; fit: the function that is fitted to what he answers. half_width: median over simulated participants of half the 95 %
     interval of one; sd: of their estimates; no_fit: share whose answers place no threshold; groups: {participants: half width of the interval of
     the mean of so many, who are all alike}."""
-    observer = study.observer(condition)
     histories = []
     for n in range(assumed.simulations):
         plan = Plan(dataclasses.replace(study, conditions=(condition,)), f"P{n + 1}", assumed.seed)
-        histories.append(procedures.run(plan.procedures[0], SimulatedObserver(observer.function, observer.params, [assumed.seed, n])))
-    fitted = fits.fit_many(*procedures.stacked(histories), observer.function, FIXED.get(study.response))
+        histories.append(procedures.run(plan.procedures[0], make(n)))
+    fitted = fits.fit_many(*procedures.stacked(histories), fit, FIXED.get(study.response))
     placed, rows = fitted.placed(), []
-    for name in fitted.function.parameters[:2]:
+    for name, truth in truths.items():
         low, high = intervals.of_many(fitted, name)
-        off = fitted.estimates(name)[placed] - observer.params[name]
+        off = fitted.estimates(name)[placed] - truth
         sd = float(off.std(ddof=1)) if len(off) > 1 else math.nan
-        rows.append({"condition": condition.id, "parameter": name, "truth": observer.params[name], "half_width": float(np.median((high - low) / 2)),
+        rows.append({"condition": condition.id, "parameter": name, "truth": truth, "half_width": float(np.median((high - low) / 2)),
                      "bias": float(off.mean()) if len(off) else math.nan, "sd": sd, "no_fit": float(1 - placed.mean()),
                      "trials": float(np.mean([len(h) for h in histories])), "groups": {n: of_mean(sd, n) for n in assumed.participants if n > 1}})
     return rows
@@ -88,11 +105,14 @@ def words(study, found, assumed):
         return ["smallest difference between two levels that a t-test finds with 80 % power, in standard deviations of one answer (that of people's own means is not in it):",
                 *(f"  {f['participants']:4d} participants, {f['answers']} answers a level: " + ("none, one answer has no spread" if f["smallest_in_sd"] is None else f"{f['smallest_in_sd']:.2f}")
                   for f in found)]
-    lines = []
+    differ = [f for f in found if "softer" in f]
+    lines = power_felt.words(study, differ, assumed.presses) if any(o.function in PERCEPTS for o in study.observers.values()) else []
     for f in found:
+        if "softer" in f:
+            continue
         lines.append(f"{f['condition']}: {f['parameter']} of {f['truth']:g} will be known to +-{f['half_width']:.3g} (95 %) from one participant, bias {f['bias']:+.2g} "
                      f"({assumed.simulations} simulated participants, {f['trials']:.0f} trials each" + (f"; no threshold found in {f['no_fit']:.0%}" if f["no_fit"] else "") + ")"
                      + "".join(f"; the mean of {n} to +-{w:.3g}" for n, w in f["groups"].items()))
-    if lines:
+    if len(found) > len(differ):
         lines.append("means are of participants who are all alike; how much people differ comes on top")
     return lines or ["the study file has no <observer>: what it can find is not simulated"]

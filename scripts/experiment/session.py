@@ -175,7 +175,7 @@ class Session:
                 return None
         self.ask(question, trial)
         if self.study.response in YES_OR_NO:
-            yes = self.participant.says_yes(trial, attempt, level)
+            yes = self.participant.says_yes(trial, attempt, level, observed)
             return self.answered(choice=asking.choice_of(self.study, trial, yes))
         return self.answered(number=self.study.number[0]) if self.study.number else self.answered(choice=0)
 

@@ -27,7 +27,11 @@ class Participant:
         a, b = times.values()
         return (b - a) * 1e-6, ""
 
-    def says_yes(self, trial, attempt, level):
-        """Of a synchrony: together; of an order: the first sense came first; of two intervals: he has found the degraded one."""
+    def says_yes(self, trial, attempt, level, observed):
+        """Of a synchrony: together; of an order: the first sense came first; of two intervals: he has found the degraded one. Of stiffness he judges the
+        two that he felt, and the level is nothing to him."""
         observer = self.study.observer(trial.condition)
-        return observers.SimulatedObserver(observer.function, observer.params, [self.seed, len(self.name), *self.name.encode(), trial.number, attempt]).answer(level)
+        seed = [self.seed, len(self.name), *self.name.encode(), trial.number, attempt]
+        if observer.function in observers.PERCEPTS:
+            return observers.PERCEPTS[observer.function](**observer.params, seed=seed).softer(*observed.stiffnesses_N_m) == trial.degraded_interval
+        return observers.SimulatedObserver(observer.function, observer.params, seed).answer(level)

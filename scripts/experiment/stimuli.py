@@ -93,7 +93,7 @@ def press(lead, study, trial, seed):
     """Two presses, one of them under the trial's profile, the other under the base alone."""
     stiffnesses, strongest = [], 0.0
     for interval in (0, 1):
-        level = trial.level if interval == trial.degraded_interval else 0
+        level = trial.level if interval == trial.degraded_interval else None
         missed = ready(lead, study.profile(trial.condition, level))
         if missed:
             return Observed(missed=missed)
@@ -109,4 +109,5 @@ def press(lead, study, trial, seed):
             return Observed(missed=f"nothing was felt in interval {interval + 1}")
         stiffnesses.append(stiffness)
         strongest = max(strongest, max(f for _, _, f in lead.felt))
-    return Observed(stiffnesses_N_m=tuple(stiffnesses), reached_N=strongest)
+    return Observed(stiffnesses_N_m=tuple(stiffnesses), reached_N=strongest, row={"stiffness_first_n_m": round(stiffnesses[0], 4),
+                    "stiffness_second_n_m": round(stiffnesses[1], 4), "degraded_interval": trial.degraded_interval + 1})

@@ -12,6 +12,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [p for p in (str(HERE), str(HERE.parent / "supervise"), str(HERE.parent / "psychophysics")) if p not in sys.path]
 import conditions
 import functions
+import observers
 import procedure_element
 import quantities
 from refusal import Refusal
@@ -29,6 +30,10 @@ QUESTIONS = {
     "two_interval": ("In which of the two was something wrong?", ("the first", "the second")),
     "rating": ("How good was that?", ()), "matching": ("How much was it?", ()), "performance": ("", ())}
 JUDGED = {"tap": "asynchrony", "press": "factor"}  # kinds of conditions of a task
+SOFTER = "Which of the two felt softer?"  # of two presses, where the study asks for their stiffness
+# What touch learns of its channel it forgets within seconds (LoopDelay in haptic_node/coupling.h), a delay of its output alone at once: the press after one
+# that was degraded so would be soft of it, too.
+SLOW_TO_FORGET = ("network_delay", "jitter", "loss", "rate", "deadband")
 SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}
 
 
@@ -58,7 +63,8 @@ class Stimulus:
 
 @dataclasses.dataclass(frozen=True)
 class Observer:
-    """A simulated participant's psychometric function in a condition. sources: {parameter: where its value is from}."""
+    """A simulated participant in a condition. function: psychometric, of the level; or one of observers.PERCEPTS, of what he felt. sources: {parameter:
+    where its value is from}."""
     function: str
     params: dict
     sources: dict
@@ -81,6 +87,7 @@ class Study:
     question: str
     choices: tuple
     number: tuple         # (lowest, highest, step) of a rating or matching; ()
+    of: str               # the property that is matched, or judged of two presses; ""
     stimulus: Stimulus
     questionnaire: tuple
     questionnaire_at: str  # end or block
@@ -170,6 +177,8 @@ class Reading:
         if wanted and any(c.kind != wanted for c in found):
             self.refuse(find("conditions"), f"what is judged of a {task} is of <{wanted}> alone; that of a tap is <asynchrony>, that of a press <factor>")
         question, choices, number = self.asked(response, kind, found)
+        if kind == "two_interval" and self.of(response, kind):
+            self.forgotten_at_once(find("conditions"), found)
         blocks, tolerance, margin, base = find("blocks"), find("tolerance"), find("margin"), find("base")
         return Study(
             name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene(), task=task, seed=int(root.get("seed", "1")),
@@ -177,7 +186,7 @@ class Reading:
             base_delay_ms=self.quantity(base, "delay", quantities.OPERATORS["delay"], 100.0),
             base=tuple(self.element(e) for e in (base if base is not None else ())),
             conditions=tuple(found), procedure=procedure_element.read(self, find("procedure"), kind in YES_OR_NO, kind, found), response=kind, question=question, choices=choices,
-            number=number, stimulus=self.stimulus(find("stimulus")), questionnaire=self.questionnaire(find("questionnaire")),
+            number=number, of=self.of(response, kind), stimulus=self.stimulus(find("stimulus")), questionnaire=self.questionnaire(find("questionnaire")),
             questionnaire_at=find("questionnaire").get("at", "end") if find("questionnaire") is not None else "end",
             blocks=int(blocks.get("count")) if blocks is not None else 1,
             break_s=self.quantity(blocks, "break", quantities.PAUSE, 0.0),
@@ -254,6 +263,8 @@ class Reading:
         """(question, choices, number) with what is usual where the file is silent."""
         text, choices = QUESTIONS[kind]
         given = [self.words(c, LONGEST_CHOICE) for c in e.findall("choice")] if e is not None else []
+        if kind == "two_interval" and self.of(e, kind):
+            text = SOFTER
         if e is not None and e.find("question") is not None:
             text = self.words(e.find("question"))
         if given and kind in (*YES_OR_NO, "performance") and len(given) != len(choices):
@@ -270,6 +281,19 @@ class Reading:
         if kind == "matching" and e.get("of") is None:
             self.refuse(e, "a matching says of what: of=\"stiffness\" or of=\"temperature\"")
         return text, tuple(given or choices), number
+
+    def of(self, e, kind):
+        """What the answers are about, where the file says it."""
+        of = e.get("of", "") if e is not None else ""
+        if kind == "two_interval" and of not in ("", "stiffness"):
+            self.refuse(e, f"of two presses it is the stiffness that is judged, not {of}; write of=\"stiffness\", or leave it away")
+        return of
+
+    def forgotten_at_once(self, e, found):
+        """Refuses what would still be felt in the press that is compared with it."""
+        slow = next((f for c in found for f in c.factors if f.modality == "haptic" and f.operator in SLOW_TO_FORGET), None)
+        if slow is not None:
+            self.refuse(e, f"touch gets over {slow.operator} within seconds only, so that the other press would feel of it, too; the stiffness of two presses is judged under a delay")
 
     def stimulus(self, e):
         if e is None:
@@ -306,20 +330,32 @@ class Reading:
     def observers(self, found, kind):
         all_of = {}
         for e in self.root.findall("observer"):
-            of, function = e.get("of", ""), functions.FUNCTIONS.get(e.get("function"))
+            of, name = e.get("of", ""), e.get("function")
+            function = functions.FUNCTIONS.get(name) or observers.PERCEPTS.get(name)
             if of and of not in (c.id for c in found):
                 self.refuse(e, f"there is no condition {of}; choose from {', '.join(c.id for c in found[:20])}")
             if function is None:
-                self.refuse(e, f"there is no function {e.get('function')}; choose from {', '.join(functions.FUNCTIONS)}")
+                self.refuse(e, f"there is no function {name}; choose from {', '.join((*functions.FUNCTIONS, *observers.PERCEPTS))}")
             params = {p.get("name"): float(p.get("value")) for p in e}
             if set(params) != set(function.parameters) or len(params) < len(e):
-                self.refuse(e, f"{e.get('function')} has the parameters {', '.join(function.parameters)}, each once")
-            if function.dimensions == 1 and kind in YES_OR_NO:
+                self.refuse(e, f"{name} has the parameters {', '.join(function.parameters)}, each once")
+            if name in observers.PERCEPTS:
+                self.percept(e, name, params, kind)
+            elif function.dimensions == 1 and kind in YES_OR_NO:
                 with np.errstate(all="ignore"):
                     p = [function.p(c.levels, **params) for c in found if c.levels and of in ("", c.id)]
                 if not all(np.all((x >= 0) & (x <= 1)) for x in p):
                     self.refuse(e, "with these parameters there is a level without a probability from 0 to 1; spreads are above 0, and guess and lapse together at most 1")
             elif kind in YES_OR_NO:
-                self.refuse(e, f"{e.get('function')} is of two levels, and a {kind} has one")
-            all_of[of] = Observer(e.get("function"), params, {p.get("name"): p.get("source") for p in e})
+                self.refuse(e, f"{name} is of two levels, and a {kind} has one")
+            all_of[of] = Observer(name, params, {p.get("name"): p.get("source") for p in e})
         return all_of
+
+    def percept(self, e, name, params, kind):
+        """Refuses an observer who is told what he felt and is asked for something else."""
+        if kind != "two_interval" or not self.of(self.root.find("response"), kind):
+            self.refuse(e, f"{name} tells which of two presses felt softer; ask for that by <response kind=\"two_interval\" of=\"stiffness\">")
+        try:
+            observers.PERCEPTS[name](**params, seed=1)
+        except ValueError as error:
+            self.refuse(e, str(error))

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("analysis", "supervise")]
+sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("analysis", "supervise", "psychophysics")]
 
 
 def write(path, rows):

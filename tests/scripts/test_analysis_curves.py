@@ -11,6 +11,8 @@ import answers
 import appearance
 import detection
 import limits
+import observers
+import presses
 import psychometric
 import published
 import trials
@@ -31,6 +33,22 @@ def matches(rng, people, cost, levels=(0, 20, 40, 80, 120), each=8, study="stiff
                 rows.append({"study": study, "participant_id": f"P{p:02}", "task": "matching", "observer": "human", "trial": len(rows) + 1, "question": question,
                              "modality_degraded": "haptic", "operator": "delay", "level": float(x), "unit": "ms",
                              "answer_value": scale * (1 - cost * x) * (1 + rng.normal(0, 0.1))})
+    return rows
+
+
+def pressings(rng, people, cost, levels=(5, 10, 20, 40, 60), each=20):
+    """Two presses a trial: stiffness falls by `cost` of itself a ms, is measured to 3 %, and a Presser with a weber fraction of 0.2 says which was the softer."""
+    rows = []
+    for p in range(people):
+        presser = observers.Presser(0.2, 0.02, [p, int(rng.integers(1 << 30))])
+        for x in levels:
+            for _ in range(each):
+                degraded, felt = int(rng.integers(2)), 50 * (1 + rng.normal(0, 0.03, 2))
+                felt[degraded] *= 1 - cost * x
+                says = presser.softer(*felt)
+                rows.append({"study": "pressed", "participant_id": f"P{p:02}", "task": "2ifc", "observer": "simulated", "trial": len(rows) + 1,
+                             "modality_degraded": "haptic", "operator": "delay", "level": float(x), "unit": "ms", "response": ("first", "second")[says],
+                             "correct": int(says == degraded), "degraded_interval": degraded + 1, "stiffness_first_n_m": felt[0], "stiffness_second_n_m": felt[1]})
     return rows
 
 
@@ -141,6 +159,46 @@ class Appearance(unittest.TestCase):
         (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
         felt, = appearance.felt(name, kept, np.random.default_rng(1))
         self.assertEqual((felt.left_out, sum(felt.counts)), (32, 64))
+
+
+class Presses(unittest.TestCase):
+    def test_the_delay_at_which_the_measured_stiffness_is_off_by_a_jnd_is_recovered(self):
+        inside = 0
+        for seed in range(60):
+            rng = np.random.default_rng(seed)
+            felt, = presses.felt(trials.of_rows(pressings(rng, 2, 0.008)), rng)
+            self.assertEqual((felt.measured, felt.toward, felt.limit.kind, felt.limit.by, felt.limit.factor),
+                             (True, "less", "appear", "stiffness, measured", Factor("haptic", "delay", "ms")))
+            inside += felt.limit.low <= 0.23 / 0.008 <= felt.limit.high
+        # 57 expected, binomial standard deviation 1.7.
+        self.assertGreaterEqual(inside, 52)
+
+    def test_the_delay_from_which_on_three_in_four_call_it_softer_is_recovered(self):
+        truth = (1 - 1 / 1.2) / 0.008  # where the two differ by the weber fraction
+        inside = 0
+        for seed in range(25):
+            rows = trials.of_rows(pressings(np.random.default_rng(seed), 1, 0.008, each=40))
+            found, = detection.detected(psychometric.curves(rows, 1), 1, lambda study: "stiffness")
+            self.assertEqual((found.kind, found.by, found.observer), ("appear", "stiffness, judged", "simulated"))
+            inside += found.low <= truth <= found.high
+        # 24 expected; the function that is fitted is not quite the observer's own.
+        self.assertGreaterEqual(inside, 21)
+        found, = detection.detected(psychometric.curves(rows, 1), 1)
+        self.assertEqual((found.kind, found.by), ("detect", "2ifc"))  # of a study that does not ask which was the softer
+
+    def test_a_delay_that_changes_nothing_reaches_no_limit(self):
+        felt, = presses.felt(trials.of_rows(pressings(np.random.default_rng(1), 2, 0.0)), np.random.default_rng(1))
+        self.assertFalse(felt.limit.reached)
+        self.assertEqual(felt.limit.low, math.inf)
+        self.assertTrue(all(abs(s) < 0.03 for s in felt.shifts), felt.shifts)
+
+    def test_trials_without_both_stiffnesses_are_no_presses(self):
+        rows = pressings(np.random.default_rng(1), 1, 0.008)
+        for row, name in zip(rows, presses.COLUMNS):
+            del row[name]
+        felt, = presses.felt(trials.of_rows(rows), np.random.default_rng(1))
+        self.assertEqual(sum(felt.counts), len(rows) - 3)
+        self.assertEqual(presses.felt(trials.of_rows(matches(np.random.default_rng(1), 2, 0.002)), np.random.default_rng(1)), [])
 
 
 class Published(unittest.TestCase):

@@ -25,6 +25,12 @@ def study(rng):
             for _ in range(4):
                 rows.append({"study": "stiffness", "participant_id": f"P{i:02}", "task": "matching", "observer": "simulated", "trial": len(rows) + 1, "question": "stiffness",
                              "modality_degraded": "haptic", "operator": "delay", "level": x, "unit": "ms", "answer_value": 200 * (1 - 0.003 * x) + rng.normal(0, 10)})
+    for i in range(60):
+        level, degraded = (10.0, 20.0, 40.0)[i % 3], 1 + i // 3 % 2
+        felt = [40 * (1 - 0.01 * level * (k == degraded)) for k in (1, 2)]
+        rows.append({"study": "pressed", "participant_id": "P00", "task": "2ifc", "observer": "simulated", "trial": len(rows) + 1, "modality_degraded": "haptic", "operator": "delay",
+                     "level": level, "unit": "ms", "degraded_interval": degraded, "stiffness_first_n_m": felt[0], "stiffness_second_n_m": felt[1],
+                     "response": ("first", "second")[degraded - 1], "correct": int(rng.random() < 0.5 + 0.0125 * level)})
     for condition, share, mean in (((), 0.95, 8), ((("visual", "delay", 50, "ms"),), 0.9, 9), ((("visual", "delay", 200, "ms"),), 0.6, 14), ((("haptic", "delay", 20, "ms"),), 0.9, 9),
                                    ((("haptic", "delay", 20, "ms"), ("visual", "delay", 50, "ms")), 0.8, 10),
                                    ((("haptic", "delay", 20, "ms"), ("visual", "delay", 200, "ms")), 0.4, 17), ((("audio", "off", "", ""),), 0.9, 9),
@@ -63,7 +69,7 @@ class Whole(unittest.TestCase):
     def test_every_figure_is_there_as_svg_and_png(self):
         named = re.findall(r'<figure id="([^"]+)">', self.page)
         self.assertEqual(len(named), len(set(named)))
-        wanted = {"curve_audio_visual_sj", "participants_audio_visual_sj", "achieved_audio_visual_sj", "levels_audio_visual_sj", "felt_stiffness_haptic_delay", "games_visual_delay",
+        wanted = {"curve_audio_visual_sj", "participants_audio_visual_sj", "achieved_audio_visual_sj", "levels_audio_visual_sj", "felt_stiffness_haptic_delay", "felt_stiffness_haptic_delay_2", "games_visual_delay",
                   "games_visual_rate", "removal", "frontier_map_haptic_delay_visual_delay", "frontier_haptic_delay_visual_delay", "ratio_break_detect", "limits_visual_delay"}
         self.assertLessEqual(wanted, set(named))
         folder = self.root / "a" / "figures"
@@ -101,6 +107,14 @@ class Whole(unittest.TestCase):
     def test_published_thresholds_stand_behind_the_data_with_their_sources(self):
         for source in ("Vogels 2004", "Jones and Hunter 1990"):
             self.assertIn(source, self.page)
+
+    def test_what_was_measured_of_presses_is_told_from_what_was_judged(self):
+        with open(self.root / "a" / "felt.csv", newline="", encoding="utf-8") as file:
+            measured = [float(r["shift"]) for r in csv.DictReader(file) if r["by"] == "measured"]
+        np.testing.assert_allclose(measured, [-0.1, -0.2, -0.4], atol=1e-5)  # six digits of each stiffness
+        self.assertIn("Measured stiffness under touch: delay", self.page)
+        self.assertIn("Felt stiffness under touch: delay", self.page)
+        self.assertIn("stiffness, measured", (self.root / "a" / "limits.csv").read_text())
 
     def test_texts_stay_texts(self):
         self.assertIn("dark&lt;script&gt;", self.page)

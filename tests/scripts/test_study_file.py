@@ -29,6 +29,17 @@ GOOD = """<study name="s" version="1" scene="single_taps.sdf" task="tap" seed="3
 """
 
 
+PRESSED = """<study name="s" version="1" scene="yielding_board.sdf" task="press" seed="3">
+  <conditions><factor modality="haptic" operator="delay" levels="10ms 40ms"/></conditions>
+  <procedure kind="constant" repetitions="4"/>
+  <response kind="two_interval" of="stiffness"/>
+  <observer function="felt_stiffness">
+    <parameter name="weber" value="0.23" source="x"/><parameter name="lapse" value="0.02" source="x"/>
+  </observer>
+</study>
+"""
+
+
 class StudyFile(unittest.TestCase):
     def read(self, text):
         with tempfile.TemporaryDirectory() as folder:
@@ -82,6 +93,26 @@ class StudyFile(unittest.TestCase):
                 ('<blocks', '<chunks', "chunks")):
             with self.subTest(new):
                 self.refused(self.changed(old, new), word)
+
+    def test_an_observer_of_presses_judges_what_he_felt_and_is_asked_for_that(self):
+        s = self.read(PRESSED)
+        self.assertEqual((s.of, s.question, s.observer(s.conditions[0]).params), ("stiffness", study_file.SOFTER, {"weber": 0.23, "lapse": 0.02}))
+        for old, new, word in (
+                (' of="stiffness"', '', "ask for that by"),
+                ('of="stiffness"', 'of="temperature"', "it is the stiffness that is judged, not temperature"),
+                ('value="0.23"', 'value="0"', "a weber fraction is above 0"),
+                ('value="0.02"', 'value="1.5"', "a lapse rate from 0 to 1"),
+                ('name="weber"', 'name="threshold"', "has the parameters weber, lapse"),
+                ('operator="delay"', 'operator="network_delay"', "gets over network_delay within seconds only"),
+                ('felt_stiffness"', 'felt_softness"', "choose from synchrony_window"),
+                ('"two_interval" of="stiffness"', '"rating" of="stiffness" lowest="1" highest="9" step="1"', "which of two presses felt softer")):
+            with self.subTest(new):
+                self.assertIn(old, PRESSED)
+                self.refused(PRESSED.replace(old, new), word)
+
+    def test_a_study_of_two_intervals_without_such_an_observer_is_read_as_ever(self):
+        s = self.read(PRESSED.replace(' of="stiffness"', "").replace(PRESSED[PRESSED.index("<observer"):], "</study>"))
+        self.assertEqual((s.of, s.question, s.observers), ("", study_file.QUESTIONS["two_interval"][0], {}))
 
     def test_what_is_no_xml_is_refused(self):
         for text in ("", "<study", GOOD.replace("</study>", ""), GOOD + "<more/>"):

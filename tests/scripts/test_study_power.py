@@ -48,7 +48,9 @@ class OfYesAndNo(unittest.TestCase):
         self.assertAlmostEqual(r["groups"][4], stats.t.ppf(0.975, 3) * r["sd"] / 2)
 
     def test_of_an_adaptive_procedure_the_trials_that_it_took_are_told(self):
-        self.study = dataclasses.replace(study_file.read("haptic_delay_stiffness"), procedure={
+        study = study_file.read("haptic_delay_stiffness")
+        study = dataclasses.replace(study, observers={"": study_file.Observer("cumulative_gaussian", {"threshold": 36.0, "sd": 15.0, "guess": 0.5, "lapse": 0.02}, {})})
+        self.study = dataclasses.replace(study, procedure={
             "kind": "staircase", "rule": "1up2down", "start": 80.0, "step": 20.0, "minimum_step": 5.0, "lowest": 0.0, "highest": 150.0, "reversals": 8})
         r = self.rows(simulations=40)["threshold"]
         self.assertTrue(20 < r["trials"] < 80, r)
@@ -56,7 +58,7 @@ class OfYesAndNo(unittest.TestCase):
 
     def test_who_answers_by_chance_has_no_threshold_and_that_is_told(self):
         study = study_file.read("haptic_delay_stiffness")
-        deaf = dataclasses.replace(study.observers[""], params={"threshold": 5000.0, "sd": 1.0, "guess": 0.5, "lapse": 0.0})
+        deaf = study_file.Observer("cumulative_gaussian", {"threshold": 5000.0, "sd": 1.0, "guess": 0.5, "lapse": 0.0}, {})
         self.study = dataclasses.replace(study, observers={"": deaf})
         found = power.of(self.study, power.Assumed(simulations=30))
         self.assertGreater(found[0]["no_fit"], 0.2)
