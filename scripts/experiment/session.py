@@ -226,6 +226,8 @@ class Session:
             words += f"  slow: {', '.join(slow)}" if slow else ""
         tell(words)
         if done and done % ESTIMATE_EVERY == 0:
+            if self.lead is not None and self.lead.senses:
+                tell("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.lead.senses.items())))
             for name, estimate in self.plan.estimates().items():
                 if estimate:
                     tell(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
