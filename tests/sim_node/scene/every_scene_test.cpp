@@ -24,9 +24,10 @@ std::vector<std::filesystem::path> scenes() {
   return found;
 }
 
-// Where the path of a tool is at a time, in straight legs, round and round.
-Vector3d along(const tool_def_t& tool, double t) {
+// Where the path of a tool is at a time, in straight legs, round and round; one without a path stays where the scene has it.
+Vector3d along(const WorldDef& w, const tool_def_t& tool, double t) {
   const auto& path = tool.waypoints;
+  if (path.empty()) return w.bodies[static_cast<std::size_t>(tool.body)].pose.translation();
   if (tool.loop) t = std::fmod(t, path.back().time_s);
   for (std::size_t i = 1; i < path.size(); ++i) {
     if (t > path[i].time_s) continue;
@@ -68,13 +69,13 @@ TEST_CASE(
     const WorldDef w = load_sdf(file, warnings);
     Simulation s(w, settings_of(w));
     s.start(11);
-    test::Hand hand{.radius = w.tools[0].radius_m, .stiffness = 500, .last = along(w.tools[0], 0)};
+    test::Hand hand{.radius = w.tools[0].radius_m, .stiffness = 500, .last = along(w, w.tools[0], 0)};
     double fastest = 0, farthest = 0;
     std::size_t begins = 0, contacts = 0;
     std::vector<contact_t> live;
     for (int i = 0; i < 2000; ++i) {
       const std::int64_t now_ns = sync::to_ns(s.now());
-      s.step(std::vector{hand.tick(s.touch_models()[0], along(w.tools[0], now_ns * 1e-9), now_ns)});
+      s.step(std::vector{hand.tick(s.touch_models()[0], along(w, w.tools[0], now_ns * 1e-9), now_ns)});
       for (const contact_event_t& e : s.events()) begins += e.kind == contact_event_t::BEGIN;
       for (std::size_t b = 0; b < w.bodies.size(); ++b) {
         if (w.bodies[b].is_static || w.bodies[b].tool >= 0) continue;

@@ -69,12 +69,21 @@ struct Difference {
 // 1: what CIEDE2000 is scaled to, for surfaces side by side.
 inline constexpr double kJustNoticeable = 1;
 
-// RGBA of one size.
-inline Difference difference(std::span<const std::uint8_t> one, std::span<const std::uint8_t> two) {
+// Luminance of a lightness, 1: white (CIE 15:2018, the inverse of its equation 8.3).
+inline double luminance_of(double lightness) {
+  const double f = (lightness + 16) / 116;
+  return lightness > 8 ? f * f * f : lightness * 27 / 24389;
+}
+
+// RGBA of one size. rounding: luminances that differ by no more do not count as seen.
+inline Difference difference(std::span<const std::uint8_t> one, std::span<const std::uint8_t> two,
+                             double rounding = 0) {
   Difference d;
   for (std::size_t i = 0; i + 3 < one.size(); i += 4) {
-    const double e = ciede2000(lab_of(&one[i]), lab_of(&two[i]));
-    d.mean += e, d.seen += e > kJustNoticeable;
+    const Eigen::Vector3d a = lab_of(&one[i]), b = lab_of(&two[i]);
+    const double e = ciede2000(a, b);
+    const bool rounded = rounding > 0 && std::abs(luminance_of(a[0]) - luminance_of(b[0])) <= rounding;
+    d.mean += e, d.seen += e > kJustNoticeable && !rounded;
   }
   const double pixels = static_cast<double>(one.size()) / 4;
   return {d.mean / pixels, d.seen / pixels};

@@ -25,12 +25,17 @@ const std::string kFolder = TACTUS_SOURCE_DIR "/tests/visual_node/golden/";
 // What another renderer may make of it: rounding to eight bits is below 0.4 of CIEDE2000, and of the pixels one in
 // a hundred lies on an edge that goes the other way round a sample.
 constexpr double kMean = 0.4, kSeen = 0.01;
+// Up to eight times half a step of eight bits, as in gl/screen_passes_test.cpp.
+constexpr double kEdgesRounding = 0.02;
 bool alike(const Difference& d) { return d.mean <= kMean && d.seen <= kSeen; }
 
 struct Frame {
   std::string name, scene;
   std::function<void(scene_t&)> change;  // of the scene, as its file has it
   visual::Settings settings{};
+  // What a last bit of the picture before the passes may come to in them, of luminance: processors round it
+  // differently, and a gradient makes lines of it where it is dark.
+  double rounding = 0;
 };
 
 int body_of(const scene_t& scene, const std::string& name) {
@@ -70,6 +75,8 @@ std::vector<Frame> frames() {
                      look_at_body(s, "normal_mapped");
                      pass(s, shader);
                    }});
+  for (Frame& f : all)
+    if (f.name == "edges") f.rounding = kEdgesRounding;
   const auto as_it_is = [](scene_t&) {};
   all.push_back({"dark_room", "dark_room", as_it_is});
   all.push_back({"bump_plane", "bump_plane", as_it_is});
@@ -144,7 +151,7 @@ TEST_CASE("Bytes of sRGB are the lightness and colour that they stand for") {
 TEST_CASE("Shipped scenes look as they did when somebody looked at them") {
   for (const Frame& f : frames()) {
     const Picture now = draw(f);
-    const Difference d = difference(now.rgba, kept(f.name));
+    const Difference d = difference(now.rgba, kept(f.name), f.rounding);
     if (!alike(d)) visual::write_png(f.name + ".now.png", now.rgba, kWidth, kHeight);
     INFO(f.name << ": mean difference " << d.mean << ", seen in " << 100 * d.seen
                 << " % of the pixels; now: " << f.name << ".now.png");
@@ -187,7 +194,8 @@ TEST_CASE("Whatever is drawn wrongly differs from them visibly") {
                       }});
   mistakes.push_back({"blur", "no pass", [](scene_t& s) { s.passes.clear(); }});
   for (const Mistake& m : mistakes) {
-    const Difference d = difference(draw(frame(m.frame), m.change).rgba, kept(m.frame));
+    const Frame f = frame(m.frame);
+    const Difference d = difference(draw(f, m.change).rgba, kept(m.frame), f.rounding);
     INFO(m.frame << ", " << m.what << ": mean difference " << d.mean << ", seen in " << 100 * d.seen << " %");
     CHECK_FALSE(alike(d));
   }
