@@ -12,6 +12,7 @@ BAND_DRAWS = 300  # design: of the band about a curve
 SIDE_BY_SIDE = 4  # columns of small multiples
 RUNNING_FROM, RUNNING_POINTS = 10, 24  # the estimate while answers came in: from so many on, at so many instants; design
 ADAPTIVE = 0.2  # of the range: levels that mostly change by less were chosen from the answers; design
+BESIDE, WIDEST = 0.02, 0.06  # of the range: levels that are so near are drawn as one, and no wider; design
 MOST_SMALL = 24  # participants on one figure, design
 ASKED = {"sj": "share judged synchronous", "toj": "share “{a} first”", "2ifc": "share correct"}
 
@@ -27,10 +28,23 @@ def span(curve, margin=0.08):
     return (low - room if curve.condition.pair else max(0.0, low - room)), high + room
 
 
+def together(levels, yes, total):
+    """(levels, yes, total) with those that lie beside one another joined, at their mean: achieved levels are all a little apart."""
+    order = np.argsort(levels)
+    levels, yes, total = levels[order], yes[order], total[order]
+    group, first, whole = np.zeros(len(levels), int), 0, np.ptp(levels) or 1
+    for i in range(1, len(levels)):
+        apart = levels[i] - levels[i - 1] > BESIDE * whole or levels[i] - levels[first] > WIDEST * whole
+        first = i if apart else first
+        group[i] = group[i - 1] + apart
+    sums = np.bincount(group, weights=total)
+    return np.bincount(group, weights=levels * total) / sums, np.bincount(group, weights=yes), sums
+
+
 def points(axes, curve, scale=1.0, **style):
     """A point for each level, its area in proportion to its answers."""
-    axes.scatter(curve.levels, curve.yes / curve.total, s=scale * (6 + 60 * curve.total / curve.total.max()), facecolor="white", edgecolor=style.get("color", INK),
-                 linewidth=0.9, zorder=3)
+    levels, yes, total = together(curve.levels, curve.yes, curve.total)
+    axes.scatter(levels, yes / total, s=scale * (6 + 60 * total / total.max()), facecolor="white", edgecolor=style.get("color", INK), linewidth=0.9, zorder=3)
 
 
 def finite(levels):

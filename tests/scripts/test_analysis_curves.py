@@ -220,5 +220,22 @@ class Published(unittest.TestCase):
         self.assertEqual(limits.ratio(never, seen, rng).high, math.inf)
 
 
+class Points(unittest.TestCase):
+    def test_achieved_levels_that_lie_beside_one_another_are_drawn_as_one_and_no_answer_is_lost(self):
+        import curve_plots
+        rng = np.random.default_rng(4)
+        levels = np.repeat(LEVELS, 20) + rng.uniform(-4, 4, 20 * len(LEVELS))
+        at, yes, total = curve_plots.together(levels, np.ones(len(levels)), np.full(len(levels), 2.0))
+        self.assertEqual([40.0] * len(LEVELS), list(total))
+        self.assertEqual([20.0] * len(LEVELS), list(yes))
+        self.assertLess(np.abs(at - LEVELS).max(), 4)
+
+    def test_levels_that_are_everywhere_stay_apart(self):
+        import curve_plots
+        at, yes, total = curve_plots.together(np.arange(0, 100, 0.5), np.zeros(200), np.ones(200))
+        self.assertGreater(len(at), 12)
+        self.assertEqual(200, total.sum())
+
+
 if __name__ == "__main__":
     unittest.main()
