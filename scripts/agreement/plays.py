@@ -1,17 +1,15 @@
 """Who plays: runs of a scene and games, live and in virtual time."""
-import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [p for p in (str(HERE.parent / d) for d in ("experiment", "supervise", "psychophysics", "sweep", "evaluation")) if p not in sys.path]
 import games
-import job
 import scene_figures
+from player import Player
 from refusal import Refusal
 
 STUDY = "game_limits"
@@ -44,26 +42,9 @@ def run(scene, seconds, seed, settings, out, virtual):
 
 def virtual_games(scene, asked):
     """Yields what bin/play_games tells of each game of `asked`, in their order. Raises Refusal."""
-    with tempfile.TemporaryDirectory(prefix="games-") as scratch:
-        try:
-            player = subprocess.Popen([str(job.PROGRAM), str(scene), "--out", scratch], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                      stderr=subprocess.PIPE, text=True)
-        except OSError as error:
-            raise Refusal(f"{job.PROGRAM}: cannot be run ({error.strerror}); run scripts/build") from None
-        with player:
-            try:
-                for game in asked:
-                    player.stdin.write(json.dumps(game) + "\n")
-                    player.stdin.flush()
-                    told = player.stdout.readline()
-                    if not told:
-                        raise BrokenPipeError
-                    yield json.loads(told)
-            except BrokenPipeError:
-                said = (player.communicate()[1].strip().splitlines() or ["it says nothing"])[-1]
-                raise Refusal(f"play_games has left before game {game['game']}: {said}") from None
-            finally:
-                player.kill()
+    with Player(scene) as player:
+        for game in asked:
+            yield player.told(game)
 
 
 def live_game(scene, asked, settings, out, keep):

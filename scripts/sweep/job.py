@@ -5,21 +5,17 @@
 
 What was played before is not played again. One process of bin/play_games plays all games of a chunk.
 """
-import json
 import os
 import pathlib
-import subprocess
 import sys
-import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [p for p in (str(HERE), str(HERE.parent / "supervise"), str(HERE.parent / "experiment")) if p not in sys.path]
 import virtual_games
 from chunk_file import Busy, ChunkFile
+from player import Player
 from refusal import Refusal
 from sweep_folder import SweepFolder
-
-PROGRAM = pathlib.Path(os.environ.get("TACTUS_BIN") or HERE.parents[1] / "build" / "dev" / "bin").absolute() / "play_games"
 
 
 def play(folder, number):
@@ -28,30 +24,12 @@ def play(folder, number):
         file = ChunkFile(folder.file(number))
     except Busy:
         return
-    left = [g for g in folder.chunks[number] if g.number not in file.done]
-    study = folder.study
-    with tempfile.TemporaryDirectory(prefix="games-") as scratch:
-        player = subprocess.Popen([str(PROGRAM), str(study.scene), "--out", scratch], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE, text=True)
-        try:
-            for game in left:
-                level = game.condition.fixed
-                player.stdin.write(json.dumps({"game": str(game.number), "seed": game.seed(study), "limit_s": study.stimulus.limit_s,
-                                               "profile": study.profile(game.condition, level)}) + "\n")
-                player.stdin.flush()
-                told = player.stdout.readline()
-                if not told:
-                    raise BrokenPipeError
-                file.append(virtual_games.row(study, game, json.loads(told)))
-        except BrokenPipeError:
-            player.kill()
-            said = (player.communicate()[1].strip().splitlines() or ["it says nothing"])[-1]
-            raise Refusal(f"play_games has left before game {game.number}: {said}") from None
-        finally:
-            if player.poll() is None:
-                player.stdin.close()
-                player.wait()
-            file.close()
+    try:
+        with Player(folder.study.scene) as player:
+            for game in (g for g in folder.chunks[number] if g.number not in file.done):
+                file.append(virtual_games.row(folder.study, game, player.told(virtual_games.asked(folder.study, game))))
+    finally:
+        file.close()
 
 
 def chunks_of(words):

@@ -8,7 +8,8 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [p for p in (str(HERE), str(HERE.parent / "supervise"), str(HERE.parent / "experiment")) if p not in sys.path]
-import job
+import adopted
+import player
 import study_file
 from refusal import Refusal, sentence_of
 from runners import Parallel, Slurm
@@ -33,6 +34,7 @@ def parsed(words):
     p.add_argument("--games", type=int, metavar="N", help="in each condition; with --resume as many as were asked for")
     p.add_argument("--out", required=True, metavar="DIR", help="folder of the sweep")
     p.add_argument("--resume", action="store_true", help="goes on with the sweep in DIR")
+    p.add_argument("--from", dest="table", metavar="TABLE", help="games.csv, or .csv.xz, of an earlier sweep: of its games those that are asked for are not played again")
     p.add_argument("--jobs", type=int, metavar="J", help="at once on this machine; default: one for each core")
     p.add_argument("--slurm", action="store_true", help="as an array of jobs of a Slurm cluster, which must see DIR and this repository")
     p.add_argument("--partition", help="of Slurm; default: the cluster's")
@@ -45,6 +47,8 @@ def parsed(words):
     for name, value, most in (("--games", a.games, MOST_GAMES), ("--jobs", a.jobs, 1024), ("--array-size", a.array_size, 1000)):
         if value is not None and not 1 <= value <= most:
             raise Refusal(f"{name} {value}: is not from 1 to {most}")
+    if a.resume and a.table:
+        raise Refusal("--from is for a new sweep; leave it away, or --resume")
     if a.slurm and a.jobs:
         raise Refusal("--jobs is of this machine, --slurm of a cluster; leave one away")
     if a.partition and not a.slurm:
@@ -88,10 +92,12 @@ def stop(number, frame):
 def main(words):
     try:
         a = parsed(words)
-        if not os.access(job.PROGRAM, os.X_OK):
-            raise Refusal(f"{job.PROGRAM}: is not built; run scripts/build")
+        if not os.access(player.PROGRAM, os.X_OK):
+            raise Refusal(f"{player.PROGRAM}: is not built; run scripts/build")
         folder = SweepFolder(a.out) if a.resume else new(a)
         folder.hold()
+        if a.table:
+            print(f"sweep: {adopted.adopt(folder, a.table)} games are those of {a.table}", flush=True)
         left = folder.unfinished()
         print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each, into {folder.path}", flush=True)
         if left:

@@ -33,6 +33,11 @@ def games_of(study, repetitions):
     return games
 
 
+def asked(study, game):
+    """What bin/play_games is asked."""
+    return {"game": str(game.number), "seed": game.seed(study), "limit_s": study.stimulus.limit_s, "profile": study.profile(game.condition, game.condition.fixed)}
+
+
 def row(study, game, told):
     """The row of the trial table (scripts/experiment/trial_table.py) of a game, from what bin/play_games told of it."""
     level = game.condition.fixed

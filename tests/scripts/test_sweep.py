@@ -1,5 +1,7 @@
 """scripts/study sweep: games by chance and yet the same, whoever plays them when; killed at any moment, nothing is lost or played twice."""
 import csv
+import io
+import lzma
 import os
 import pathlib
 import random
@@ -102,6 +104,28 @@ class Sweep(unittest.TestCase):
             chunk_file.ChunkFile(self.folder / "chunk.csv")
         held.close()
         chunk_file.ChunkFile(self.folder / "chunk.csv").close()
+
+    def test_a_larger_sweep_takes_the_games_of_a_smaller_one_and_comes_to_the_same(self):
+        sweep(self.study, "--games", 3, "--jobs", 2, "--out", self.folder / "whole")
+        sweep(self.study, "--games", 2, "--jobs", 2, "--out", self.folder / "small")
+        small = self.folder / "small" / "games.csv"
+        (self.folder / "small.csv.xz").write_bytes(lzma.compress(small.read_bytes()))
+        for table in (small, self.folder / "small.csv.xz"):
+            out = self.folder / f"from{table.suffix}"
+            self.assertIn("10 games are those of", sweep(self.study, "--games", 3, "--jobs", 2, "--from", table, "--out", out).stdout)
+            self.assertEqual((self.folder / "whole" / "games.csv").read_bytes(), (out / "games.csv").read_bytes())
+
+    def test_games_of_another_build_are_not_mixed_with_those_of_this_one(self):
+        sweep(self.study, "--games", 1, "--jobs", 1, "--out", self.folder / "small")
+        table = self.folder / "small" / "games.csv"
+        rows = list(csv.reader(io.StringIO(table.read_text(encoding="utf-8"), newline="")))
+        rows[2][rows[0].index("path_m")] = "0.5"
+        other = self.folder / "other.csv"
+        with open(other, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows(rows)
+        self.assertIn("comes to something else", sweep(self.study, "--games", 2, "--from", other, "--out", self.folder / "mixed", status=1).stderr)
+        other.with_suffix(".csv.xz").write_bytes(b"none")
+        self.assertIn("holds no table", sweep(self.study, "--games", 2, "--from", other.with_suffix(".csv.xz"), "--out", self.folder / "none", status=1).stderr)
 
     def test_what_cannot_be_swept_is_refused_in_a_sentence(self):
         other = self.folder / "other.xml"
