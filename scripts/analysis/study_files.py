@@ -29,6 +29,6 @@ def stated(tables):
     for path in sorted({p for p in map(beside, tables) if p}):
         sys.path.append(str(HERE.parent / "experiment"))
         import study_file
-        study = study_file.read(path)
+        study = study_file.read(path, with_scene=False)
         found[study.name] = Stated(study.margin["success"], study.margin["time"], study.stimulus.limit_s, study.of)
     return found

@@ -36,6 +36,8 @@ def read(reading, e, yes_or_no, response, found):
         reading.refuse(e, f"a {kind} follows answers that are yes or no, and those of {response} are not; use kind=\"constant\"")
     if kind != "constant" and any(c.kind == "pair" for c in found):
         reading.refuse(e, "a pair is measured by constant stimuli; use kind=\"constant\"")
+    if kind != "constant" and response == "two_interval" and any(c.factors[0].operator in quantities.FALLING for c in found):
+        reading.refuse(e, f"a {kind} lowers the level where answers are right, but less of {', '.join(quantities.FALLING)} is worse; use kind=\"constant\"")
     if kind != "quest_plus" and e.find("prior") is not None:
         reading.refuse(e.find("prior"), "only quest_plus has a <prior>")
     if response == "two_interval" and e.get("rule") == "1up1down":

@@ -45,6 +45,10 @@ def parsed(words):
     a = p.parse_args(words)
     if not a.participant.replace("-", "").replace("_", "").isalnum() or len(a.participant) > 40:
         raise Refusal(f"--participant {a.participant}: give a name of letters, digits, - and _, for example P01")
+    if a.session < 1:
+        raise Refusal(f"--session {a.session}: sessions are counted from 1")
+    if a.seed is not None and not 0 <= a.seed < 2**32:
+        raise Refusal(f"--seed {a.seed}: is not from 0 to {2**32 - 1}")
     if not (a.simulated or a.window or a.live is not None):
         raise Refusal("nobody could be asked: give --window, --live or --simulated")
     if a.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):

@@ -1,4 +1,5 @@
 """One session: trial after trial, each in the journal before the next begins."""
+import contextlib
 import hashlib
 import json
 import pathlib
@@ -47,7 +48,8 @@ def lead(study, options):
     observer = "simulated" if options.simulated else "human"
     with Journal(folder) as journal:
         resumed = journal.begin(study=study.name, study_sha256=study.sha256, participant=options.participant, seed=plan.seed, observer=observer)
-        shutil.copyfile(study.path, folder / "study.xml")
+        with contextlib.suppress(shutil.SameFileError):  # it goes on with the copy itself
+            shutil.copyfile(study.path, folder / "study.xml")
         if journal.repaired:
             tell(f"study: {journal.repaired}")
         resume(plan, journal.answered())

@@ -23,6 +23,7 @@ SCENES = HERE.parents[1] / "sim_node" / "scenes"
 LARGEST_BYTES = 1_000_000
 LONGEST_TEXT, LONGEST_CHOICE = 600, 40  # lcmtypes/question_t.lcm
 MOST_CONDITIONS = 2000
+MOST_LEVELS = 100_000  # of a pair; procedure_element.MOST_TRIALS, each once
 YES_OR_NO = ("synchrony", "order", "two_interval")  # answers that a psychometric function describes
 QUESTIONS = {
     "synchrony": ("Did {a} and {b} come together?", ("together", "apart")),
@@ -75,7 +76,7 @@ class Study:
     name: str
     path: pathlib.Path
     sha256: str         # of the file
-    scene: pathlib.Path
+    scene: pathlib.Path  # None where it was not looked for
     task: str           # tap, press or game
     seed: int
     instructions: tuple
@@ -118,8 +119,9 @@ def find(text):
     return path
 
 
-def read(text):
-    """Study of the file, or of the shipped one of that name. Raises Refusal, with the line."""
+def read(text, with_scene=True):
+    """Study of the file, or of the shipped one of that name. with_scene: False for a copy beside the results, whose scene lies where the file came
+    from. Raises Refusal, with the line."""
     from lxml import etree  # only who reads a file needs it
     path = find(str(text))
     try:
@@ -130,19 +132,21 @@ def read(text):
     if len(data) > LARGEST_BYTES:
         raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; that is no study file")
     try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True))
+        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
     except etree.XMLSyntaxError as error:
-        raise Refusal(f"{text}:{error.lineno}: {error.msg}") from None
+        raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise Refusal(f"{text}:1: has a <!DOCTYPE>, whose entities and defaults a study file does not use; leave it away, and write out what it stands for")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]
         raise Refusal(f"{text}:{first.line}: {first.message.splitlines()[0]}")
-    return Reading(text, path, root, hashlib.sha256(data).hexdigest()).study()
+    return Reading(text, path, root, hashlib.sha256(data).hexdigest(), with_scene).study()
 
 
 class Reading:
-    def __init__(self, text, path, root, sha256):
-        self.text, self.path, self.root, self.sha256 = text, path, root, sha256
+    def __init__(self, text, path, root, sha256, with_scene=True):
+        self.text, self.path, self.root, self.sha256, self.with_scene = text, path, root, sha256, with_scene
 
     def refuse(self, element, reason):
         raise Refusal(f"{self.text}:{element.sourceline}: {reason}")
@@ -181,7 +185,7 @@ class Reading:
             self.forgotten_at_once(find("conditions"), found)
         blocks, tolerance, margin, base = find("blocks"), find("tolerance"), find("margin"), find("base")
         return Study(
-            name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene(), task=task, seed=int(root.get("seed", "1")),
+            name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene() if self.with_scene else None, task=task, seed=int(root.get("seed", "1")),
             instructions=tuple(self.words(e) for e in root.findall("instructions")),
             base_delay_ms=self.quantity(base, "delay", quantities.OPERATORS["delay"], 100.0),
             base=tuple(self.element(e) for e in (base if base is not None else ())),
@@ -240,6 +244,8 @@ class Reading:
                 factors, levels = zip(*(self.factor(f) for f in e))
                 if factors[0] == factors[1]:
                     self.refuse(e, "a pair is of two different factors")
+                if len(levels[0]) * len(levels[1]) > MOST_LEVELS:
+                    self.refuse(e, f"a pair of {len(levels[0])} and {len(levels[1])} levels has more than {MOST_LEVELS}")
                 one = conditions.Condition(" x ".join(f.words() for f in factors), "pair", factors=factors, levels=tuple(itertools.product(*levels)))
             elif e.tag == "remove":
                 modality = self.sense(e, e.get("modality"))
@@ -341,6 +347,8 @@ class Reading:
                 self.refuse(e, f"{name} has the parameters {', '.join(function.parameters)}, each once")
             if name in observers.PERCEPTS:
                 self.percept(e, name, params, kind)
+            elif kind == "two_interval" and any(f.operator in quantities.FALLING for c in found if of in ("", c.id) for f in c.factors):
+                self.refuse(e, f"{name} rises with the level, but less of {', '.join(quantities.FALLING)} is worse; leave its <observer> away")
             elif function.dimensions == 1 and kind in YES_OR_NO:
                 with np.errstate(all="ignore"):
                     p = [function.p(c.levels, **params) for c in found if c.levels and of in ("", c.id)]

@@ -119,6 +119,35 @@ class StudyFile(unittest.TestCase):
             with self.subTest(text[-20:]):
                 self.refused(text)
 
+    def test_a_doctype_is_refused_and_instructions_to_programs_say_nothing(self):
+        self.refused('<!DOCTYPE study [<!ENTITY e "sound">]>' + self.changed("Together?", "Did &e; come?"), "<!DOCTYPE>")
+        self.refused('<!DOCTYPE study [<!ATTLIST study seed CDATA "77">]>' + GOOD, "<!DOCTYPE>")
+        self.assertEqual(self.read(self.changed("Together?", "Do both<?x y?> come?")).question, "Do both come?")
+        self.assertEqual(len(self.read(self.changed("<conditions>", "<conditions><?x y?>")).conditions), 1)
+
+    def test_a_pair_of_more_levels_than_could_ever_be_tried_is_refused_at_once(self):
+        many = " ".join(f"{i / 100:.2f}ms" for i in range(20_000))
+        pair = "".join(f'<factor modality="{sense}" operator="delay" levels="{many}"/>' for sense in ("audio", "visual"))
+        self.refused(f'''<study name="s" version="1" scene="dark_room_game.sdf" task="game"><conditions><pair>{pair}</pair></conditions>
+            <procedure kind="constant" repetitions="1"/><response kind="performance"/></study>''', "20000 and 20000 levels")
+
+    def test_what_falls_as_it_gets_worse_is_judged_of_two_intervals_by_constant_stimuli_and_by_people(self):
+        rate = PRESSED.replace(' of="stiffness"', "").replace('operator="delay" levels="10ms 40ms"', 'operator="rate" levels="5Hz 50Hz"')
+        alone = rate[:rate.index("  <observer")] + "</study>"
+        self.assertEqual(self.read(alone).conditions[0].levels, (5.0, 50.0))
+        self.refused(alone.replace('kind="constant" repetitions="4"', 'kind="staircase" rule="1up2down" start="50Hz" step="8Hz" minimum_step="1Hz" lowest="1Hz" '
+                                   'highest="100Hz" reversals="8"'), "less of rate")
+        self.refused(alone.replace("</study>", '<observer function="weibull"><parameter name="threshold" value="20" source="x"/><parameter name="slope" value="3" source="x"/>'
+                                   '<parameter name="guess" value="0.5" source="x"/><parameter name="lapse" value="0" source="x"/></observer></study>'), "rises with the level")
+
+    def test_a_copy_is_read_without_the_scene_that_lay_beside_the_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "study.xml"
+            path.write_text(GOOD.replace("single_taps.sdf", "mine.sdf"), encoding="utf-8")
+            self.assertEqual(study_file.read(path, with_scene=False).name, "s")
+            with self.assertRaisesRegex(Refusal, r"study\.xml:1: the scene mine\.sdf"):
+                study_file.read(path)
+
     def test_a_file_that_was_damaged_anywhere_is_read_or_refused_with_a_line_and_never_more(self):
         dice = random.Random(1)
         refused = 0
