@@ -26,7 +26,7 @@ double apart(const Pixels& a, const Pixels& b) {
 struct WithHead : Running {
   std::filesystem::path snapshot = folder.path() / "now.png";
   bool pointed = false;  // its process was RUNNING
-  int buttons = 0;       // of the head, as TOOL_STATE has them
+  int buttons = 0;       // of the head, as any TOOL_STATE had them: beside heavy work a device is lost for moments
   sync::Bus tracker{sync::Identity::fresh("tracker", kRunId), {}};
 
   void start_all() {
@@ -58,7 +58,7 @@ struct WithHead : Running {
       m.state = device_state_t::ANSWERS;
       tracker.publish(channels::kDeviceState, m);
       ear.listen(0.004);
-      if (ear.tool_state() && ear.tool_state()->tool == 1) buttons = ear.tool_state()->buttons;
+      if (ear.tool_state() && ear.tool_state()->tool == 1) buttons |= ear.tool_state()->buttons;
       pointed = pointed || lives("haptic_node_head");
     }
   }
