@@ -377,5 +377,13 @@ class Results(Folders):
         self.assertLessEqual({"summarise", "export_csv", "export_events"}, set(made_when_told))
 
 
+class Programs(unittest.TestCase):
+    def test_whoever_has_built_nothing_yet_gets_all_programs_that_a_run_or_a_study_starts(self):
+        import virtual
+        built = (SUPERVISE.parent / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
+        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PARTICIPANT, "conductor", "play_games"):
+            self.assertIn(program, built)
+
+
 if __name__ == "__main__":
     unittest.main()
