@@ -12,6 +12,7 @@ from refusal import Refusal
 
 LONGEST_S = 86400  # scripts/run's own bound
 BEGINS_WITHIN_S, ENDS_WITHIN_S = 120, 30
+NO_PAGE = "the live page does not start"  # what supervise/live.py says
 
 
 def die_with_parent():
@@ -50,11 +51,18 @@ class LiveCluster:
             raise Refusal(f"run: the cluster has ended ({self.last_words()}); see {self.log}")
 
     def page(self):
-        """Address of the live page, where there is one."""
-        for line in self.log.read_text(encoding="utf-8", errors="replace").splitlines():
-            if "http://" in line:
-                return "http://" + line.split("http://")[1].split()[0]
-        return None
+        """Address of the live page, which the run tells a while after it has begun; None when it says that there is none. Raises Refusal."""
+        end = time.monotonic() + BEGINS_WITHIN_S
+        while True:
+            for line in self.log.read_text(encoding="utf-8", errors="replace").rpartition("\n")[0].splitlines():  # whole ones
+                if "http://" in line:
+                    return "http://" + line.split("http://")[1].split()[0]
+                if NO_PAGE in line:
+                    return None
+            self.check()
+            if time.monotonic() > end:
+                raise Refusal(f"run: has told no live page within {BEGINS_WITHIN_S} s; see {self.log}")
+            time.sleep(0.05)
 
     def end(self):
         if self.process.poll() is None:

@@ -90,8 +90,13 @@ class Session:
         tell(f"study: starts the cluster, results in {out}")
         self.cluster = LiveCluster(out, cluster_words(self.study, self.options))
         self.cluster.wait_until_it_runs()
-        if (page := self.cluster.page()) is not None:
-            tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
+        if self.options.live is not None:
+            page = self.cluster.page()
+            if page is None and not (self.options.window or self.options.simulated):
+                raise Refusal(f"the live page does not start, so that nobody could be asked; see {out}/logs/live_server.log")
+            if page is not None:
+                tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
+                tell(f"study: yours, to look on, is {page}")
         s = self.study.stimulus
         self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
         if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
