@@ -31,7 +31,7 @@ class Felt:
     source: published.JustNoticeable
     limit: limits.Limit
     toward: str  # less, more: where the property goes
-    left_out: int  # answers of participants who never judged the undegraded stimulus
+    left_out: int  # answers of participants who never judged the undegraded stimulus, or took it for nothing
     observer: str
     measured: bool = False  # what the hand was given; else what it was judged to be
 
@@ -57,11 +57,11 @@ def felt(property, trials, rng):
     plain = np.array([not (m and o) or operators.factor(m, o, u, level).undegraded(level) for m, o, u, level in
                       zip(*(trials[name] for name in ("modality_degraded", "operator", "unit", "level")))], dtype=bool)
     own = {name: float(np.mean(rows["answer_value"])) for (name,), rows in trials.where(plain).groups("participant_id")}
+    own = {name: reference for name, reference in own.items() if reference or jnd.unit != "%"}  # of nothing there is no share
     known = np.array([p in own for p in trials["participant_id"]], dtype=bool)
     single = known & (trials["second_modality"] == "")
     made = []
-    for (modality, operator, unit), rows in trials.where(single & ~plain).groups("modality_degraded", "operator", "unit"):
-        factor = operators.factor(modality, operator, unit)
+    for factor, rows in operators.factors(trials.where(single & ~plain)):
         if factor.removal:
             continue
         # Per participant: the reference is a share of what this participant takes the undegraded to be.

@@ -88,7 +88,7 @@ def curve_figure(curve, seed):
         for edge in ("low75", "high75"):
             axes.axvline(curve.value(edge), color=tint, linewidth=0.8, linestyle=":")
     lapse = curve.fit.params.get("lapse")
-    told = f"{'PSS' if condition.pair else 'threshold'} {value:.1f} [{low:.1f}, {high:.1f}]"
+    told = f"{'PSS' if condition.pair else 'threshold'} {value:.4g} [{low:.4g}, {high:.4g}]"
     if condition.pair:
         name = "window75" if condition.kind == "sj" else "jnd"
         told += f"\n{name} {curve.value(name):.1f} [{curve.intervals[name][0]:.1f}, {curve.intervals[name][1]:.1f}]"

@@ -41,9 +41,9 @@ def threshold(curve, rng):
     return curve.value("threshold75"), None if rng is None else draws_of(curve.value("threshold75"), curve.intervals["threshold75"], rng)
 
 
-def severities(factor, levels):
-    """(n,) of levels, 0 and what is below as nothing at all."""
-    return np.array([factor.severity(v) if v > 0 and np.isfinite(v) else max(v, 0.0) for v in levels])
+def severities(values):
+    """(n,), what is below 0 as nothing at all."""
+    return np.array([max(v, 0.0) for v in values])
 
 
 def of_condition(condition, curves, rng, felt=""):
@@ -58,17 +58,17 @@ def of_condition(condition, curves, rng, felt=""):
         one = (lambda c, r: edges(c, sign, r)) if condition.pair else threshold
         by = f"{early} → {late}, {condition.kind}" if condition.pair else f"{felt}, judged" if felt else condition.kind
         if len(people) >= resampling.FEWEST_PARTICIPANTS:
-            values = severities(factor, [one(c, None)[0] for c in people])
+            values = severities([one(c, None)[0] for c in people])
             point = float(values.mean())
             draws = resampling.Resampler([c.participant for c in people], rng).of_cell([c.participant for c in people], values[:, None])[0][:, 0]
         elif everybody:
             point, draws = one(everybody[0], rng)
-            point, draws = severities(factor, [point])[0], severities(factor, draws)
+            point, draws = severities([point])[0], severities(draws)
         else:
             continue
         used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else everybody
         tried = np.abs(np.concatenate([c.levels for c in used]))
-        made.append(limits.of_draws("appear" if felt else "detect", factor, by, point, draws, max(factor.severity(float(v)) for v in tried if v),
+        made.append(limits.of_draws("appear" if felt else "detect", factor, by, point, draws, float(tried.max()),
                                     " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used))))
     return made
 

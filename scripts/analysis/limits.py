@@ -21,7 +21,7 @@ EITHER = "either"  # by success or by time, whichever comes first
 
 @dataclasses.dataclass
 class Limit:
-    """One limit of one factor. value, low, high: levels in the factor's unit; infinite: not reached up to `up_to`."""
+    """One limit of one factor. value, low, high: levels in the factor's unit; infinite: not reached up to `up_to`; 0: reached when nothing is degraded."""
     kind: str  # detect, appear, break
     factor: Factor
     by: str  # by what: success, time, either; the pair of senses; the property
@@ -42,7 +42,10 @@ class Limit:
 def of_draws(kind, factor, by, point, draws, up_to, observer, n):
     """A Limit from a severity and its draws."""
     low, high = resampling.interval(draws)
-    at = lambda s: float("nan") if s != s else factor.level(s) if np.isfinite(s) else float("inf")
+    def at(s):
+        if not np.isfinite(s):
+            return float(s)
+        return factor.level(s) if np.isfinite(factor.level(s)) else 0.0  # of a rate nothing is degraded at infinity, which is said of what is not reached
     return Limit(kind, factor, by, at(float(point)), at(low), at(high), factor.level(up_to), draws, observer, n)
 
 
@@ -104,4 +107,4 @@ def ratio(upper, lower, rng):
 
 def severity_of(limit):
     """Severity of a limit; infinite where it was not reached."""
-    return float("inf") if np.isinf(limit.value) else limit.factor.severity(limit.value)
+    return limit.value if np.isinf(limit.value) or limit.value == 0 else limit.factor.severity(limit.value)

@@ -6,6 +6,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "evaluation"))
 import figures  # noqa: E402
 
+figures.matplotlib.rcParams["text.parse_math"] = False  # names are texts, whatever they hold
+
 INK, PALE, BREAK = "#222222", "#9aa7b5", "#b3261e"
 BANDS = ("#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#9c755f", "#bab0ac")
 

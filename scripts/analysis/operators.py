@@ -2,7 +2,8 @@
 import dataclasses
 import math
 
-REMOVALS = ("off", "freeze", "remove")  # an operator without levels: the sense is not there
+NO_GAIN = "gain_of_0"
+REMOVALS = ("off", "freeze", "remove", NO_GAIN)  # an operator without levels: the sense is not there
 # Less is worse. Their severity is 1/level: the period of a rate, the time constant of a low-pass; of shares of what there was, 1/level - 1.
 FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")
 FROM_ONE = ("resolution", "gain")
@@ -12,7 +13,15 @@ NAME = {"haptic": "touch", "audio": "sound", "visual": "vision", "thermal": "war
 
 def factor(modality, operator, unit="", level=math.nan):
     """The Factor of a row of a table; what it is called depends on the level of a gain only."""
-    return Factor(modality, GAIN_ABOVE if operator == "gain" and level > 1 else operator, unit)
+    if operator == "gain" and (level == 0 or level > 1):
+        return Factor(modality, GAIN_ABOVE if level else NO_GAIN, unit)
+    return Factor(modality, operator, unit)
+
+
+def factors(trials):
+    """[(Factor, Trials)] of the rows that agree in what is degraded, levels aside."""
+    of_row = [factor(*values) for values in zip(*(trials[name] for name in ("modality_degraded", "operator", "unit", "level")))]
+    return [(one, trials.where([i for i, other in enumerate(of_row) if other == one])) for one in sorted(set(of_row))]
 
 
 @dataclasses.dataclass(frozen=True, order=True)
@@ -32,7 +41,7 @@ class Factor:
         return self.operator in FALLING
 
     def severity(self, level):
-        """0 or more; raises ZeroDivisionError for a level of 0 of what falls, which is a removal."""
+        """0 or more, of a level that trials.read lets through."""
         return 1.0 / level - (self.operator in FROM_ONE) if self.falling else level - (self.operator == GAIN_ABOVE)
 
     def level(self, severity):
@@ -53,4 +62,4 @@ class Factor:
         return f"{self.operator.replace('_', ' ')} of {NAME.get(self.modality, self.modality)}" + (f" ({self.unit})" if self.unit else "")
 
     def severity_axis(self):
-        return f"1 / {self.axis()}" if self.falling else self.axis()
+        return f"1 / {self.axis()}" + (" − 1" if self.operator in FROM_ONE else "") if self.falling else self.axis()

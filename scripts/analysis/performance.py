@@ -69,6 +69,8 @@ def limit_s(games, stated):
     times = games["completion_time_s"]
     if np.isnan(times[~lost & ~np.isnan(games["success"])]).any():
         raise Refusal("a game that was won has no completion_time_s; say when each was won")
+    if (times[games["success"] == 1] <= 0).any():
+        raise Refusal("a game was won after 0 s: it was won before it began; leave it away, or mark it as missed")
     if stated is not None:
         return stated
     if not lost.any():
@@ -130,14 +132,19 @@ class Difference:
     success_interval: tuple
     time: float
     time_interval: tuple
-    p_success: float  # that success is worse by the margin or more: small = shown harmless
+    p_success: float  # that success is worse by the margin or more: small = shown harmless; 1 where the baseline leaves no room to be worse by so much
     p_time: float
     harmless: bool = False  # after Holm, in success and time
     harmful: bool = False  # an interval lies beyond its margin whole
 
 
-def difference(cell, baseline, clustered, margins):
-    """margins: (share of success, ratio of time), e.g. (0.1, 1.1)."""
+def sampled(cell, clustered):
+    """How many were drawn at random: people, or games."""
+    return len(set(cell.participants)) if clustered else cell.n
+
+
+def difference(cell, baseline, clustered, margins, limit=math.inf):
+    """margins: (share of success, ratio of time), e.g. (0.1, 1.1). limit: no time is longer."""
     apart = cell.draws[:, 0] - baseline.draws[:, 0]
     ratio = cell.draws[:, 1] / baseline.draws[:, 1]
     counts = int(cell.success.sum()), cell.n, int(baseline.success.sum()), baseline.n
@@ -148,6 +155,14 @@ def difference(cell, baseline, clustered, margins):
         p_success = farrington_manning(*counts, margins[0])
     made = Difference(cell, cell.share - baseline.share, success_interval, cell.mean_time_s / baseline.mean_time_s, resampling.interval(ratio),
                       p_success, resampling.share_beyond(ratio, margins[1]))
+    if min(sampled(cell, clustered), sampled(baseline, clustered)) < 2:  # one says nothing of how far off it is
+        made.time_interval, made.p_time = (math.nan, math.nan), 1.0
+        if clustered:
+            made.success_interval, made.p_success = (math.nan, math.nan), 1.0
+    if baseline.share < margins[0]:  # a game that is lost anyway cannot be lost by the degradation
+        made.p_success = 1.0
+    if baseline.mean_time_s * margins[1] > limit:
+        made.p_time = 1.0
     made.harmful = made.success_interval[1] < -margins[0] or made.time_interval[0] > margins[1]
     return made
 
@@ -172,11 +187,11 @@ def farrington_manning(yes, n, yes_baseline, n_baseline, margin):
     return float(norm.sf((p - q + margin) / math.sqrt(variance))) if variance > 0 else 1.0
 
 
-def differences(cells, clustered, margins, alpha=0.05):
+def differences(cells, clustered, margins, alpha=0.05, limit=math.inf):
     """{degraded: Difference} of all conditions but the baseline, Holm's correction within each set of factors."""
     if () not in cells:
         raise Refusal("no game was played undegraded; play the baseline too, nothing can be said to be worse without it")
-    made = {degraded: difference(cell, cells[()], clustered, margins) for degraded, cell in cells.items() if degraded}
+    made = {degraded: difference(cell, cells[()], clustered, margins, limit) for degraded, cell in cells.items() if degraded}
     families = {}
     for degraded, d in made.items():
         families.setdefault("removal" if all(f.removal for f, _ in degraded) else tuple(f for f, _ in degraded), []).append(d)

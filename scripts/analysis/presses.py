@@ -36,8 +36,7 @@ def shift(trials):
 def felt(trials, rng):
     """[appearance.Felt] of each study and factor."""
     jnd, made = published.just_noticeable()[PROPERTY][0], []
-    for (_, modality, operator, unit), rows in pressed(trials).groups("study", "modality_degraded", "operator", "unit"):
-        factor = operators.factor(modality, operator, unit)
+    for factor, rows in (found for _, of_study in pressed(trials).groups("study") for found in operators.factors(of_study)):
         rows = rows.where(np.array([not factor.undegraded(level) for level in rows["level"]]))
         if factor.removal or not len(rows):
             continue

@@ -12,6 +12,7 @@ import numpy as np
 
 import answers
 from detection import EVERYBODY
+import operators
 from operators import Factor
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "psychophysics"))
@@ -28,16 +29,16 @@ class Condition:
     kind: str
     pair: tuple
     factor: Factor
-    measured: bool  # whether the levels are achieved ones; else those asked for
+    measured: bool  # whether the levels are achieved ones; else those asked for. Where less is worse they are severities, so that functions rise
 
     def words(self):
-        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words()
+        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.falling else "")
         return f"{what}, {answers.CALLED[self.kind]}"
 
     def axis(self):
         if self.pair:
             return f"SOA({self.pair[0]}, {self.pair[1]}) = t({self.pair[1]}) − t({self.pair[0]}), achieved (ms)"
-        return self.factor.axis() + (", achieved" if self.measured else ", as asked for")
+        return self.factor.severity_axis() + (", achieved" if self.measured else ", as asked for")
 
     def slug(self):
         what = "_".join(self.pair) if self.pair else f"{self.factor.modality}_{self.factor.operator}"
@@ -73,7 +74,7 @@ def achieved(rows, condition):
         return rows["loss_achieved"] * (100 if factor.unit == "%" else 1), True
     if factor.operator == "delay" and factor.unit == "ms" and not np.isnan(rows["soa_achieved_ms"]).all():
         return np.abs(rows["soa_achieved_ms"]), True
-    return rows["level"], False
+    return np.array([factor.severity(level) for level in rows["level"]]), False
 
 
 def binned(levels, yes):
@@ -96,8 +97,8 @@ def conditions_of(trials):
     for kind in answers.FUNCTION:
         mine = trials.where(kinds == kind)
         if kind == "2ifc":
-            groups = [((study, None, Factor(modality, operator, unit)), rows) for (study, modality, operator, unit), rows
-                      in mine.groups("study", "modality_degraded", "operator", "unit") if modality]
+            groups = [((study, None, factor), rows) for (study,), of_study in mine.groups("study") for factor, rows in operators.factors(of_study)
+                      if factor.modality and not factor.removal]
         else:
             groups = [((study, answers.pair_of(pair), None), rows) for (study, pair), rows in mine.groups("study", "pair")]
         for key, rows in groups:

@@ -78,7 +78,7 @@ def performances_of(trials, settings):
     for i, ((study,), games) in enumerate(performance.games_of(trials).groups("study")):
         limit_s, margins = performance.limit_s(games, settings.limit_s(study)), settings.margins(study)
         cells, clustered = performance.cells_of(games, limit_s, np.random.default_rng([settings.seed, 2000 + i]))
-        differences = performance.differences(cells, clustered, margins, settings.alpha)
+        differences = performance.differences(cells, clustered, margins, settings.alpha, limit_s)
         found = {factor: limits.breaking(cells, factor, margins, games.observer()) for factor in limits.factors_of(cells)}
         edges = [frontier.frontier(cells, *pair, margins, games.observer()) for pair in frontier.pairs_of(cells)]
         made.append(Performance(study, margins, cells, clustered, limit_s, differences, found, edges, games.observer(), len(games.participants())))
@@ -126,7 +126,7 @@ def answers_model(curve):
     import psychometric
     levels, _ = psychometric.achieved(curve.trials, (None, curve.condition.pair, curve.condition.factor))
     _, yes = answers.answered(curve.condition.kind, curve.trials, curve.condition.pair)
-    return mixed.logistic(curve.trials["participant_id"], levels, yes, "SOA" if curve.condition.pair else curve.condition.factor.axis(), curve.condition.kind == "sj")
+    return mixed.logistic(curve.trials["participant_id"], levels, yes, "SOA" if curve.condition.pair else curve.condition.factor.severity_axis(), curve.condition.kind == "sj")
 
 
 def analyse(trials, settings):

@@ -1,6 +1,7 @@
 """The report on a study: one page that needs nothing else, with its figures beside it as SVG and PNG."""
 import collections
 import pathlib
+import re
 import sys
 
 import numpy as np
@@ -28,7 +29,8 @@ class Report:
         self.tables, self.sources, self.slugs = 0, [], collections.Counter()
 
     def keep(self, fig, slug, caption):
-        """Each figure's name is its own, also where two studies have the same condition."""
+        """Each figure's name is its own, also where two studies have the same condition, and a file's name whatever its senses are called."""
+        slug = re.sub(r"[^A-Za-z0-9_]+", "-", slug)
         self.slugs[slug] += 1
         return self.gallery.keep(fig, slug if self.slugs[slug] == 1 else f"{slug}_{self.slugs[slug]}", caption + self.who())
 
@@ -178,6 +180,8 @@ def performance_section(report):
         parts.append(report.table(f"Games won (%, Wilson’s interval), time to win (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'not at all: all were won'}"
                                   f"{' s' if np.isfinite(p.limit_s) else ''}), and both against all senses. Harmless: shown to be within both margins, Holm’s correction; harmful: an interval lies "
                                   "beyond its margin.", ["condition", "n", "won %", "time s", "difference, points", "ratio of time", "shown"], rows))
+        if baseline.share < p.margins[0] or baseline.mean_time_s * p.margins[1] > p.limit_s:
+            parts.append("<p>The undegraded games were won so seldom, or so late, that no level could be worse by a margin: none is shown to be harmless by that outcome.</p>\n")
         for factor, found in p.limits.items():
             parts.append(report.keep(performance_plots.factor_figure(p.cells, factor, found, p.margins, p.observer), f"games_{factor.modality}_{factor.operator}",
                                      f"Games under {safe(factor.words())}. Green: all senses, with their interval; dashed: the margin; red: L_break with its interval."))

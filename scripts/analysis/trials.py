@@ -11,6 +11,7 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path += [str(HERE.parent / "experiment"), str(HERE.parent / "supervise")]
+import operators  # noqa: E402
 import trial_table  # noqa: E402
 from refusal import Refusal  # noqa: E402
 
@@ -82,6 +83,20 @@ def files_of(places):
     return found
 
 
+def no_severity(row):
+    """Why the level of a row says nothing of how severe its degradation is; None: it does, or there is none."""
+    for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
+        operator, level = row.get(prefix + "operator"), row.get(prefix + "level")
+        if not row.get(modality) or not operator or operator in operators.REMOVALS:
+            continue
+        if level is None and row["task"] == "game":
+            return f"a game under {operator} has no {prefix}level; write how much of it there was"
+        falls = operator in operators.FALLING and operator != "gain"
+        if level is not None and (level < 0 or falls and level == 0):
+            return f"{prefix}level is {level:g}; a level of {operator} is {'above 0, and off where nothing is left' if falls else '0 or more'}"
+    return None
+
+
 def read(files):
     """All rows of the tables as Trials. Raises Refusal with file, line and reason."""
     kept, seen = [], {}
@@ -92,6 +107,8 @@ def read(files):
             if identity in seen:
                 raise Refusal(f"{where}: the same trial of {row['participant_id']} stands in {seen[identity]} already; give each table once")
             seen[identity] = where
+            if sentence := no_severity(row):
+                raise Refusal(f"{where}: {sentence}")
             kept.append(row)
     if not kept:
         raise Refusal(f"{files[0]}: there is no trial in it; let somebody do the study first")

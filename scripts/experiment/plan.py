@@ -9,6 +9,7 @@ import zlib
 import procedure_element
 import fits
 import procedures
+import quantities
 import study_file
 
 FUNCTIONS = {"synchrony": ("synchrony_window", None), "order": ("order", None), "two_interval": ("cumulative_gaussian", {"guess": 0.5})}
@@ -119,7 +120,7 @@ class Plan:
         """{condition id: what its procedure says so far; where it says nothing, as constant stimuli, a fit of the answers; None: there are too few}."""
         if self.study.response not in study_file.YES_OR_NO:
             return {}
-        return {c.id: p.estimate() or self.fitted(p) for c, p in zip(self.study.conditions, self.procedures)}
+        return {c.id: p.estimate() or (None if any(f.operator in quantities.FALLING for f in c.factors) else self.fitted(p)) for c, p in zip(self.study.conditions, self.procedures)}
 
     def fitted(self, procedure):
         name, fixed = FUNCTIONS[self.study.response]

@@ -159,7 +159,7 @@ def value_of(written, name):
     if written == "":
         return None
     try:
-        value = float(written)
+        value = float("" if "_" in written else written)  # 1_0 is Python's 10 and nobody else's
         if column.kind != "number" and math.isfinite(value) and value == int(value):
             return int(written) if written.lstrip("+-").isdigit() else int(value)
         return value

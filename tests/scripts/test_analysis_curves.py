@@ -135,6 +135,19 @@ class Detection(unittest.TestCase):
         self.assertEqual(found.factor, Factor("haptic", "delay", "ms"))
         self.assertTrue(found.low <= truth <= found.high, found)
 
+    def test_of_a_rate_it_is_found_by_its_period(self):
+        rng = np.random.default_rng(5)
+        rows = []
+        for i in range(600):
+            hz = float(rng.choice([2, 5, 8, 12, 20, 40, 80]))
+            p = 0.5 + 0.49 * (1 - math.exp(-((10 / hz) ** 2.5)))
+            rows.append({"study": "slow", "participant_id": "P01", "task": "2ifc", "observer": "human", "trial": i + 1, "modality_degraded": "visual", "operator": "rate",
+                         "level": hz, "unit": "Hz", "correct": int(rng.random() < p)})
+        found, = detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)
+        truth = 10 / math.log(2) ** (1 / 2.5)
+        self.assertTrue(found.low >= truth >= found.high, found)  # from the mildest to the most severe end
+        self.assertEqual(found.up_to, 2)
+
 
 class Appearance(unittest.TestCase):
     def test_the_level_at_which_stiffness_is_off_by_a_jnd_is_recovered(self):
@@ -159,6 +172,17 @@ class Appearance(unittest.TestCase):
         (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
         felt, = appearance.felt(name, kept, np.random.default_rng(1))
         self.assertEqual((felt.left_out, sum(felt.counts)), (32, 64))
+
+    def test_who_took_the_undegraded_for_nothing_is_left_out_and_counted(self):
+        rows = [{**r, "answer_value": 0.0} if r["participant_id"] == "P02" else r for r in matches(np.random.default_rng(1), 3, 0.0023)]
+        (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
+        felt, = appearance.felt(name, kept, np.random.default_rng(1))
+        self.assertEqual((felt.left_out, sum(felt.counts)), (40, 64))
+
+    def test_a_gain_above_1_is_another_degradation_than_one_below(self):
+        rows = [{**r, "operator": "gain", "unit": "", "level": {0.0: 1.0, 20.0: 0.8, 40.0: 0.4, 80.0: 2.0, 120.0: 0.0}[r["level"]]} for r in matches(np.random.default_rng(1), 2, 0.0023)]
+        (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
+        self.assertEqual([(f.factor.operator, f.levels) for f in appearance.felt(name, kept, np.random.default_rng(1))], [("gain", [0.8, 0.4]), ("gain_above_1", [2.0])])
 
 
 class Presses(unittest.TestCase):

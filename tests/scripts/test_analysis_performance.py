@@ -175,6 +175,18 @@ class Breaking(unittest.TestCase):
             d, = performance.differences(made, clustered, MARGINS).values()
             self.assertEqual((d.harmless, d.harmful), (harmless, False), n)
 
+    def test_a_game_that_is_lost_anyway_shows_no_level_to_be_harmless(self):
+        rows = [game(i, i % 600 < 30, 29, [("visual", "delay", 40, "ms")] if i >= 600 else ()) for i in range(1200)]
+        made, clustered = cells(rows)
+        self.assertTrue(performance.differences(made, clustered, (0.04, 1.001), limit=30.0)[((DELAY, 40.0),)].p_success < 1)
+        d, = performance.differences(made, clustered, MARGINS, limit=30.0).values()
+        self.assertEqual((d.p_success, d.p_time, d.harmless), (1, 1, False))
+
+    def test_one_game_shows_no_harm(self):
+        made, clustered = cells([game(1, True, 5), game(2, False, 0, [("visual", "delay", 40, "ms")])])
+        d, = performance.differences(made, clustered, MARGINS, limit=30.0).values()
+        self.assertEqual((d.harmless, d.harmful), (False, False))
+
     def test_the_ratio_is_of_the_limits_and_its_interval_of_both(self):
         rng = np.random.default_rng(1)
         one = lambda kind, at, sd: limits.of_draws(kind, DELAY, "x", at, rng.normal(at, sd, 20000), 400.0, "simulated", 10)
@@ -197,6 +209,8 @@ class Games(unittest.TestCase):
             performance.limit_s(lost, None)
         self.assertEqual(performance.limit_s(trials.of_rows([game(1, True, 10), game(2, False, 0)]), None), 30)
         self.assertEqual(performance.limit_s(trials.of_rows([game(1, True, 10)]), None), math.inf)
+        with self.assertRaisesRegex(Refusal, "after 0 s"):
+            performance.limit_s(trials.of_rows([game(1, True, 0)]), 30.0)
 
     def test_a_study_without_a_baseline_is_refused(self):
         with self.assertRaisesRegex(Refusal, "baseline"):
@@ -227,6 +241,16 @@ class Frontiers(unittest.TestCase):
         self.assertEqual((found.first_levels, found.second_levels), ([0, 20, 40], [0, 50, 100, 200]))
         np.testing.assert_allclose([l.value for _, l in found.edge], [100, 50, 0], atol=1e-6)
         self.assertFalse(np.isnan(found.grid(lambda c: c.share)).any())
+
+    def test_where_the_first_alone_reaches_the_margin_no_rate_of_the_second_is_borne(self):
+        slow = {None: [], 20: [("visual", "rate", 20, "Hz")], 5: [("visual", "rate", 5, "Hz")]}
+        rows = [game(100 * i + j, not late, 6, ([("haptic", "delay", late, "ms")] if late else []) + slow[hz]) for i, (late, hz) in enumerate((late, hz) for late in (0, 200) for hz in slow)
+                for j in range(20)]
+        made, _ = cells(rows)
+        found = frontier.frontier(made, *frontier.pairs_of(made)[0], MARGINS, "simulated")
+        (_, borne), (_, none) = found.edge
+        self.assertFalse(borne.reached)
+        self.assertEqual((none.reached, none.value, limits.severity_of(none)), (True, 0, 0))
 
 
 if __name__ == "__main__":

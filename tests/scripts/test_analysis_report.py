@@ -119,6 +119,13 @@ class Whole(unittest.TestCase):
     def test_texts_stay_texts(self):
         self.assertIn("dark&lt;script&gt;", self.page)
 
+    def test_senses_of_any_name_are_drawn_and_write_nowhere_else(self):
+        rows = judgements(np.random.default_rng(1), 10, 60, 0.02, np.arange(-200, 201, 40), 5, pair=("../../$\\frac{", "<b>x</b>"))
+        done = self.call("--out", self.root / "odd", place=analysis_tables.write(self.root / "odd.csv", rows))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertNotIn("<b>x</b>", (self.root / "odd" / "report.html").read_text(encoding="utf-8"))
+        self.assertFalse([p for p in self.root.glob("**/*frac*") if p.parent != self.root / "odd" / "figures"])
+
     def test_what_cannot_be_analysed_is_said_in_one_sentence(self):
         empty = analysis_tables.write(self.root / "free.csv", [{"participant_id": "P01", "task": "free", "observer": "human", "trial": 1}])
         lost = analysis_tables.write(self.root / "lost.csv", [game(1, True, 5), game(2, False, 0, limit_s=float("nan"))])

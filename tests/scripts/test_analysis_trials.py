@@ -66,6 +66,13 @@ class Tables(unittest.TestCase):
             with self.subTest(reason):
                 self.assertIn(reason, self.refusal(text))
 
+    def test_a_level_that_no_severity_answers_to_is_refused(self):
+        head = HEADER.replace(",level,", ",level,modality_degraded,operator,")
+        for operator, level, reason in (("rate", "0", "a level of rate is above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
+            self.assertIn(reason, self.refusal(head + GOOD.replace(",20,", f",{level},visual,{operator},")))
+        for operator, level in (("gain", "0"), ("off", ""), ("delay", "0")):
+            self.assertEqual(len(trials.read([self.file(head + GOOD.replace(",20,", f",{level},visual,{operator},"))])), 1)
+
     def test_a_table_without_rows_and_a_place_without_tables_are_refused(self):
         with self.assertRaisesRegex(Refusal, "there is no trial"):
             trials.read([self.file(HEADER)])
