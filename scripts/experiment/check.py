@@ -75,7 +75,7 @@ def sequence(plan):
         trial = plan.next()
         if trial is None:
             return
-        yield trial.condition.id + ("" if plan.performs or trial.level is None else f" {trial.level}")
+        yield trial.condition.words(trial.level)
         plan.answered(trial, True)
 
 
@@ -112,7 +112,7 @@ def checked(study, options):
     lines.append(f"{plan.expected_trials} {'games' if study.task == 'game' else 'trials'}, {about} {minutes:.0f} minutes: "
                  + ", ".join(f"{part} {seconds / 60:.1f}" for part, seconds in parts))
     first = list(sequence(plan))
-    lines.append("it begins with " + ", ".join(first[:6]))
+    lines.append(f"it begins{'' if study.procedure['kind'] == 'constant' else ', if every answer is yes,'} with " + ", ".join(first[:6]))
     found = power.of(study, assumed)
     figures = {"study": study.name, "trials": Plan(study, options.participant).expected_trials, "blocks": study.blocks, "conditions": [c.id for c in study.conditions],
                "minutes": round(minutes, 2), "parts_s": dict(parts), "sequence": first, "power": found}

@@ -51,6 +51,19 @@ class Condition:
             return [f'<degrade modality="{self.removed}" {"off" if self.how == "off" else "freeze"}="{"true" if self.how == "off" else "hold"}"/>']
         return []
 
+    @property
+    def unit(self):
+        """Of the levels of an asynchrony or of one factor."""
+        return "ms" if self.kind == "asynchrony" else self.factors[0].unit if self.kind == "factor" else ""
+
+    def words(self, level):
+        """Condition and level for a person; those that are fixed have it in their name."""
+        if level is None or self.fixed is not None:
+            return self.id
+        if self.kind == "pair":
+            return f"{self.id} " + " + ".join(f"{quantities.written(l)}{f.unit}" for f, l in zip(self.factors, level))
+        return f"{self.id} {quantities.written(level)}{self.unit}"
+
     def row(self, level):
         """The columns of trial_table.py that say what was degraded."""
         if self.kind == "asynchrony":

@@ -5,6 +5,7 @@ that a t-test finds. Games are in power_games.py, presses that are judged by wha
 """
 import dataclasses
 import math
+import warnings
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from plan import Plan
 
 WANTED, ALPHA = 0.8, 0.05  # power and size of a test that are usual (Cohen 1988, Statistical Power Analysis, sections 2.4 and 1.2)
 FIXED = {"two_interval": {"guess": 0.5}}
+IN_UNIT = ("pss", "sd", "threshold", "scale")  # parameters that are counted as levels are
+MOST_UNPLACED = 0.2  # of simulated sessions that place no threshold: more, and what the others say of it says little (design)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,12 +92,21 @@ def differences(study, assumed):
     answers, found = study.procedure["repetitions"], []
     for n in assumed.participants:
         smallest = None
-        if n > 1:
-            smallest = TTestPower().solve_power(nobs=n, alpha=ALPHA, power=WANTED) * math.sqrt(2 / answers)
-        elif answers > 1:
-            smallest = TTestIndPower().solve_power(nobs1=answers, alpha=ALPHA, power=WANTED)
+        with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # of effects that are tried on the way, so large that a tail is lost
+            if n > 1:
+                smallest = TTestPower().solve_power(nobs=n, alpha=ALPHA, power=WANTED) * math.sqrt(2 / answers)
+            elif answers > 1:
+                smallest = TTestIndPower().solve_power(nobs1=answers, alpha=ALPHA, power=WANTED)
         found.append({"participants": n, "answers": answers, "smallest_in_sd": None if smallest is None else float(smallest)})
     return found
+
+
+def unit_of(study, f):
+    """Of an estimate, with a space before it; "": it has none, or another one than its levels."""
+    condition = next(c for c in study.conditions if c.id == f["condition"])
+    observer = study.observer(condition)
+    unit = condition.unit if f["parameter"] in IN_UNIT and observer.function != "weibull_dB" else ""
+    return f" {unit}" if unit else ""
 
 
 def words(study, found, assumed):
@@ -110,9 +122,12 @@ def words(study, found, assumed):
     for f in found:
         if "softer" in f:
             continue
-        lines.append(f"{f['condition']}: {f['parameter']} of {f['truth']:g} will be known to +-{f['half_width']:.3g} (95 %) from one participant, bias {f['bias']:+.2g} "
+        unit = unit_of(study, f)
+        lines.append(f"{f['condition']}: {f['parameter']} of {f['truth']:g}{unit} will be known to +-{f['half_width']:.3g}{unit} (95 %) from one participant, bias {f['bias']:+.2g} "
                      f"({assumed.simulations} simulated participants, {f['trials']:.0f} trials each" + (f"; no threshold found in {f['no_fit']:.0%}" if f["no_fit"] else "") + ")"
                      + "".join(f"; the mean of {n} to +-{w:.3g}" for n, w in f["groups"].items()))
+    lines += [f"{name}: too many simulated sessions place no threshold to go by these figures; do its levels lie about it, and does a staircase lead there?"
+              for name in dict.fromkeys(f["condition"] for f in found if f.get("no_fit", 0) > MOST_UNPLACED)]
     if len(found) > len(differ):
         lines.append("means are of participants who are all alike; how much people differ comes on top")
     return lines or ["the study file has no <observer>: what it can find is not simulated"]

@@ -224,7 +224,7 @@ class Session:
     def tell(self, trial, observed, response):
         done, expected = self.plan.done, self.plan.expected_trials
         left_s = (time.monotonic() - self.began) / max(1, self.led + 1) * max(0, expected - done)
-        words = f"trial {trial.number:4d} of {expected}  {trial.condition.id}" + (f" {trial.level:g}" if isinstance(trial.level, float) else "")
+        words = f"trial {trial.number:4d} of {expected}  {trial.condition.words(trial.level)}"
         if observed.soa_ms is not None:
             words += f": {observed.soa_ms:.1f} +-{observed.uncertainty_ms:.1f} ms"
         words += f"  {observed.missed or response or observed.words()}  {left_s / 60:.0f} min left"

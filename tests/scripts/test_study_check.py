@@ -21,6 +21,7 @@ class Check(unittest.TestCase):
             figures = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
         self.assertEqual(status, 0)
         self.assertIn("240 trials", said)
+        self.assertIn("it begins with audio-visual -300ms, ", said)
         self.assertIn("minutes", said)
         pss = next(f for f in figures["power"] if f["parameter"] == "pss")
         self.assertLess(abs(pss["bias"]), 5)  # 40 participants with a standard error of 7 ms each: 4.5 of the mean's

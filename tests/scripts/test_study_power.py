@@ -4,6 +4,7 @@ import math
 import pathlib
 import sys
 import unittest
+import warnings
 from unittest import mock
 
 import numpy as np
@@ -62,7 +63,9 @@ class OfYesAndNo(unittest.TestCase):
         self.study = dataclasses.replace(study, observers={"": deaf})
         found = power.of(self.study, power.Assumed(simulations=30))
         self.assertGreater(found[0]["no_fit"], 0.2)
-        self.assertTrue(any("no threshold found" in line for line in power.words(self.study, found, power.Assumed(simulations=30))))
+        said = power.words(self.study, found, power.Assumed(simulations=30))
+        self.assertTrue(any("no threshold found" in line for line in said))
+        self.assertTrue(any("too many simulated sessions place no threshold" in line for line in said))
 
     def test_the_same_seed_gives_the_same_figures_and_a_study_without_observer_says_so(self):
         self.assertEqual(self.rows(simulations=10), self.rows(simulations=10))
@@ -70,7 +73,20 @@ class OfYesAndNo(unittest.TestCase):
         self.assertIn("no <observer>", power.words(blind, power.of(blind, power.Assumed()), power.Assumed())[0])
 
 
+    def test_figures_have_the_unit_of_the_levels_where_they_are_counted_so(self):
+        said = power.words(self.study, power.of(self.study, power.Assumed(simulations=10)), power.Assumed(simulations=10))
+        self.assertRegex(said[0], r"pss of -40 ms will be known to \+-[0-9.]+ ms ")
+        row = {"condition": "haptic delay", "parameter": "slope"}
+        self.assertEqual(power.unit_of(study_file.read("haptic_delay_stiffness"), row), "")
+
+
 class OfNumbers(unittest.TestCase):
+    def test_it_is_told_without_a_warning_of_the_library(self):
+        study = dataclasses.replace(study_file.read("audio_visual_synchrony"), response="rating", procedure={"kind": "constant", "repetitions": 2})
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(len(power.of(study, power.Assumed())), 3)
+
     def test_the_difference_is_found_by_a_t_test_in_eight_of_ten(self):
         study = dataclasses.replace(study_file.read("audio_visual_synchrony"), response="rating", procedure={"kind": "constant", "repetitions": 10})
         dice = np.random.default_rng(1)
