@@ -78,6 +78,7 @@ class Session:
         self.study, self.options, self.plan, self.journal, self.folder, self.observer = study, options, plan, journal, folder, observer
         self.cluster = self.lead = self.participant = None
         self.began, self.led = time.monotonic(), 0
+        self.trials_began = self.began  # the cluster was started and instructions were read before
         self.errors_ms, self.missed = [], 0
 
     # The cluster, and who leads it.
@@ -145,6 +146,7 @@ class Session:
     def run_trials(self, stimulus):
         block = self.plan.block_of(self.plan.done) if self.plan.done else None
         in_a_row = 0
+        self.trials_began = time.monotonic()
         while (trial := self.plan.next()) is not None:
             if self.options.most is not None and self.led >= self.options.most:
                 return
@@ -223,7 +225,7 @@ class Session:
 
     def tell(self, trial, observed, response):
         done, expected = self.plan.done, self.plan.expected_trials
-        left_s = (time.monotonic() - self.began) / max(1, self.led + 1) * max(0, expected - done)
+        left_s = (time.monotonic() - self.trials_began) / max(1, self.led + 1) * max(0, expected - done)
         words = f"trial {trial.number:4d} of {expected}  {trial.condition.words(trial.level)}"
         if observed.soa_ms is not None:
             words += f": {observed.soa_ms:.1f} +-{observed.uncertainty_ms:.1f} ms"

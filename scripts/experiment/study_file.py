@@ -140,6 +140,9 @@ def read(text, with_scene=True):
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]
+        for e in root.iter("instructions", "question", "choice", "text"):
+            if e.sourceline == first.line and (letter := next((c for c in e.text or "" if not c.isascii()), None)):
+                raise Refusal(f"{text}:{first.line}: a text of {e.tag} is ASCII, which {letter!r} is not")
         raise Refusal(f"{text}:{first.line}: {first.message.splitlines()[0]}")
     return Reading(text, path, root, hashlib.sha256(data).hexdigest(), with_scene).study()
 

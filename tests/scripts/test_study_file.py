@@ -114,6 +114,9 @@ class StudyFile(unittest.TestCase):
         s = self.read(PRESSED.replace(' of="stiffness"', "").replace(PRESSED[PRESSED.index("<observer"):], "</study>"))
         self.assertEqual((s.of, s.question, s.observers), ("", study_file.QUESTIONS["two_interval"][0], {}))
 
+    def test_a_text_that_is_not_ascii_is_refused_with_its_letter(self):
+        self.refused(self.changed("<choice>no</choice>", "<choice>n\u00e4</choice>"), "a text of choice is ASCII", "'\u00e4'")
+
     def test_what_is_no_xml_is_refused(self):
         for text in ("", "<study", GOOD.replace("</study>", ""), GOOD + "<more/>"):
             with self.subTest(text[-20:]):
