@@ -139,13 +139,12 @@ def write(path, rows):
 
 
 def replace(path, content):
-    """Puts a file in place of the old one in one step."""
+    """Puts a file in place of the old one in one step. content: text, or bytes."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with open(part, "w", newline="", encoding="utf-8") as file:
-            file.write(content)
+        part.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)

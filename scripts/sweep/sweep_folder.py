@@ -31,7 +31,7 @@ class SweepFolder:
                 raise Refusal(f"{file}: has changed since this sweep began, and so would its games; begin anew with another --out")
         self.chunks = games_of(self.study, self.games_each)
         (self.path / "chunks").mkdir(exist_ok=True)
-        trial_table.replace(self.path / "study.xml", self.study.path.read_text(encoding="utf-8"))  # for whoever reads the table elsewhere
+        trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for whoever reads the table elsewhere
 
     @staticmethod
     def begin(path, study, games):

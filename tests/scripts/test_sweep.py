@@ -91,6 +91,11 @@ class Sweep(unittest.TestCase):
         sweep("--resume", "--out", out)
         self.assertEqual((out / "games.csv").read_bytes(), before)
 
+    def test_a_study_in_another_encoding_is_kept_as_it_is(self):
+        self.study.write_bytes(STUDY.replace("UTF-8", "UTF-16").encode("utf-16"))
+        sweep(self.study, "--games", 1, "--out", self.folder / "out")
+        self.assertEqual((self.folder / "out" / "study.xml").read_bytes(), self.study.read_bytes())
+
     def test_a_game_that_fails_is_a_row_that_says_so(self):
         study = study_file.read(str(self.study))
         game = virtual_games.games_of(study, 1)[0][0]
