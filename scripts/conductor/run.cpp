@@ -108,7 +108,8 @@ class Conductor {
   }
 
  private:
-  void say(const json& line) { lines_.say(line.dump()); }
+  // What was quoted and is no UTF-8, as a text that was cut, is no reason to leave.
+  void say(const json& line) { lines_.say(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
   bool heed_orders(sync::HostTime now) {
     for (int i = 0; i < kMostOrdersATick; ++i) {
