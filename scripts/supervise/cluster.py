@@ -150,12 +150,13 @@ class Cluster:
         with open(self.plan.out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
-        self.write_address()
         for group in (("recorder", "sync_node"), (*self.plan.senses(), *self.plan.people()), (self.plan.world,)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
                     raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
+                if not (self.folder / "address").exists():  # the supervisor is there, and so is the network: who joins finds both
+                    self.write_address()
             if group != (self.plan.world,):  # nobody waits for the scene here
                 services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
 
