@@ -142,7 +142,7 @@ class Hosts(unittest.TestCase):
 
     def test_14_the_doctor_finds_a_firewall_and_a_lossy_cable(self):
         sound, picture = self.r.lab.hosts["sound"], self.r.lab.hosts["picture"]
-        picture.lose(30)
+        picture.lose(10)  # ten times what is named, and questions over ssh still pass
         drop = "add table inet deaf; add chain inet deaf input { type filter hook input priority 0; }; add rule inet deaf input udp dport 7669 drop"
         subprocess.run([*sound.inside(), "nft", drop], check=True)
         try:

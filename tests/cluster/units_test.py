@@ -154,7 +154,7 @@ def check(system):
     system.inside("kill", "-9", pid)
     wait_until(lambda: system.of("sim", "ActiveState") == "active" and system.of("sim", "NRestarts") == "1" and system.of("sim", "MainPID") != pid,
                "the simulation is started again")
-    time.sleep(3)  # a new world has something to present, too
+    wait_until(lambda: all_present(senses(system)), "every sense presents, in a new world too; vision compiles its shaders first")
     system.inside("systemctl", "stop", "tactus.target")
     wait_until(lambda: all(system.of(kind, "ActiveState") in ("inactive", "failed") for kind in KINDS), "all end")
     for kind in KINDS:
@@ -164,7 +164,7 @@ def check(system):
 def senses(system):
     """{sense: presented events} of what the units' recorder wrote."""
     out = system.folder / "out"
-    out.mkdir()
+    out.mkdir(exist_ok=True)
     for name in system.inside("ls", "/var/lib/tactus").split():
         if name.endswith(".lcmlog"):
             with open(out / name, "wb") as file:
@@ -172,6 +172,10 @@ def senses(system):
     subprocess.run([BIN / "summarise", out, "--out", out / "summary.json"], capture_output=True, check=False)
     contacts = json.loads((out / "summary.json").read_text(encoding="utf-8"))["contacts"]
     return {sense: of["presented"] for sense, of in contacts["by_modality"].items()}
+
+
+def all_present(presented):
+    return all(presented.get(sense, 0) > 0 for sense in ("haptic", "audio", "visual", "thermal"))
 
 
 def main():
@@ -193,7 +197,7 @@ def main():
             check(system)
             presented = senses(system)
             print("presented:", presented)
-            assert all(presented[sense] > 0 for sense in ("haptic", "audio", "visual", "thermal")), presented
+            assert all_present(presented), presented
         finally:
             system.close()
     return 0
