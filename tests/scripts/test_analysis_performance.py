@@ -175,6 +175,18 @@ class Breaking(unittest.TestCase):
             d, = performance.differences(made, clustered, MARGINS).values()
             self.assertEqual((d.harmless, d.harmful), (harmless, False), n)
 
+    def test_the_tests_of_a_factor_are_corrected_by_holm_and_those_of_another_are_none_of_them(self):
+        # All won in the same time: p of time is the least there is, p of success between alpha/2 and alpha, which Holm's second test bears and Bonferroni's not.
+        alike = lambda factor, first: [game(first + i, True, 5, factor) for i in range(27)]
+        sight = alike((), 0) + alike([("visual", "delay", 40, "ms")], 100)
+        one, = performance.differences(*cells(sight), MARGINS).values()
+        self.assertTrue(0.025 < one.p_success < 0.05 and one.p_time < 0.025, one)
+        self.assertTrue(one.harmless)
+        other = performance.differences(*cells(sight + alike([("audio", "delay", 40, "ms")], 200)), MARGINS)
+        self.assertTrue(all(d.harmless for d in other.values()))
+        second = performance.differences(*cells(sight + alike([("visual", "delay", 80, "ms")], 200)), MARGINS)
+        self.assertFalse(any(d.harmless for d in second.values()))  # two of success: the lesser p is to be at most alpha/2
+
     def test_a_game_that_is_lost_anyway_shows_no_level_to_be_harmless(self):
         rows = [game(i, i % 600 < 30, 29, [("visual", "delay", 40, "ms")] if i >= 600 else ()) for i in range(1200)]
         made, clustered = cells(rows)
