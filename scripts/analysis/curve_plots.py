@@ -192,5 +192,5 @@ def trace_figure(curves):
         axes.set_visible(False)
     fig.supxlabel("answer", fontsize=8)
     fig.supylabel(people[0].condition.axis().replace(" = t", "\n= t") if columns < 3 or rows < 2 else people[0].condition.axis(), fontsize=8)
-    stamp(fig, people[0].observer)
+    stamp(fig, " and ".join(sorted({person.observer for person in people})))
     return fig

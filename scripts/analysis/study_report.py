@@ -193,8 +193,9 @@ def performance_section(report):
             slug = f"{f.first.modality}_{f.first.operator}_{f.second.modality}_{f.second.operator}"
             parts.append(report.keep(performance_plots.frontier_figure(f, p.cells, p.margins, p.observer), f"frontier_map_{slug}",
                                      f"{safe(f.first.words().capitalize())} and {safe(f.second.words())} together. Red line: where the margin is reached; dashed: 75 % of the games won."))
-            parts.append(report.keep(performance_plots.edge_figure(f, p.observer), f"frontier_{slug}",
-                                     f"How much of {safe(f.second.words())} the game bears, by success or time, at each level of {safe(f.first.words())}, with 95 % intervals."))
+            if f.edge:  # not where neither was played alone
+                parts.append(report.keep(performance_plots.edge_figure(f, p.observer), f"frontier_{slug}",
+                                         f"How much of {safe(f.second.words())} the game bears, by success or time, at each level of {safe(f.first.words())}, with 95 % intervals."))
     return "".join(parts)
 
 

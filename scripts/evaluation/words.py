@@ -20,10 +20,11 @@ def figure(value, digits=3):
 
 
 def table(caption, head, rows, number):
-    """rows: lists of cells; a text stays left, a number goes right."""
+    """rows: lists of cells; a text stays left, a number goes right, and so does the head of a column with numbers."""
     out = [f"<table><caption><b>Table {number}.</b> {caption}</caption>"]
     if any(head):
-        out += ["<thead><tr>", *(f"<th>{safe(h)}</th>" for h in head), "</tr></thead>"]
+        texts = [all(isinstance(row[i], str) for row in rows if i < len(row)) for i in range(len(head))]
+        out += ["<thead><tr>", *(f"<th>{safe(h)}</th>" if text else f'<th class="n">{safe(h)}</th>' for h, text in zip(head, texts)), "</tr></thead>"]
     out.append("<tbody>")
     for row in rows:
         out.append("<tr>" + "".join(f"<td>{safe(c)}</td>" if isinstance(c, str) else f'<td class="n">{figure(c)}</td>' for c in row) + "</tr>")
@@ -46,7 +47,8 @@ h3 { font-size: 1em; margin: 1.4em 0 .3em; }
 .sum { background: #f5f3ee; border-left: 3px solid #c2562b; padding: .7em 1em; margin: 1.2em 0; }
 table { border-collapse: collapse; font: 12.5px/1.4 "DejaVu Sans", Verdana, sans-serif; margin: 1.1em 0; width: 100%; font-variant-numeric: tabular-nums; }
 caption, figcaption { caption-side: top; text-align: left; font: 13px/1.45 Georgia, "DejaVu Serif", serif; color: #333; margin-bottom: .4em; }
-thead th { border-top: 1.5px solid #333; border-bottom: 1px solid #333; padding: .25em .5em; text-align: right; font-weight: 600; vertical-align: bottom; }
+thead th { border-top: 1.5px solid #333; border-bottom: 1px solid #333; padding: .25em .5em; text-align: left; font-weight: 600; vertical-align: bottom; }
+thead th.n { text-align: right; }
 thead th:first-child, td:first-child { text-align: left; }
 td { padding: .18em .5em; text-align: left; border-bottom: 1px solid #eee; overflow-wrap: anywhere; }
 td.n { text-align: right; white-space: nowrap; }

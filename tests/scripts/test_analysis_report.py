@@ -66,6 +66,15 @@ class Whole(unittest.TestCase):
         self.assertNotIn("<script", self.page)
         self.assertNotIn("<link", self.page)
 
+    def test_of_senses_that_were_degraded_together_alone_there_is_a_map_and_no_frontier(self):
+        rng, pair = np.random.default_rng(1), [("haptic", "delay", 20, "ms"), ("visual", "delay", 50, "ms")]
+        place = self.root / "together.csv"
+        rows = games(rng, 6, [], 1, 8, first=1)
+        analysis_tables.write(place, rows + games(rng, 6, pair, 0.5, 14, first=len(rows) + 1))
+        done = self.call("--out", self.root / "together", place=place)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual({p.stem for p in (self.root / "together" / "figures").iterdir()}, {"frontier_map_haptic_delay_visual_delay"})
+
     def test_every_figure_is_there_as_svg_and_png(self):
         named = re.findall(r'<figure id="([^"]+)">', self.page)
         self.assertEqual(len(named), len(set(named)))

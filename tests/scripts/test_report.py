@@ -157,6 +157,7 @@ class Words(unittest.TestCase):
         self.assertEqual(words.figure(0.9991, 4), "0.9991")
 
     def test_a_table_takes_any_text(self):
+        self.assertIn('<th>a</th><th class="n">n</th>', words.table("c", ["a", "n"], [["x", 3]], 1))  # a head lies over its column
         made = words.table("c", ["<b>"], [["<script>"], [3.0]], 1)
         self.assertIn("&lt;script&gt;", made)
         self.assertNotIn("<script>", made)
