@@ -36,7 +36,7 @@ def parsed(words):
     p.add_argument("--participants", default="1,12,24", metavar="N,...", help="numbers of participants of whom is told what they can show; default: 1,12,24")
     p.add_argument("--pilot", metavar="TRIALS.csv", help="how games go with nothing degraded, or what was felt in presses at each level, from a table of trials")
     p.add_argument("--simulations", type=int, default=100, help="simulated participants; default: 100")
-    p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--seed", type=int, default=1, help="of the simulated participants; default: 1")
     p.add_argument("--json", metavar="FILE", help="writes the same here")
     a = p.parse_args(words)
     if not (2 <= a.simulations <= 100_000 and a.seed >= 0):
@@ -100,6 +100,19 @@ def assumed_of(study, options):
     return dataclasses.replace(assumed, **made)
 
 
+def unnamed(study):
+    """[a line] where the analysis will not know which property was rated."""
+    if study.response != "rating" or study.of:
+        return []
+    sys.path.append(str(HERE.parent / "analysis"))
+    import appearance
+    import published
+    known = published.just_noticeable()
+    if study.number and appearance.property_of(study.question, known):
+        return []
+    return [f"these ratings will stand in the tables and not be analysed: that takes numbers, and of= or a question that names one of {', '.join(known)}"]
+
+
 def checked(study, options):
     """(lines, figures)."""
     import duration
@@ -116,7 +129,7 @@ def checked(study, options):
     found = power.of(study, assumed)
     figures = {"study": study.name, "trials": Plan(study, options.participant).expected_trials, "blocks": study.blocks, "conditions": [c.id for c in study.conditions],
                "minutes": round(minutes, 2), "parts_s": dict(parts), "sequence": first, "power": found}
-    return lines + power.words(study, found, assumed), figures
+    return lines + power.words(study, found, assumed) + unnamed(study), figures
 
 
 def main(words):

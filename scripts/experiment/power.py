@@ -123,6 +123,9 @@ def words(study, found, assumed):
         if "softer" in f:
             continue
         unit = unit_of(study, f)
+        if f["no_fit"] == 1:
+            lines.append(f"{f['condition']}: no threshold found in any of {assumed.simulations} simulated sessions, so that nothing is known of {f['parameter']}")
+            continue
         lines.append(f"{f['condition']}: {f['parameter']} of {f['truth']:g}{unit} will be known to +-{f['half_width']:.3g}{unit} (95 %) from one participant, bias {f['bias']:+.2g} "
                      f"({assumed.simulations} simulated participants, {f['trials']:.0f} trials each" + (f"; no threshold found in {f['no_fit']:.0%}" if f["no_fit"] else "") + ")"
                      + "".join(f"; the mean of {n} to +-{w:.3g}" for n, w in f["groups"].items()))

@@ -36,7 +36,7 @@ def parsed(words):
     p.add_argument("--seed", type=int, help="instead of that of the study file")
     p.add_argument("--simulated", action="store_true", help="a simulated participant answers, with the observer of the study file; so says every row")
     p.add_argument("--window", action="store_true", help="questions are asked in the window of the pictures")
-    p.add_argument("--live", nargs="?", const="0", metavar="PORT", help="questions are asked on the live page, at its address with ?participant")
+    p.add_argument("--live", nargs="?", const="0", metavar="PORT", help="questions are asked on the live page; its address, that of the participant and yours, is printed")
     p.add_argument("--listen", action="store_true", help="plays on the real sound card, too")
     p.add_argument("--device", help="the haptic device of the participant, as scripts/run --device has it; default: the apparatus' own hand")
     p.add_argument("--set", action="append", default=[], metavar="NODE.NAME=VALUE", help="a setting of the cluster; may be repeated")

@@ -27,6 +27,18 @@ class Check(unittest.TestCase):
         self.assertLess(abs(pss["bias"]), 5)  # 40 participants with a standard error of 7 ms each: 4.5 of the mean's
         self.assertTrue(8 < pss["half_width"] < 25, pss)
 
+    def test_ratings_that_the_analysis_cannot_place_are_told(self):
+        text = """<study name="s" version="1" scene="yielding_board.sdf" task="press">
+          <conditions><factor modality="haptic" operator="delay" levels="0ms 40ms"/></conditions><procedure kind="constant" repetitions="2"/>
+          <response kind="rating" lowest="0" highest="9" step="1"><question>How %s?</question></response></study>"""
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "s.xml"
+            for question, told in (("stiff was the board", True), ("high was the stiffness", False)):
+                file.write_text(text % question, encoding="utf-8")
+                status, said, complaint = self.run_study("check", str(file))
+                self.assertEqual((status, complaint), (0, ""))
+                self.assertEqual("not be analysed" in said, told, said)
+
     def test_games_are_judged_by_the_loss_that_they_can_show(self):
         status, said, _ = self.run_study("check", "senses_removed", "--simulations", "200")
         self.assertEqual(status, 0)
