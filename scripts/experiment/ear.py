@@ -1,4 +1,4 @@
-"""Hears: when the sound of a hit was really out, by the samples of audio.wav while it is written."""
+"""Hears: when the sound of a hit was really out, by the samples of audio.wav while it is written; of audio.2.wav, where the sense was started again."""
 import pathlib
 
 import numpy as np
@@ -9,11 +9,15 @@ RISE = 1e-4  # of a tap, in a scene where nothing else sounds: the first sample 
 
 
 class Ear:
-    """Listens to audio.wav while it is written."""
+    """Listens to what audio_node writes to the folder, through a Lead that hears which of its samples was out when."""
 
     def __init__(self, out, lead):
-        self.path, self.lead = pathlib.Path(out) / "audio.wav", lead
-        self.layout = None
+        self.out, self.lead = pathlib.Path(out), lead
+        self.path = self.layout = None
+
+    def listen_to(self, name):
+        if self.path is None or self.path.name != name:
+            self.path, self.layout = self.out / name, None
 
     def _layout(self):
         """(first byte of the samples, dtype, channels, rate), from the header; None: it is not written yet. Only what the sound sense writes is understood."""
@@ -47,11 +51,14 @@ class Ear:
 
     def onset_ns(self, expected_ns):
         """When the first sample of a sound near that instant was out, host time; None: nothing stands out there."""
-        pairs = self.lead.media.get("audio.wav")
-        if self._layout() is None or not pairs:
+        heard = [(abs(at_ns - expected_ns), name, index, at_ns) for name, pairs in self.lead.media.items() for index, at_ns in pairs]
+        if not heard:
+            return None
+        _, name, index, at_ns = min(heard)
+        self.listen_to(name)
+        if self._layout() is None:
             return None
         rate = self.layout[3]
-        index, at_ns = min(pairs, key=lambda p: abs(p[1] - expected_ns))
         expected = index + (expected_ns - at_ns) * 1e-9 * rate
         begin, end = int(expected - QUIET_S * rate), int(expected + NEAR_S[1] * rate)
         if not self.lead.wait_for(lambda: self._samples(begin, end) is not None, HEARD_WITHIN_S):

@@ -87,7 +87,7 @@ class TheSkin(unittest.TestCase):
 class TheEar(unittest.TestCase):
     RATE = 48000
 
-    def heard_ns(self, onset, expected_ns, at_ns=1_000_000_000):
+    def heard_ns(self, onset, expected_ns, at_ns=1_000_000_000, name="audio.wav"):
         samples = np.zeros(self.RATE, "<f4")
         if onset is not None:
             samples[onset:onset + 2000] = 0.2 * np.sin(0.5 + 0.2 * np.arange(2000)) * np.exp(-np.arange(2000) / 400)
@@ -95,15 +95,19 @@ class TheEar(unittest.TestCase):
         form = (3).to_bytes(2, "little") + (2).to_bytes(2, "little") + self.RATE.to_bytes(4, "little") + (8 * self.RATE).to_bytes(4, "little") + bytes([8, 0, 32, 0])
         with tempfile.TemporaryDirectory() as folder:
             body = b"fmt " + len(form).to_bytes(4, "little") + form + b"data" + len(stereo).to_bytes(4, "little") + stereo
-            (pathlib.Path(folder) / "audio.wav").write_bytes(b"RIFF" + (4 + len(body)).to_bytes(4, "little") + b"WAVE" + body)
+            (pathlib.Path(folder) / name).write_bytes(b"RIFF" + (4 + len(body)).to_bytes(4, "little") + b"WAVE" + body)
             lead = lead_of()
-            lead.media["audio.wav"] = collections.deque([(0, at_ns)])
+            lead.media["audio.wav"] = collections.deque([(0, at_ns - 9_000_000_000)])
+            lead.media[name] = collections.deque([(0, at_ns)])
             return ear.Ear(folder, lead).onset_ns(expected_ns)
 
     def test_a_hit_is_heard_at_its_first_sample_whenever_it_was_reported(self):
         for report_ns in (-15_000_000, 0, 12_000_000):
             heard_ns = self.heard_ns(24000, 1_500_000_000 + report_ns)
             self.assertAlmostEqual(1_500_000_000, heard_ns, delta=1e9 / self.RATE)
+
+    def test_where_the_sense_was_started_again_it_is_heard_in_the_newer_file(self):
+        self.assertAlmostEqual(1_500_000_000, self.heard_ns(24000, 1_500_000_000, name="audio.2.wav"), delta=1e9 / self.RATE)
 
     def test_silence_is_not_heard(self):
         self.assertIsNone(self.heard_ns(None, 1_500_000_000))
