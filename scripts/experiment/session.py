@@ -169,6 +169,8 @@ class Session:
             self.led += not observed.missed
         self.questionnaire(self.study.blocks)
         self.journal.append({"kind": "end"})
+        if self.lead is not None:
+            self.read("That was the last one. Thank you!")  # all is kept: whoever does not press a key any more loses nothing
 
     def answer(self, trial, attempt, observed):
         if self.study.task == "game":
