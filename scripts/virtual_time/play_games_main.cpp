@@ -44,6 +44,7 @@ struct Loaded {
   std::vector<std::string> scatter;
   sim::WorldDef world;
   participant::Rules rules;
+  sync::WirePlan wire;
 };
 
 struct GameDef {
@@ -76,6 +77,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   };
   sync::VirtualPlan plan;
   plan.seed = game.seed;
+  plan.wire = loaded.wire;
   sync::VirtualTime time(plan);
   Referee referee;
   time.wire().tell([&](sync::HostTime, std::string_view channel, std::span<const std::uint8_t> data) {
@@ -176,7 +178,15 @@ int main(int argc, char** argv) try {
   app.add_option("--scatter-along", along, "balls begin so far nearer to their holes or further, m")
       ->capture_default_str();
   app.add_option("--scatter-aside", aside, "and so far to the side, m")->capture_default_str();
+  double latency_ms = 0, jitter_ms = 0, loss_percent = 0;
+  app.add_option("--latency-ms", latency_ms, "of the bus")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
+  app.add_option("--jitter-ms", jitter_ms, "of the bus, mean of what is added; its tail is heavy")
+      ->check(CLI::Range(0.0, 10000.0));
+  app.add_option("--loss-percent", loss_percent, "of datagrams on the bus")->check(CLI::Range(0.0, 100.0));
   sync::parse_or_exit(app, "play_games", argc, argv);
+  loaded.wire.latency = sync::from_seconds(latency_ms * 1e-3);
+  if (jitter_ms > 0) loaded.wire.jitter = {.shape = sync::JitterShape::kPareto, .scale_s = jitter_ms * 1e-3};
+  loaded.wire.loss = {.share = loss_percent / 100};
   loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
   std::vector<std::string> warnings;
   loaded.world = sim::load_sdf(loaded.scene, warnings);
