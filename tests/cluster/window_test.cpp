@@ -2,6 +2,7 @@
 // becomes of the node when window or server go.
 #include <signal.h>
 
+#include <set>
 #include <tactus/answer_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/question_t.hpp>
@@ -25,8 +26,9 @@ struct Desktop : Seeing {
   std::map<std::int64_t, std::vector<answer_t>> answered;  // by id
   question_t asked_now{};
   sync::HostTime ask_next{};
-  double rate = -1;  // of the world, as last told
-  int aimed = 0;     // times that the mouse was told as a device
+  double rate = -1;          // of the world, as last told
+  int aimed = 0;             // times that the mouse was told as a device
+  std::set<float> aimed_at;  // world y of that, m
 
   void start_server() {
     processes.spawn("Xvfb", {"Xvfb", "-displayfd", "1", "-screen", "0",
@@ -79,7 +81,8 @@ struct Desktop : Seeing {
         [&] {
           bus.drain(sync::host_now());
           while (const auto m = worlds.pop()) rate = m->message.clock.rate;
-          while (const auto m = devices.pop()) aimed += m->message.device == "mouse";
+          while (const auto m = devices.pop())
+            if (m->message.device == "mouse") ++aimed, aimed_at.insert(m->message.pose.position_m.y);
           while (const auto m = answers.pop()) answered[m->message.id].push_back(m->message);
           if (asked_now.id > 0 && sync::host_now() >= ask_next) {
             bus.publish(channels::kQuestion, asked_now);
@@ -271,7 +274,17 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
   CHECK(brightness(left, true) > brightness(right, true));
   CHECK(brightness(right, false) > brightness(left, false));
   c.x({"mousemove", "120", "300"});  // not held: it only passes
-  CHECK(apart(right, c.later_picture()) < 0.5);
+  const Grey after = c.later_picture();
+  INFO("from where it was held " << apart(right, after) << ", from where it passes " << apart(left, after));
+  CHECK(apart(right, after) < 0.5);
+
+  // Let go and moved on within one frame.
+  c.hear_for(0.1);
+  c.aimed_at.clear();
+  for (int i = 0; i < 20; ++i)
+    c.x({"mousemove", "520", "300", "mousedown", "1", "sleep", "0.1", "mouseup", "1", "mousemove", "120", "300"});
+  c.hear_for(0.2);
+  CHECK(c.aimed_at.size() == 1);
 }
 
 TEST_CASE(

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <stdexcept>
 
 #include "visual_node/egl/call_guard.h"
@@ -70,6 +71,9 @@ class Window : public Display {
       auto& keys = static_cast<Window*>(glfwGetWindowUserPointer(w))->keys_;
       if ((action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key))) && keys.size() < kMostKeys)
         keys.push_back(key);
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+      static_cast<Window*>(glfwGetWindowUserPointer(w))->cursor_ = {x, y};
     });
     survive_the_server();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
@@ -147,9 +151,9 @@ class Window : public Display {
     if (!lost_) inputs.buttons = buttons_now();
     if (lost_ || glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) != GLFW_PRESS) return inputs;
     int width = 0, height = 0;
-    double x = 0, y = 0;
     glfwGetWindowSize(window_, &width, &height);
-    glfwGetCursorPos(window_, &x, &y);
+    if (!cursor_) glfwGetCursorPos(window_, &cursor_.emplace()[0], &(*cursor_)[1]);
+    const auto [x, y] = *cursor_;
     if (width > 0 && height > 0 && x >= 0 && y >= 0 && x <= width && y <= height)
       inputs.aim.emplace(static_cast<float>(x / width), static_cast<float>(y / height));
     return inputs;
@@ -265,6 +269,9 @@ class Window : public Display {
   static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
   std::vector<int> keys_;
+  // Where the mouse was by the same events that say whether it is held. glfwGetCursorPos asks the server where it
+  // is now, when it may have been let go and moved on already: only for a mouse that has not moved yet.
+  std::optional<std::array<double, 2>> cursor_;
   std::array<Gamepad, GLFW_JOYSTICK_LAST + 1> gamepads_;
 };
 
