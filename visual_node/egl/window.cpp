@@ -75,6 +75,9 @@ class Window : public Display {
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
       static_cast<Window*>(glfwGetWindowUserPointer(w))->cursor_ = {x, y};
     });
+    glfwSetWindowPosCallback(window_, [](GLFWwindow* w, int, int) {
+      static_cast<Window*>(glfwGetWindowUserPointer(w))->cursor_.reset();
+    });
     survive_the_server();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
     if (o.full_screen) toggle_full_screen();
@@ -152,7 +155,10 @@ class Window : public Display {
     if (lost_ || glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) != GLFW_PRESS) return inputs;
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
-    if (!cursor_) glfwGetCursorPos(window_, &cursor_.emplace()[0], &(*cursor_)[1]);
+    if (!cursor_) {
+      auto& [x, y] = cursor_.emplace();
+      glfwGetCursorPos(window_, &x, &y);
+    }
     const auto [x, y] = *cursor_;
     if (width > 0 && height > 0 && x >= 0 && y >= 0 && x <= width && y <= height)
       inputs.aim.emplace(static_cast<float>(x / width), static_cast<float>(y / height));
@@ -270,7 +276,8 @@ class Window : public Display {
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
   std::vector<int> keys_;
   // Where the mouse was by the same events that say whether it is held. glfwGetCursorPos asks the server where it
-  // is now, when it may have been let go and moved on already: only for a mouse that has not moved yet.
+  // is now, when it may have been let go and moved on already: only for a mouse that has not moved yet, or whose
+  // window has moved under it, which no event of the mouse tells.
   std::optional<std::array<double, 2>> cursor_;
   std::array<Gamepad, GLFW_JOYSTICK_LAST + 1> gamepads_;
 };
