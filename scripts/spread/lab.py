@@ -89,8 +89,9 @@ class Host:
         person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{PERSON} && mount --bind {self.home} /home/{PERSON} && "
                   if self.ordinary else "")
         limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
-        inside = (f"mount --bind {self.disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && mkdir -m 755 /run/sshd && "
-                  f"mount -t tmpfs tmpfs {REPOSITORY} && hostname {self.name} && cd /root && export HOME=/root && "
+        # The repository is hidden first: it may lie in a folder that is hidden after it, where there is nothing to be mounted on.
+        inside = (f"mount -t tmpfs tmpfs {REPOSITORY} && mount --bind {self.disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
+                  f"mkdir -m 755 /run/sshd && hostname {self.name} && cd /root && export HOME=/root && "
                   "ip link set lo up && echo up && read linked && { ulimit -l unlimited 2>/dev/null; exec /usr/sbin/sshd -D -f /root/.lab/sshd_config -E /root/.lab/sshd.log; }")
         environment = {"PATH": os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"}
         self.process = subprocess.Popen(
