@@ -187,7 +187,7 @@ class Sites(unittest.TestCase):
         heard = self.hear(["near"], 3)
         self.assertEqual(0, heard["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):
-            self.assertEqual("running", self.r.watch.state(node))
+            self.assertEqual("running", self.r.watch.state(node), f"{node}: {self.note(node)}")
         self.r.lab.hosts["far"].mend()
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
