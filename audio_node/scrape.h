@@ -14,6 +14,8 @@
 
 namespace tactus::audio {
 
+inline constexpr int kMaxScrapes = 16;  // that sound at a time; others are silent
+
 // One of the two bodies. Vectors are in its frame.
 struct ScrapeSide {
   std::int64_t voice = -1;  // the same for the same body, as of a strike; -1: none

@@ -18,7 +18,7 @@ namespace tactus::audio {
 
 class Scrapes {
  public:
-  static constexpr int kMost = 16;  // at a time; more are not heard
+  static constexpr int kMost = kMaxScrapes;
   // Each drives a body twice at the most, while its place on it goes from one set of gains to the next.
   static_assert(2 * kMost <= Voices::kDrives);
 

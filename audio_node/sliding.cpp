@@ -8,7 +8,7 @@
 #include "audio_node/finish.h"
 #include "audio_node/loudness.h"
 #include "audio_node/plausible.h"
-#include "audio_node/scrapes.h"
+#include "audio_node/scrape.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::audio {
@@ -275,7 +275,7 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
   for (const contact_t& c : contacts)
     if (plausible(c))
       if (auto found = candidate(c, t, dt_s)) candidates_.push_back(*found);
-  const auto most = std::min<std::size_t>(candidates_.size(), Scrapes::kMost);
+  const auto most = std::min<std::size_t>(candidates_.size(), kMaxScrapes);
   const auto kept = [](const Candidate& k) { return k.strength() * (k.live->heard ? kGivesWay : 1); };
   std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(most),
                     candidates_.end(), [&](const Candidate& a, const Candidate& b) { return kept(a) > kept(b); });

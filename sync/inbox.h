@@ -12,6 +12,7 @@
 #include "sync/decode.h"
 #include "sync/sequence.h"
 #include "sync/time.h"
+#include "sync/virtual_time/message_receiver.h"
 
 namespace tactus::sync {
 
@@ -41,14 +42,11 @@ struct Received {
   Arrival order;
 };
 
-class InboxBase {
+class InboxBase : public MessageReceiver {
  public:
   explicit InboxBase(std::string channel) { count_.channel = std::move(channel); }
-  virtual ~InboxBase() = default;
   InboxBase(const InboxBase&) = delete;
   InboxBase& operator=(const InboxBase&) = delete;
-  // Never throws: it is called through LCM's C code.
-  virtual void accept(const void* data, std::size_t size, HostTime arrival) noexcept = 0;
   const InputCount& count() const { return count_; }
 
  protected:

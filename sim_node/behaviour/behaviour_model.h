@@ -1,14 +1,10 @@
-// The laws that may move the bodies of a scene, behind one solver (setting `solver`): what each needs, and whether
-// a scene, its detector and its law work together. A pairing that cannot work is refused before anything starts.
+// The laws that may move the bodies of a scene, behind one solver (setting `solver`), and what each needs.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/collision/detector.h"
-#include "sim_node/scene/world_def.h"
 #include "sim_node/settings.gen.h"
 
 namespace tactus::sim {
@@ -32,17 +28,8 @@ std::span<const BehaviourModel> behaviour_models();
 // Throws std::runtime_error with one sentence when the name is unknown.
 const BehaviourModel& behaviour_model(std::string_view name);
 
-// Empty when this detector serves the model; else one sentence with what to choose instead.
-std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector);
-// Empty when the model of these settings can move the bodies of this scene; else one sentence with what to do.
-// Loops of joints are found by who builds the systems.
-std::string refusal(const WorldDef& world, const Settings& settings);
-
 // The gap at which surfaces begin to act on each other, m: where springs do, and, so that nothing changes when a body goes
 // from one group to the other, in both groups of a dual simulation. Else they meet at none.
 double meeting_distance_m(const Settings& settings);
-
-// The law of an impulse world, of a model that has one.
-impulse::Law law_of(const Settings& settings);
 
 }  // namespace tactus::sim

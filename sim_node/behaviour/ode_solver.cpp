@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
 #include "sync/phases.h"

@@ -9,11 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "sim_node/collision/mesh_trees.h"
 #include "sim_node/collision/point_pair.h"
 #include "sim_node/scene/world_def.h"
 
 namespace tactus::sim {
+
+class MeshTrees;
 
 struct DetectorAbilities {
   std::string_view name;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/dual/group_bodies.h"
 
 namespace tactus::sim {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "sync/degradation/chance.h"
-#include "sync/inbox.h"
 
 namespace tactus::sync {
 
@@ -57,7 +56,7 @@ void VirtualEnd::drain(HostTime now, int at_most) {
     std::pop_heap(under_way_.begin(), under_way_.end(), later);
     const Datagram m = std::move(under_way_.back());
     under_way_.pop_back();
-    for (InboxBase* inbox : *m.to) inbox->accept(m.bytes->data(), m.bytes->size(), now);
+    for (MessageReceiver* inbox : *m.to) inbox->accept(m.bytes->data(), m.bytes->size(), now);
   }
 }
 

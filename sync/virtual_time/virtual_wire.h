@@ -15,10 +15,9 @@
 #include "sync/degradation/jitter.h"
 #include "sync/degradation/loss.h"
 #include "sync/time.h"
+#include "sync/virtual_time/message_receiver.h"
 
 namespace tactus::sync {
-
-class InboxBase;
 
 struct WirePlan {
   Nanoseconds latency{0};
@@ -36,7 +35,7 @@ class VirtualEnd {
   VirtualEnd& operator=(const VirtualEnd&) = delete;
 
   // side: 0 the first port, 1 the next.
-  void subscribe(std::size_t side, const std::string& channel, InboxBase* inbox) { subscribers_[side][channel].push_back(inbox); }
+  void subscribe(std::size_t side, const std::string& channel, MessageReceiver* inbox) { subscribers_[side][channel].push_back(inbox); }
   // Hands over what has arrived by then, oldest first, at most so many.
   void drain(HostTime now, int at_most);
   // When the next message arrives; HostTime::max(): none is under way.
@@ -44,7 +43,7 @@ class VirtualEnd {
 
  private:
   friend class VirtualWire;
-  using Inboxes = std::vector<InboxBase*>;
+  using Inboxes = std::vector<MessageReceiver*>;
   struct Datagram {
     HostTime at;
     std::uint64_t number;  // of those that this end is sent

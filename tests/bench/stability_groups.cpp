@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/behaviour/simulation.h"
 #include "sim_node/dual/dual_groups.h"
 #include "tests/bench/stability.h"

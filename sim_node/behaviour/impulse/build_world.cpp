@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/impulse/law_of.h"
 
 namespace tactus::sim::impulse {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/behaviour/behaviour_checks.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

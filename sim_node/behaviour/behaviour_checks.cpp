@@ -1,0 +1,58 @@
+#include "sim_node/behaviour/behaviour_checks.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "sim_node/behaviour/impulse/penalty.h"
+#include "sim_node/collision/manifold.h"
+
+namespace tactus::sim {
+namespace {
+
+// Points that may press on a body in one direction: a ball has one, a face four.
+int points_of(const WorldDef& world, int body) {
+  for (const ShapeDef& s : world.shapes)
+    if (s.body == body && s.kind != ShapeKind::kSphere) return kMaxManifoldPoints;
+  return 1;
+}
+
+std::string too_stiff(const WorldDef& world, const Settings& s) {
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const BodyDef& b = world.bodies[i];
+    if (b.is_static || b.tool >= 0) continue;
+    const double mobility = points_of(world, static_cast<int>(i)) / b.mass_kg;
+    const double most = impulse::stiffest_explicit(mobility, s.penalty_damping_Ns_m, s.step_s);
+    if (s.penalty_stiffness_N_m < most) continue;
+    char numbers[160];
+    std::snprintf(numbers, sizeof numbers, "%.3g kg bear at most %.3g N/m at a step of %.3g ms, not %.3g",
+                  b.mass_kg, std::max(0.0, most), 1e3 * s.step_s, s.penalty_stiffness_N_m);
+    return "sim_node: the solver \"penalty_explicit\" is unstable for the body \"" + b.name + "\", whose " +
+           numbers + "; lower penalty_stiffness or choose \"penalty\"";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector) {
+  if (!model.needs_gaps || detector.separation) return "";
+  return "sim_node: the solver \"" + std::string(model.name) +
+         "\" acts before surfaces meet, which the detector \"" + std::string(detector.name) +
+         "\" does not see; choose a detector that sees gaps, as \"gaps\" does, or the solver \"quick\" or \"step\"";
+}
+
+std::string refusal(const WorldDef& world, const Settings& settings) {
+  const BehaviourModel& model = behaviour_model(settings.solver);
+  if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
+    return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
+           std::string(model.name) +
+           "\"; choose solver = impulse, or penalty_explicit for springs of the start of the step near the tools, or "
+           "groups = single";
+  if (model.needs_gaps) {
+    const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
+    if (!blind.empty()) return blind;
+  }
+  return model.has_stability_limit ? too_stiff(world, settings) : "";
+}
+
+}  // namespace tactus::sim

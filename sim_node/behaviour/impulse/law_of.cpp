@@ -1,0 +1,32 @@
+#include "sim_node/behaviour/impulse/law_of.h"
+
+#include "sim_node/behaviour/behaviour_model.h"
+
+namespace tactus::sim {
+namespace {
+
+// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is
+// allowed, 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
+constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
+
+}  // namespace
+
+impulse::Law law_of(const Settings& s) {
+  impulse::Law law{.sweeps = s.iterations,
+                   .bounce_speed_m_s = s.bounce_speed_m_s,
+                   .slack_m = kSlack_m,
+                   .repair = s.contact_erp,
+                   .repair_speed_m_s = s.correcting_speed_m_s,
+                   .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
+  if (behaviour_model(s.solver).finite_forces) {
+    law.shell_m = kShell_m;
+    law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
+                   .damping_N_s_m = s.penalty_damping_Ns_m,
+                   .thickness_m = s.contact_tolerance_m - kShell_m,  // ends where surfaces meet
+                   .is_explicit = s.solver == "penalty_explicit",
+                   .rise_m_s = s.correcting_speed_m_s};
+  }
+  return law;
+}
+
+}  // namespace tactus::sim
