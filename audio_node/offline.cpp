@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "audio_node/device/file_card.h"
+#include "audio_node/devices/file_card.h"
 
 namespace tactus::audio {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "audio_node/device/card.h"
-#include "sync/offline.h"
+#include "audio_node/devices/card.h"
+#include "sync/node/offline.h"
 
 namespace tactus::audio {
 

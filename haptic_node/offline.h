@@ -10,8 +10,8 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "haptic_node/devices/recorded_hand.h"
-#include "haptic_node/tool_track.h"
-#include "sync/offline.h"
+#include "haptic_node/devices/tool_track.h"
+#include "sync/node/offline.h"
 
 namespace tactus::haptic {
 

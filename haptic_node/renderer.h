@@ -11,20 +11,20 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
-#include "haptic_node/contact_book.h"
-#include "haptic_node/coupling.h"
+#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/rendering/coupling.h"
 #include "haptic_node/devices/device.h"
-#include "haptic_node/handover.h"
-#include "haptic_node/owed_begins.h"
-#include "haptic_node/passivity.h"
-#include "haptic_node/reliefs.h"
-#include "haptic_node/rendering.h"
-#include "haptic_node/safety.h"
+#include "haptic_node/rendering/handover.h"
+#include "haptic_node/contact/owed_begins.h"
+#include "haptic_node/safety/passivity.h"
+#include "haptic_node/contact/reliefs.h"
+#include "haptic_node/rendering/rendering.h"
+#include "haptic_node/safety/safety.h"
 #include "haptic_node/settings.gen.h"
-#include "haptic_node/surfaces.h"
-#include "haptic_node/transient.h"
-#include "sync/how.h"
-#include "sync/time.h"
+#include "haptic_node/contact/surfaces.h"
+#include "haptic_node/rendering/transient.h"
+#include "sync/resampling/how.h"
+#include "sync/time/time.h"
 
 namespace tactus::haptic {
 

@@ -26,16 +26,16 @@
 #include <thread>
 
 #include "haptic_node/offline.h"
-#include "haptic_node/quality.h"
+#include "haptic_node/rendering/quality.h"
 #include "haptic_node/session.h"
-#include "haptic_node/tagged.h"
+#include "haptic_node/rendering/tagged.h"
 #include "lcmtypes/pointing.h"
-#include "sync/live_settings.h"
-#include "sync/node.h"
-#include "sync/opening.h"
-#include "sync/pacing.h"
-#include "sync/scene_exchange.h"
-#include "sync/sense.h"
+#include "sync/node/live_settings.h"
+#include "sync/node/node.h"
+#include "sync/node/opening.h"
+#include "sync/clocks/pacing.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/node/sense.h"
 
 using namespace tactus;
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <tactus/contact_events_t.hpp>
 
-#include "haptic_node/choice.h"
-#include "haptic_node/devices/make_device.h"
+#include "haptic_node/devices/selection/choice.h"
+#include "haptic_node/devices/selection/make_device.h"
 #include "haptic_node/renderer.h"
-#include "haptic_node/touch_input.h"
-#include "sync/contact_stream.h"
+#include "haptic_node/contact/touch_input.h"
+#include "sync/resampling/contact_stream.h"
 
 namespace tactus::haptic {
 

@@ -18,15 +18,15 @@
 #include <set>
 #include <utility>
 
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/command/commander.h"
 #include "sim_node/dual/followed_rate.h"
 #include "sim_node/publish/publisher.h"
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/node.h"
-#include "sync/scene_exchange.h"
+#include "sync/node/node.h"
+#include "sync/assets/scene_exchange.h"
 
 using namespace tactus;
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 
 namespace tactus::test {
 

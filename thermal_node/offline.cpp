@@ -3,7 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sync/export_csv.h"
+#include "sync/log/export_csv.h"
 
 namespace tactus::thermal {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <tactus/thermal_state_t.hpp>
 
-#include "sync/offline.h"
+#include "sync/node/offline.h"
 
 namespace tactus::thermal {
 

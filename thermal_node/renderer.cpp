@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "thermal_node/bioheat_model.h"
-#include "thermal_node/skin_model.h"
+#include "thermal_node/skin/bioheat_model.h"
+#include "thermal_node/skin/skin_model.h"
 
 namespace tactus::thermal {
 namespace {
@@ -105,7 +105,7 @@ void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s)
 
 // Touches that were over before this tick's interval but are heard of only now: their heat is still owed. The
 // force follows from the momentum of a plastic impact, m v, over the time of touch, as in
-// sync/contact_integral.cpp.
+// sync/resampling/contact_integral.cpp.
 void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interval_s) {
   for (const contact_event_t& end : tick.events) {
     if (end.kind != contact_event_t::END || end.tool != tool_ || sync::sim_time(end.time_ns) > tick.sim_begin)

@@ -11,16 +11,16 @@
 #include <tactus/thermal_state_t.hpp>
 #include <vector>
 
-#include "sync/late.h"
-#include "thermal_node/contact_model.h"
-#include "thermal_node/controller.h"
+#include "sync/presentation/late.h"
+#include "thermal_node/skin/contact_model.h"
+#include "thermal_node/display/controller.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/dwell.h"
-#include "thermal_node/flux_display.h"
-#include "thermal_node/lag.h"
+#include "thermal_node/skin/dwell.h"
+#include "thermal_node/display/flux_display.h"
+#include "thermal_node/display/lag.h"
 #include "thermal_node/settings.gen.h"
-#include "thermal_node/skin.h"
-#include "thermal_node/ticks.h"
+#include "thermal_node/skin/skin.h"
+#include "thermal_node/display/ticks.h"
 
 namespace tactus::thermal {
 

@@ -16,18 +16,18 @@
 #include <iostream>
 #include <optional>
 
-#include "sync/live_settings.h"
-#include "sync/node.h"
-#include "sync/pacing.h"
-#include "sync/scene_exchange.h"
-#include "sync/sense.h"
-#include "thermal_node/choice.h"
+#include "sync/node/live_settings.h"
+#include "sync/node/node.h"
+#include "sync/clocks/pacing.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/node/sense.h"
+#include "thermal_node/devices/choice.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/make_device.h"
 #include "thermal_node/offline.h"
-#include "thermal_node/quality.h"
+#include "thermal_node/display/quality.h"
 #include "thermal_node/renderer.h"
-#include "thermal_node/thickness.h"
+#include "thermal_node/skin/thickness.h"
 
 using namespace tactus;
 

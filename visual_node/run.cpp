@@ -22,16 +22,16 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "sync/live_settings.h"
-#include "sync/node.h"
-#include "sync/scene_exchange.h"
-#include "sync/sense.h"
+#include "sync/node/live_settings.h"
+#include "sync/node/node.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/node/sense.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/wall_talk.h"
 #include "visual_node/gl/stage.h"
-#include "visual_node/offline/offline.h"
+#include "visual_node/offline.h"
 #include "visual_node/overlay/live_desk.h"
 #include "visual_node/scene_view/meshes.h"
 #include "visual_node/video/picture_stream.h"

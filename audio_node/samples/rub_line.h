@@ -5,7 +5,7 @@
 #include <deque>
 
 #include "audio_node/samples/shot.h"
-#include "audio_node/spsc.h"
+#include "audio_node/signal/spsc.h"
 
 namespace tactus::audio {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
-#include "audio_node/place.h"
+#include "audio_node/spatial/place.h"
 #include "audio_node/samples/layers.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::audio {
 

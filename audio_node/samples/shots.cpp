@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "audio_node/bank/ring.h"
+#include "audio_node/modal/bank/ring.h"
 #include "audio_node/samples/interpolate.h"
 
 namespace tactus::audio {

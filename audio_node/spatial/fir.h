@@ -1,7 +1,7 @@
 // Two or four filters on one input, in vectors of the instructions that the processor has (bank/ring.h). Pure.
 #pragma once
 
-#include "audio_node/bank/ring.h"
+#include "audio_node/modal/bank/ring.h"
 
 namespace tactus::audio {
 

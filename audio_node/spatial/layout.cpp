@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sync/csv.h"
+#include "sync/text/csv.h"
 
 namespace tactus::audio {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "audio_node/pan.h"
+#include "audio_node/spatial/pan.h"
 
 namespace tactus::audio {
 namespace {

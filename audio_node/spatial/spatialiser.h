@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "audio_node/bank/ring.h"
-#include "audio_node/place.h"
+#include "audio_node/modal/bank/ring.h"
+#include "audio_node/spatial/place.h"
 #include "audio_node/spatial/delay.h"
 #include "audio_node/spatial/distance.h"
 #include "audio_node/spatial/fir.h"

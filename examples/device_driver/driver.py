@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A driver for a device that haptic_node does not know, in Python: it says where the device is and takes the force.
 
-  lcm-gen -p --ppath TYPES lcmtypes/*.lcm             once
+  lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES driver.py [NAME [GROUP [PORT [RUN]]]]     and beside it: haptic_node --device external:NAME
 
 It sends DEVICE_STATE 250 times a second and hears DEVICE_FORCE, which it lets go when it is not renewed. The hardware here is

@@ -2,7 +2,7 @@
 """Mouse, gamepad or 3D mouse as a device without force: a wand for the spot light, a head for the view, a hand that feels
 nothing. Beside it: haptic_node --tool TOOL --device external:NAME
 
-  lcm-gen -p --ppath TYPES lcmtypes/*.lcm             once
+  lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES inputs.py mouse /dev/input/event5 --name wand
   PYTHONPATH=TYPES inputs.py gamepad /dev/input/event7
   PYTHONPATH=TYPES inputs.py spacenav                 a 3D mouse, by spacenavd

@@ -7,7 +7,7 @@
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::haptic {
 

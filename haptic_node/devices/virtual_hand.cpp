@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "haptic_node/turns.h"
+#include "haptic_node/contact/turns.h"
 
 namespace tactus::haptic {
 namespace {

@@ -1,4 +1,4 @@
-"""Published thresholds: of asynchrony (sync/thresholds.csv) and of properties that are felt (just_noticeable.csv). Nothing is said here without a source."""
+"""Published thresholds: of asynchrony (sync/presentation/thresholds.csv) and of properties that are felt (just_noticeable.csv). Nothing is said here without a source."""
 import csv
 import dataclasses
 import pathlib

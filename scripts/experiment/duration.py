@@ -3,7 +3,7 @@ import stimuli
 
 IN_FORCE_S = 0.15  # a sense says ten times a second which profile it has: half of that, and the way there and back
 AFTER_S = 0.34     # reports of a sense come twice, 20 ms apart; then the hand goes back (stimuli.py). Sums of these agree with live sessions to 0.1 s a trial
-APPROACH_S = 0.5   # of the hand to the surface before a press, and back after it (scripts/conductor/hand.cpp)
+APPROACH_S = 0.5   # of the hand to the surface before a press, and back after it (scripts/trial_runner/hand.cpp)
 ANSWER_S = 1.5     # design: a choice between two, at leisure
 NUMBER_S = 4.0     # design: a slider
 BETWEEN_GAMES_S = 5.0  # design: the word that he is ready, and the world put back

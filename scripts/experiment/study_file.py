@@ -21,7 +21,7 @@ SCHEMA = HERE / "study.xsd"
 SHIPPED = HERE.parent / "studies"
 SCENES = HERE.parents[1] / "sim_node" / "scenes"
 LARGEST_BYTES = 1_000_000
-LONGEST_TEXT, LONGEST_CHOICE = 600, 40  # lcmtypes/question_t.lcm
+LONGEST_TEXT, LONGEST_CHOICE = 600, 40  # lcmtypes/types/control/question_t.lcm
 MOST_CONDITIONS = 2000
 MOST_LEVELS = 100_000  # of a pair; procedure_element.MOST_TRIALS, each once
 YES_OR_NO = ("synchrony", "order", "two_interval")  # answers that a psychometric function describes
@@ -32,7 +32,7 @@ QUESTIONS = {
     "rating": ("How good was that?", ()), "matching": ("How much was it?", ()), "performance": ("", ())}
 JUDGED = {"tap": "asynchrony", "press": "factor"}  # kinds of conditions of a task
 SOFTER = "Which of the two felt softer?"  # of two presses, where the study asks for their stiffness
-# What touch learns of its channel it forgets within seconds (LoopDelay in haptic_node/coupling.h), a delay of its output alone at once: the press after one
+# What touch learns of its channel it forgets within seconds (LoopDelay in haptic_node/rendering/coupling.h), a delay of its output alone at once: the press after one
 # that was degraded so would be soft of it, too.
 SLOW_TO_FORGET = ("network_delay", "jitter", "loss", "rate", "deadband")
 SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}

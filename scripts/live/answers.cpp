@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "sync/printable.h"
+#include "sync/text/printable.h"
 
 namespace tactus::live {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "scripts/live/browser_message.h"
-#include "sync/asked_question.h"
+#include "sync/node/asked_question.h"
 
 namespace tactus::live {
 

@@ -6,9 +6,9 @@
 
 #include "lcmtypes/vectors.h"
 #include "scripts/live/sliders.h"
-#include "sync/asking.h"
-#include "sync/identity.h"
-#include "sync/printable.h"
+#include "sync/bus/asking.h"
+#include "sync/bus/identity.h"
+#include "sync/text/printable.h"
 
 namespace tactus::live {
 namespace {

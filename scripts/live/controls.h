@@ -17,10 +17,10 @@
 
 #include "scripts/live/browser_message.h"
 #include "scripts/live/hand.h"
-#include "sync/bus.h"
+#include "sync/bus/bus.h"
 #include "sync/degradation/profile_exchange.h"
-#include "sync/scene_exchange.h"
-#include "sync/sim_follower.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/clocks/sim_follower.h"
 
 namespace tactus::live {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "sync/decode.h"
-#include "sync/printable.h"
+#include "sync/bus/decode.h"
+#include "sync/text/printable.h"
 
 namespace tactus::live {
 namespace {

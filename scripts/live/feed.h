@@ -17,7 +17,7 @@
 #include <tactus/sync_report_t.hpp>
 #include <tuple>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::live {
 

@@ -8,7 +8,7 @@
 #include <tactus/scene_t.hpp>
 
 #include "scripts/live/browser_message.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::live {
 

@@ -20,8 +20,8 @@
 #include "scripts/live/sliders.h"
 #include "scripts/live/station.h"
 #include "scripts/live/web_server.h"
-#include "sync/node.h"
-#include "sync/printable.h"
+#include "sync/node/node.h"
+#include "sync/text/printable.h"
 
 using namespace tactus;
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <tactus/log_info_t.hpp>
 
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 namespace tactus::live {
 

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sync/log_reader.h"
-#include "sync/mapped_log.h"
-#include "sync/summary_clock.h"
-#include "sync/time.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/mapped_log.h"
+#include "sync/log/summary_clock.h"
+#include "sync/time/time.h"
 
 namespace tactus::live {
 

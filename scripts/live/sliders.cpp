@@ -10,7 +10,7 @@
 
 #include "sync/degradation/profile.h"
 #include "sync/degradation/profile_exchange.h"
-#include "sync/printable.h"
+#include "sync/text/printable.h"
 
 namespace tactus::live {
 namespace {
@@ -95,7 +95,7 @@ void slide_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
 void slide_loss(XMLElement& root, const std::string& sense, double loss) {
   const auto old = operator_of("loss", first(root, sense, "loss")).loss.value_or(sync::LossDef{});
   if (same(old.share, loss)) return;
-  // More losses than bursts of that length allow come each by itself (sync/degradation/loss.h).
+  // More losses than bursts of that length allow come each by itself (sync/random/loss.h).
   const bool fits = old.mean_burst >= 1 && old.mean_burst * (1 - loss) > loss;
   set(root, sense, "loss",
       loss > 0 ? number(loss * 100) + "%" + (fits ? " burst=" + number(old.mean_burst) : "") : "");

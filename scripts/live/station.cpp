@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "scripts/live/catalog.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
-#include "sync/printable.h"
-#include "sync/thresholds.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
+#include "sync/text/printable.h"
+#include "sync/presentation/thresholds.h"
 
 namespace tactus::live {
 namespace {

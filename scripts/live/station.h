@@ -15,9 +15,9 @@
 #include "scripts/live/answers.h"
 #include "scripts/live/feed.h"
 #include "scripts/live/watches.h"
-#include "sync/picture_reader.h"
-#include "sync/tag_table.h"
-#include "sync/time.h"
+#include "sync/tools/picture_reader.h"
+#include "sync/node/tag_table.h"
+#include "sync/time/time.h"
 
 namespace tactus::live {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lcmtypes/fields.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::live {
 

@@ -2,7 +2,7 @@
 
 A lab knows by how much the clocks of its hosts differ, so that the times at which two hosts presented one event can be laid on one
 clock exactly: the true asynchrony. The system knows that of its CLOCK_MAPs only. What it says is reckoned here as
-sync/presentation_matcher.cpp does, for each event, from the maps that had arrived at the recorder when the report did.
+sync/presentation/presentation_matcher.cpp does, for each event, from the maps that had arrived at the recorder when the report did.
 
   off        what it says minus what was: the maps are all that lies between, so it is within the sum of what they state
   stated     that sum, and with it the uncertainties of the two presentations themselves
@@ -17,12 +17,12 @@ import dataclasses
 import itertools
 import re
 
-NAMES = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation_matcher.cpp
+NAMES = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation/presentation_matcher.cpp
 CONSTRAINT, TRANSIENT = 1, 2                                     # presentation_t: part
 PRESENTED, LATE, INAUDIBLE = 0, 1, 4                             # presentation_t: outcome
 GRAIN = {"haptic": 1.0, "thermal": 1.0, "visual": 0.5}           # of the period: by how much a presentation may be off its instant
 SLEW = 0.05                                                      # sync/playout/follower.h
-MOST_UNCERTAIN_NS = 16_000_000                                   # sync/clock_maps.h
+MOST_UNCERTAIN_NS = 16_000_000                                   # sync/clocks/clock_maps.h
 PER_S = 1_000_000_000
 BEFORE_NS = PER_S // 2                                           # a delay that changed so shortly before is one that changes: on its way, and in a picture begun
 
@@ -132,7 +132,7 @@ class Maps:
 
 
 def half_width(row, since_ns):
-    return int(row["uncertainty_ns"]) + round(abs(since_ns) * float(row["uncertainty_drift"])) + 2  # sync/clock_maps.cpp: two roundings
+    return int(row["uncertainty_ns"]) + round(abs(since_ns) * float(row["uncertainty_drift"])) + 2  # sync/clocks/clock_maps.cpp: two roundings
 
 
 def from_of(row, ns):

@@ -12,7 +12,7 @@ import random
 
 HERE = pathlib.Path(__file__).resolve().parent
 ON_THE_WIRE = 8 + 20 + 14 + 4 + 8 + 12 + 8 + 12  # LCM's head and a channel, IP, Ethernet with check and gap, UDP: RFC 768, RFC 791, IEEE 802.3
-FEW_CLOCKS, MOST_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_probe.h, sync/sync_node_main.cpp
+FEW_CLOCKS, MOST_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_sync/clock_probe.h, sync/tools/sync_node_main.cpp
 
 
 @dataclasses.dataclass(frozen=True)

@@ -4,7 +4,7 @@ GROUP_ROUTE = "ip route add 224.0.0.0/4 dev INTERFACE"
 LOSES_ABOVE = 0.01       # of single datagrams: contact events are repeated for 50 ms, states are not
 LATE_US = 20_000         # round trip p99: more than a frame at 60 Hz, which sound and picture would both wait for
 UNCERTAIN_US = 1000      # design: a tenth of the smallest asynchrony that anybody tells apart
-BUFFER_BYTES = 4 << 20   # sync/udp_port.cpp asks for so much
+BUFFER_BYTES = 4 << 20   # sync/bus/udp_port.cpp asks for so much
 COLUMNS = ("from", "to", "heard", "lost", "of bursts", "round trip p50/us", "p99/us", "clock/s", "+-/us", "ttl")
 
 

@@ -39,7 +39,7 @@ mssfix 1400 mtu
 tls-version-min 1.3
 data-ciphers AES-256-GCM:CHACHA20-POLY1305
 auth SHA256
-# As the nodes ask for (sync/udp_port.cpp).
+# As the nodes ask for (sync/bus/udp_port.cpp).
 sndbuf 4194304
 rcvbuf 4194304
 persist-tun

@@ -19,7 +19,7 @@ PARTICIPANT = "participant"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
 LONGEST_S = 86400  # a day of log fills most disks
-RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/recorder_node.cpp
+RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
 WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # and the most of each: scripts/virtual_time/virtual_time_main.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
@@ -237,7 +237,7 @@ def virtual(a):
 
 def recording(a):
     """The options for the recorder."""
-    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/recorder_node.cpp
+    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/tools/recorder/recorder_node.cpp
     given = {name: number("--" + name.replace("_", "-"), value, *bounds[name], "", whole=name == "keep")
              for name in RECORDING if (value := getattr(a, name)) is not None}
     splits = "split_mb" in given or "split_minutes" in given

@@ -27,7 +27,7 @@ PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report i
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
-WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/replay_main.cpp
+WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/tools/replay_main.cpp
 
 
 def common(plan, run_id):

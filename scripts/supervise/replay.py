@@ -20,7 +20,7 @@ from terminal import say
 
 SENSES = arguments.SENSES
 OF_REPLAY = ("speed", "start", "end", "channels", "leave_out", "also", "most")
-OVER = "replay: over"   # sync/replay_main.cpp
+OVER = "replay: over"   # sync/tools/replay_main.cpp
 ENDS = "replay: ends"
 AFTERWARDS_S = 0.5      # what is heard and seen last comes a while after it was said
 LONGEST_S = arguments.LONGEST_S

@@ -6,7 +6,7 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/channels.h"
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 namespace tactus {
 

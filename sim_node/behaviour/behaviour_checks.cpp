@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "sim_node/behaviour/impulse/penalty.h"
-#include "sim_node/collision/manifold.h"
+#include "sim_node/model/manifold.h"
 
 namespace tactus::sim {
 namespace {

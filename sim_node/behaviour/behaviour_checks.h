@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/model/behaviour_model.h"
 #include "sim_node/collision/detector.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
 
 namespace tactus::sim {

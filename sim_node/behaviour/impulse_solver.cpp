@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "sim_node/behaviour/impulse/build_world.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/behaviour/ode_handles.h"
+#include "sim_node/collision/detectors/ode_handles.h"
 #include "sim_node/behaviour/ode_joints.h"
 #include "sim_node/behaviour/solver.h"
-#include "sim_node/collision/ode_shapes.h"
+#include "sim_node/collision/detectors/ode_shapes.h"
 
 namespace tactus::sim {
 

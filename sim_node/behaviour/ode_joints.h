@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/behaviour/ode_handles.h"
-#include "sim_node/scene/world_def.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/collision/detectors/ode_handles.h"
+#include "sim_node/model/world_def.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim::ode {
 

@@ -6,7 +6,7 @@
 #include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
-#include "sync/phases.h"
+#include "sync/time/phases.h"
 
 namespace tactus::sim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "sim_node/behaviour/impulse_solver.h"
 #include "sim_node/behaviour/ode_engine.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 

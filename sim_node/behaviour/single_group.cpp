@@ -1,6 +1,6 @@
 #include "sim_node/behaviour/single_group.h"
 
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 

@@ -5,7 +5,7 @@
 
 #include "sim_node/behaviour/mechanics.h"
 #include "sim_node/behaviour/solver.h"
-#include "sim_node/collision/contact_tracker.h"
+#include "sim_node/contacts/contact_tracker.h"
 
 namespace tactus::sim {
 

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/step_report.h"
-#include "sim_node/collision/friction_maps.h"
-#include "sim_node/collision/manifold.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/contacts/friction_maps.h"
+#include "sim_node/model/manifold.h"
+#include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim_node/collision/triangle_tree.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim_node/collision/point_pair.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/point_pair.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "sim_node/collision/point_pair.h"
+#include "sim_node/model/point_pair.h"
 
 namespace tactus::sim {
 

@@ -10,9 +10,9 @@
 #include <tactus/sim_reply_t.hpp>
 #include <vector>
 
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/command/state_store.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "sim_node/behaviour/simulation.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/world/simulation.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "sync/realtime.h"
+#include "sync/node/realtime.h"
 
 namespace tactus::sim {
 namespace {

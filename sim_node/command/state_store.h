@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/opening.h"
+#include "sync/node/opening.h"
 
 namespace tactus::sim {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "sim_node/dual/dual_groups.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/collision/mesh_trees.h"
+#include "sim_node/collision/detectors/mesh_trees.h"
 #include "sim_node/dual/grouping.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
 
 namespace tactus::sim {

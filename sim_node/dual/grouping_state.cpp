@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "sim_node/dual/grouping.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/dual/ways.h"
-#include "sim_node/state/state_archive.h"
-#include "sync/time.h"
+#include "sim_node/model/state_archive.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

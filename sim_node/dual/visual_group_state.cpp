@@ -1,6 +1,6 @@
 // The state of the visual group as bytes.
 #include "sim_node/dual/visual_group.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

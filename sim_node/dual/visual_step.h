@@ -11,10 +11,10 @@
 
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/collision/contact_tracker.h"
+#include "sim_node/contacts/contact_tracker.h"
 #include "sim_node/dual/ways.h"
-#include "sim_node/state/state_archive.h"
-#include "sync/time.h"
+#include "sim_node/model/state_archive.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

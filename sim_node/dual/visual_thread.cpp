@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "sync/realtime.h"
+#include "sync/node/realtime.h"
 #include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sim {
 namespace {
 
-// design: below the haptic loop (50), above all that only shows (sync/declaration.h).
+// design: below the haptic loop (50), above all that only shows (sync/node/declaration.h).
 constexpr int kPriority = 45;
 
 }  // namespace

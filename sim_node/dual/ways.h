@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/dual/bounds_grid.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/model/bounds_grid.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 

@@ -5,10 +5,10 @@
 #include <tactus/game_state_t.hpp>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
-#include "sim_node/scene/world_def.h"
-#include "sim_node/state/state_archive.h"
-#include "sync/time.h"
+#include "sim_node/model/body_motion.h"
+#include "sim_node/model/world_def.h"
+#include "sim_node/model/state_archive.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

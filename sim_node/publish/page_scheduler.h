@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

@@ -10,7 +10,7 @@
 #include "sim_node/game/game.h"
 #include "sim_node/publish/snapshots.h"
 #include "sim_node/publish/young_events.h"
-#include "sync/bus.h"
+#include "sync/bus/bus.h"
 
 namespace tactus::sim {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

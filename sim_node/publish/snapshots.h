@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
-#include "sim_node/publish/ahead.h"
+#include "sim_node/model/body_motion.h"
+#include "sim_node/model/ahead.h"
 #include "sim_node/publish/page_scheduler.h"
 
 namespace tactus::sim {

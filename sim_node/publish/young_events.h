@@ -6,7 +6,7 @@
 #include <tactus/contact_event_t.hpp>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sim {
 

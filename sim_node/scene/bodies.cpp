@@ -10,9 +10,9 @@
 #include "sim_node/scene/joints.h"
 #include "sim_node/scene/lights.h"
 #include "sim_node/scene/meshes.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 #include "sim_node/scene/shapes.h"
-#include "sim_node/scene/tactus_materials.h"
+#include "sim_node/scene/extensions/tactus_materials.h"
 #include "sim_node/scene/visuals.h"
 
 namespace tactus::sim {

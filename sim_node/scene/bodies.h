@@ -3,7 +3,7 @@
 
 #include <sdf/Model.hh>
 
-#include "sim_node/scene/load_context.h"
+#include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "sim_node/scene/mass.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 
 namespace tactus::sim {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <sdf/JointAxis.hh>
 
-#include "sim_node/scene/attributes.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/sdf/attributes.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 
 namespace tactus::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 
 namespace tactus::sim {
 namespace {

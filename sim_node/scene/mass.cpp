@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "sim_node/scene/shapes.h"
-#include "sim_node/scene/triangles.h"
+#include "sim_node/model/triangles.h"
 
 namespace tactus::sim {
 namespace {

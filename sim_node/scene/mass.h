@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 

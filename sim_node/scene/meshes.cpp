@@ -3,12 +3,12 @@
 #include <functional>
 #include <sstream>
 
-#include "sim_node/scene/file_properties.h"
-#include "sim_node/scene/mesh_reader.h"
-#include "sim_node/scene/sdf_eigen.h"
-#include "sim_node/scene/subdivide.h"
-#include "sim_node/scene/tactus_materials.h"
-#include "sim_node/scene/tangents.h"
+#include "sim_node/scene/meshes/file_properties.h"
+#include "sim_node/scene/meshes/mesh_reader.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/meshes/subdivide.h"
+#include "sim_node/scene/extensions/tactus_materials.h"
+#include "sim_node/scene/meshes/tangents.h"
 
 namespace tactus::sim {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <sdf/Mesh.hh>
 
-#include "sim_node/scene/load_context.h"
-#include "sim_node/scene/mesh_file.h"
+#include "sim_node/scene/sdf/load_context.h"
+#include "sim_node/scene/meshes/mesh_file.h"
 
 namespace tactus::sim {
 

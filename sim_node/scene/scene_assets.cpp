@@ -1,10 +1,10 @@
 #include "sim_node/scene/scene_assets.h"
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/tool_shape.h"
-#include "sim_node/scene/triangles.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "sim_node/model/tool_shape.h"
+#include "sim_node/model/triangles.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 
 namespace tactus::sim {
 namespace {

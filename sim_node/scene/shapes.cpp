@@ -10,10 +10,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sim_node/scene/height_image.h"
+#include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
-#include "sim_node/scene/sdf_eigen.h"
-#include "sim_node/scene/triangles.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/model/triangles.h"
 
 namespace tactus::sim {
 namespace {

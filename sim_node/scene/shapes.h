@@ -4,7 +4,7 @@
 #include <optional>
 #include <sdf/Geometry.hh>
 
-#include "sim_node/scene/load_context.h"
+#include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 

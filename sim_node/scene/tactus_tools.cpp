@@ -7,10 +7,10 @@
 
 #include "lcmtypes/tool_device.h"
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/attributes.h"
+#include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/mass.h"
-#include "sim_node/scene/mesh_file.h"
-#include "sim_node/scene/tool_shape.h"
+#include "sim_node/scene/meshes/mesh_file.h"
+#include "sim_node/model/tool_shape.h"
 
 namespace tactus::sim {
 namespace {

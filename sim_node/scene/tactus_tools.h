@@ -1,7 +1,7 @@
 // Tools: what a hand holds in the scene, and the path of the virtual hand.
 #pragma once
 
-#include "sim_node/scene/load_context.h"
+#include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 

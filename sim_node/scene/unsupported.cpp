@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "sim_node/scene/tactus_settings.h"
+#include "sim_node/scene/extensions/tactus_settings.h"
 
 namespace tactus::sim {
 namespace {

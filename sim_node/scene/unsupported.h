@@ -1,7 +1,7 @@
 // Says what of a scene has no effect here: one warning for each such element, and none for what lies inside it.
 #pragma once
 
-#include "sim_node/scene/load_context.h"
+#include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 

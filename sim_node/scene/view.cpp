@@ -4,8 +4,8 @@
 #include <numbers>
 #include <sdf/Scene.hh>
 
-#include "sim_node/scene/attributes.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/sdf/attributes.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 #include "sim_node/scene/shapes.h"
 
 namespace tactus::sim {

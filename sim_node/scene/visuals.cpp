@@ -6,15 +6,15 @@
 #include <stdexcept>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/attributes.h"
-#include "sim_node/scene/file_properties.h"
-#include "sim_node/scene/height_image.h"
+#include "sim_node/scene/sdf/attributes.h"
+#include "sim_node/scene/meshes/file_properties.h"
+#include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
-#include "sim_node/scene/pictures.h"
-#include "sim_node/scene/sdf_eigen.h"
+#include "sim_node/scene/materials/pictures.h"
+#include "sim_node/scene/sdf/sdf_eigen.h"
 #include "sim_node/scene/shapes.h"
-#include "sim_node/scene/tactus_looks.h"
-#include "sync/settings.h"
+#include "sim_node/scene/extensions/tactus_looks.h"
+#include "sync/text/settings.h"
 
 namespace tactus::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <span>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

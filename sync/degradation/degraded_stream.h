@@ -3,7 +3,7 @@
 //
 // A message that is let through late carries the newest publication time and clock of its stream, and the arrival
 // of the message that they are of: it is old news of the world, not a message from before a restart, and says
-// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/sense.h).
+// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/node/sense.h).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "sync/degradation/chance.h"
+#include "sync/random/chance.h"
 #include "sync/degradation/snapshot.h"
 #include "sync/degradation/stack.h"
 
@@ -217,7 +217,7 @@ class DegradedEvents {
   std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
 
  private:
-  static constexpr std::size_t kRemembered = 8192;  // as sync/contact_stream.cpp
+  static constexpr std::size_t kRemembered = 8192;  // as sync/resampling/contact_stream.cpp
   static constexpr std::size_t kMostDropped = 4096;
   bool first_heard(std::int64_t id);
 

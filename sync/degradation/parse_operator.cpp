@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "sync/degradation/profile.h"
-#include "sync/settings.h"
+#include "sync/text/settings.h"
 
 namespace tactus::sync {
 namespace {

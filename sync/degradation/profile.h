@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "sync/degradation/deadband.h"
-#include "sync/degradation/jitter.h"
-#include "sync/degradation/loss.h"
+#include "sync/random/jitter.h"
+#include "sync/random/loss.h"
 
 namespace tactus::sync {
 

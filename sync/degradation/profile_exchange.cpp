@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sync/bus.h"
-#include "sync/identity.h"
+#include "sync/bus/bus.h"
+#include "sync/bus/identity.h"
 
 namespace tactus::sync {
 namespace {

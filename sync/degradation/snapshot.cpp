@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lcmtypes/vectors.h"
-#include "sync/degradation/chance.h"
+#include "sync/random/chance.h"
 
 namespace tactus::sync {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

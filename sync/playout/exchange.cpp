@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 namespace tactus::sync {
 namespace {

@@ -6,7 +6,7 @@
 #include <tactus/playout_t.hpp>
 #include <utility>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

@@ -1,7 +1,7 @@
 // The common loop of serial senses: turns at fixed instants of the world, the same in every process. Pure.
 #pragma once
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sync/playout/aligner.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kMagic = "TRL1";
 constexpr std::size_t kChannelAt = kMagic.size() + 1;  // behind the port
-constexpr int kReceiveBufferBytes = 4 << 20;           // as sync/udp_port.cpp
+constexpr int kReceiveBufferBytes = 4 << 20;           // as sync/bus/udp_port.cpp
 // What a datagram may hold on an Ethernet without being cut in pieces, and then some.
 static_assert(kChannelAt + kLongestChannel + 1 + channels::kMaxMessageBytes <= 2047);
 

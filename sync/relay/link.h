@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/datagram.h"
+#include "sync/bus/datagram.h"
 
 namespace tactus::sync {
 

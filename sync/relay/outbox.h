@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 
@@ -26,7 +26,7 @@ struct OutboxCounts {
 class Outbox {
  public:
   // So long an event is repeated (sim_node), and so long it waits; assets are asked for again after 100 ms
-  // (sync/scene_exchange.h), some times more.
+  // (sync/assets/scene_exchange.h), some times more.
   static constexpr Nanoseconds kLatest{50'000'000}, kLatestBulk{1'000'000'000};
   // At once: ten of the longest datagrams. Half of that is never taken by assets, so that what is said together
   // goes together while a scene is on its way.

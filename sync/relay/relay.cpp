@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sync/log_header.h"
+#include "sync/log/log_header.h"
 
 namespace tactus::sync {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/datagram.h"
+#include "sync/bus/datagram.h"
 #include "sync/relay/link.h"
 #include "sync/relay/outbox.h"
 #include "sync/relay/rules.h"

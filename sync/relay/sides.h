@@ -8,7 +8,7 @@
 #include <tactus/header_t.hpp>
 #include <utility>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 
@@ -17,7 +17,7 @@ class Sides {
   static constexpr int kHere = 0;  // the bus of this site; other sites count from 1
   // Silent for so long, a sender may turn up elsewhere.
   static constexpr Nanoseconds kForgotten{10'000'000'000};
-  // As sync/sequence.h for one channel; more are of false messages, and those not heard for longest go.
+  // As sync/bus/sequence.h for one channel; more are of false messages, and those not heard for longest go.
   static constexpr std::size_t kMost = 4096;
 
   // Whether this sender lives there: it does where it was heard first.

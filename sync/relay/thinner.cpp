@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 #include "sync/degradation/degraded_stream.h"
 
 namespace tactus::sync {

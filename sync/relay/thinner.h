@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sync/relay/rules.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

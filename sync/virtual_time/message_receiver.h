@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

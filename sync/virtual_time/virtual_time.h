@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "sync/virtual_time/virtual_wire.h"
 
 namespace tactus::sync {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sync/degradation/chance.h"
+#include "sync/random/chance.h"
 
 namespace tactus::sync {
 

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sync/degradation/jitter.h"
-#include "sync/degradation/loss.h"
-#include "sync/time.h"
+#include "sync/random/jitter.h"
+#include "sync/random/loss.h"
+#include "sync/time/time.h"
 #include "sync/virtual_time/message_receiver.h"
 
 namespace tactus::sync {

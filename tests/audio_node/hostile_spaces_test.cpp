@@ -6,16 +6,16 @@
 #include <random>
 #include <string>
 
-#include "audio_node/impact.h"
-#include "audio_node/plausible.h"
-#include "audio_node/renderer.h"
-#include "audio_node/samples/sampler.h"
-#include "audio_node/sliding.h"
+#include "audio_node/excitation/impact.h"
+#include "audio_node/signal/plausible.h"
+#include "audio_node/mixer/renderer.h"
+#include "audio_node/excitation/sampler.h"
+#include "audio_node/excitation/sliding.h"
 #include "audio_node/spatial/space_of.h"
-#include "tests/audio_node/bench.h"
-#include "tests/audio_node/recorded_run.h"
-#include "tests/audio_node/samples/sounds.h"
-#include "tests/audio_node/waves.h"
+#include "tests/audio_node/support/bench.h"
+#include "tests/audio_node/support/recorded_run.h"
+#include "tests/audio_node/support/sounds.h"
+#include "tests/audio_node/support/waves.h"
 
 using namespace tactus;
 using namespace tactus::audio;

@@ -13,9 +13,9 @@
 #include <random>
 #include <span>
 
-#include "audio_node/bank/ring.h"
+#include "audio_node/modal/bank/ring.h"
 #include "audio_node/spatial/onset.h"
-#include "tests/audio_node/recorded_run.h"
+#include "tests/audio_node/support/recorded_run.h"
 #include "tests/rendered_log.h"
 
 using namespace tactus;

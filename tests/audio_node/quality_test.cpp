@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/audio_node/bench.h"
+#include "tests/audio_node/support/bench.h"
 
 using namespace tactus;
 using namespace tactus::audio;

@@ -3,9 +3,9 @@
 #include <random>
 #include <thread>
 
-#include "sync/decode.h"
-#include "tests/cluster/datagram.h"
-#include "tests/cluster/running.h"
+#include "sync/bus/decode.h"
+#include "tests/cluster/support/datagram.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,8 +1,8 @@
 // Two hosts whose clocks differ: they agree on time, and what one presents is known on the other.
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/run_script.h"
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/run_script.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,5 +1,5 @@
 // Commands to the simulation of a running cluster, by the program that people use.
-#include "tests/cluster/profiles.h"
+#include "tests/cluster/support/profiles.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

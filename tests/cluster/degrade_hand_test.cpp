@@ -4,8 +4,8 @@
 #include <tactus/thermal_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
-#include "tests/cluster/profiles.h"
-#include "tests/cluster/run_log.h"
+#include "tests/cluster/support/profiles.h"
+#include "tests/cluster/support/run_log.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,6 +1,6 @@
 #include <signal.h>
 
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -3,8 +3,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sync/csv.h"
-#include "tests/cluster/run_script.h"
+#include "sync/text/csv.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 using nlohmann::json;

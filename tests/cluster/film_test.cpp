@@ -3,8 +3,8 @@
 #include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/channels.h"
-#include "tests/cluster/run_log.h"
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_log.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,7 +1,7 @@
 // The dark room's game, played by the scene's hand with real processes.
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 using nlohmann::json;

@@ -6,7 +6,7 @@
 #include <tactus/device_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -30,7 +30,7 @@ struct WithHead : Running {
   sync::Bus tracker{sync::Identity::fresh("tracker", kRunId), {}};
 
   void start_all() {
-    const std::string scene = repository() / "tests/cluster/head.sdf";
+    const std::string scene = repository() / "tests/cluster/scenes/head.sdf";
     processes.start("sync_node");
     for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
     start_head();

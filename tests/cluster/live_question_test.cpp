@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "lcmtypes/channels.h"
-#include "sync/bus.h"
-#include "tests/cluster/processes.h"
+#include "sync/bus/bus.h"
+#include "tests/cluster/support/processes.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -4,11 +4,11 @@
 #include <fstream>
 #include <tactus/world_state_t.hpp>
 
-#include "sync/log_reader.h"
-#include "sync/log_writer.h"
-#include "sync/mapped_log.h"
-#include "tests/cluster/run_log.h"
-#include "tests/cluster/running.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/log_writer.h"
+#include "sync/log/mapped_log.h"
+#include "tests/cluster/support/run_log.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -12,9 +12,9 @@
 
 #include "lcmtypes/channels.h"
 #include "sync/degradation/profile.h"
-#include "sync/identity.h"
-#include "tests/cluster/run_log.h"
-#include "tests/cluster/run_script.h"
+#include "sync/bus/identity.h"
+#include "tests/cluster/support/run_log.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,5 +1,5 @@
 // Nothing to draw on: vision says what it tried and is not there; nobody else notices.
-#include "tests/cluster/seeing.h"
+#include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

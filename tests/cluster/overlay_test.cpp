@@ -1,5 +1,5 @@
 // Overlays, plots and the stream of a running picture, changed from outside.
-#include "tests/cluster/seeing.h"
+#include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

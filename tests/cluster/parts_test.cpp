@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/channels.h"
-#include "sync/log_parts.h"
-#include "tests/cluster/run_log.h"
-#include "tests/cluster/run_script.h"
+#include "sync/log/log_parts.h"
+#include "tests/cluster/support/run_log.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -2,7 +2,7 @@
 // more.
 #include <cstdlib>
 
-#include "tests/cluster/profiles.h"
+#include "tests/cluster/support/profiles.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

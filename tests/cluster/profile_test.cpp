@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/cluster/profiles.h"
+#include "tests/cluster/support/profiles.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -7,12 +7,12 @@
 #include <tactus/game_state_t.hpp>
 #include <thread>
 
-#include "sync/log_header.h"
-#include "sync/log_reader.h"
-#include "sync/mapped_log.h"
-#include "sync/pacing.h"
-#include "tests/cluster/run_log.h"
-#include "tests/cluster/running.h"
+#include "sync/log/log_header.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/mapped_log.h"
+#include "sync/clocks/pacing.h"
+#include "tests/cluster/support/run_log.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

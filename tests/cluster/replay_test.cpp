@@ -1,7 +1,7 @@
 #include <signal.h>
 
-#include "sync/bus.h"
-#include "tests/cluster/running.h"
+#include "sync/bus/bus.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

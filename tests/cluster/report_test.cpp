@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 using nlohmann::json;

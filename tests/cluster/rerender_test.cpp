@@ -1,7 +1,7 @@
 // A run that is over, rendered again by every sense: the same each time, and as the run itself was.
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 using nlohmann::json;

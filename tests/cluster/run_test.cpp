@@ -1,7 +1,7 @@
 // What a person meets who calls scripts/run.
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 using nlohmann::json;

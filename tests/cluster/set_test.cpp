@@ -1,7 +1,7 @@
 // Settings of a node of a running cluster, changed by the program that people use.
 #include <cmath>
 
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus::cluster;
 
@@ -100,7 +100,7 @@ void check_all_but(const std::string& degraded) {
     std::ofstream(profile) << "<profile name=\"slow\"><degrade modality=\"" << degraded
                            << "\" rate=\"5Hz\" delay=\"30ms\"/></profile>";
     std::vector<std::string> options{
-        (repository() / "tests/cluster/short_contacts.sdf").string(),          "--seconds", "7",      "--device",
+        (repository() / "tests/cluster/scenes/short_contacts.sdf").string(),          "--seconds", "7",      "--device",
         "playback:" + write_motion(run.folder.path() / "motion.csv").string(), "--out",     run.out()};
     if (!degraded.empty()) options.insert(options.end(), {"--degrade", profile});
     if (!policy.empty()) options.insert(options.end(), {"--policy", policy});

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/profiles.h"
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/profiles.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,5 +1,5 @@
 // Pictures for who looks on from outside, while the cluster runs.
-#include "tests/cluster/seeing.h"
+#include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -1,8 +1,8 @@
 // The real supervision: what scripts/run does when nodes die.
 #include <nlohmann/json.hpp>
 
-#include "tests/cluster/ear.h"
-#include "tests/cluster/run_script.h"
+#include "tests/cluster/support/ear.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

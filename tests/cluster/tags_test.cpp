@@ -3,8 +3,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "sync/tag_table.h"
-#include "tests/cluster/running.h"
+#include "sync/node/tag_table.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

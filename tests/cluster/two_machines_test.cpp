@@ -1,5 +1,5 @@
 // The promises of isolation, with the senses on two machines; and with a log in the place of the world.
-#include "tests/cluster/two_machines.h"
+#include "tests/cluster/support/two_machines.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

@@ -7,9 +7,9 @@
 #include <tactus/contact_events_t.hpp>
 #include <tactus/tool_state_t.hpp>
 
-#include "sync/pacing.h"
-#include "tests/cluster/hand_figures.h"
-#include "tests/cluster/run_script.h"
+#include "sync/clocks/pacing.h"
+#include "tests/cluster/support/hand_figures.h"
+#include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -74,7 +74,7 @@ double largest_N(const RunLog& log, int tool, const std::vector<Span>& spans) {
 struct ThreeHands : RunScript {
   std::string service(const std::string& node) const { return out() / "cluster/services" / node; }
   void begin() {
-    start({(repository() / "tests/cluster/three_hands.sdf").string(), "--seconds", "60", "--without",
+    start({(repository() / "tests/cluster/scenes/three_hands.sdf").string(), "--seconds", "60", "--without",
            "visual_node", "--out", out()});
     const auto up = [&] {
       return contents(out() / "logs/sim_node.log").find("the world begins") != std::string::npos;

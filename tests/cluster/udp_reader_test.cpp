@@ -1,13 +1,13 @@
 // The receiving end of the bus on real sockets, in a network namespace of its own.
-#include "sync/udp_reader.h"
+#include "sync/bus/udp_reader.h"
 
 #include <catch2/catch.hpp>
 #include <map>
 #include <thread>
 
-#include "sync/pacing.h"
-#include "tests/cluster/datagram.h"
-#include "tests/cluster/two_machines.h"
+#include "sync/clocks/pacing.h"
+#include "tests/cluster/support/datagram.h"
+#include "tests/cluster/support/two_machines.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

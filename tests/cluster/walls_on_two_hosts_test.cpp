@@ -2,7 +2,7 @@
 // both, however slow one of them is, and neither waits for the other.
 #include <tactus/frame_shown_t.hpp>
 
-#include "tests/cluster/two_machines.h"
+#include "tests/cluster/support/two_machines.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -32,7 +32,7 @@ struct TwoHosts {
     }
     running.emplace();
     shown_ = &running->ear.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
-    const std::string scene = repository() / "tests/cluster/walls.sdf";
+    const std::string scene = repository() / "tests/cluster/scenes/walls.sdf";
     spawn({}, "sync_node", "sync_node");
     spawn(cable.there(), "sync_node", "sync_node_there");
     spawn({}, "haptic_node", "haptic_node");

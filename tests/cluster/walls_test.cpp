@@ -1,7 +1,7 @@
 // Two walls of one room, each drawn by a process of its own.
 #include <csignal>
 
-#include "tests/cluster/running.h"
+#include "tests/cluster/support/running.h"
 
 using namespace tactus;
 using namespace tactus::cluster;

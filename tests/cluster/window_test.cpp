@@ -8,7 +8,7 @@
 #include <tactus/question_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "tests/cluster/seeing.h"
+#include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -252,7 +252,7 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
   std::vector<std::string> options = c.snapshots();
   options.insert(options.end(), {"--window", "--set", "width=640", "--set", "height=480"});
   c.start_vision(options, c.on_display());
-  c.processes.start("sim_node", {repository() / "tests/cluster/head.sdf"});
+  c.processes.start("sim_node", {repository() / "tests/cluster/scenes/head.sdf"});
   REQUIRE(c.ear.wait_until([&] { return c.all_live({"sim_node", "haptic_node", "visual_node"}); }, kPatience_s));
   const auto brightness = [](const Grey& p, bool left) {
     double sum = 0;

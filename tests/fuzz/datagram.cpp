@@ -1,9 +1,9 @@
 // Any bytes, as a datagram on the bus: none of LCM's, or a channel and data that lie within them.
 #include <cstdlib>
 
-#include "sync/datagram.h"
-#include "sync/log_header.h"
-#include "sync/message_batch.h"
+#include "sync/bus/datagram.h"
+#include "sync/log/log_header.h"
+#include "sync/bus/message_batch.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus::sync;

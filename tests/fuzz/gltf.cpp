@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "sim_node/scene/gltf_reader.h"
+#include "sim_node/scene/meshes/gltf_reader.h"
 #include "tests/fuzz/file_of.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

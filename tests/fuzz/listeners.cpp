@@ -3,16 +3,16 @@
 #include <cstdlib>
 
 #include "scripts/live/station.h"
-#include "sync/channel_table.h"
-#include "sync/contact_stream.h"
-#include "sync/export_events.h"
-#include "sync/log_origin.h"
-#include "sync/picture_reader.h"
-#include "sync/scene_exchange.h"
-#include "sync/spy/channels.h"
-#include "sync/spy/screen.h"
-#include "sync/summary.h"
-#include "sync/watch_table.h"
+#include "sync/tools/channel_table.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/log/export_events.h"
+#include "sync/log/log_origin.h"
+#include "sync/tools/picture_reader.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/tools/spy/channels.h"
+#include "sync/tools/spy/screen.h"
+#include "sync/tools/summary/summary.h"
+#include "sync/tools/watch_table.h"
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -2,12 +2,12 @@
 // skipped; what is replayed is no more than what was found.
 #include <cstdlib>
 
-#include "sync/decode.h"
-#include "sync/log_ages.h"
-#include "sync/log_origin.h"
-#include "sync/log_seek.h"
-#include "sync/replay.h"
-#include "sync/replay_scene.h"
+#include "sync/bus/decode.h"
+#include "sync/log/log_ages.h"
+#include "sync/log/log_origin.h"
+#include "sync/log/log_seek.h"
+#include "sync/tools/replay/replay.h"
+#include "sync/tools/replay/replay_scene.h"
 
 using namespace tactus::sync;
 

@@ -3,7 +3,7 @@
 // encoded: those bytes are others, and may be fewer or refused.)
 #include <cstdlib>
 
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/session.h"
 #include "lcmtypes/channels.h"
-#include "sync/log_reader.h"
+#include "sync/log/log_reader.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

@@ -8,7 +8,7 @@
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/valid.h"
-#include "tests/haptic_node/world.h"
+#include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

@@ -4,10 +4,10 @@
 
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/session.h"
-#include "sync/export_csv.h"
-#include "sync/log_reader.h"
-#include "tests/audio_node/recorded_run.h"
-#include "tests/haptic_node/world.h"
+#include "sync/log/export_csv.h"
+#include "sync/log/log_reader.h"
+#include "tests/audio_node/support/recorded_run.h"
+#include "tests/haptic_node/support/world.h"
 #include "tests/rendered_log.h"
 
 using namespace tactus;

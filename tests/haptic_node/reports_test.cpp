@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "haptic_node/contact_book.h"
-#include "haptic_node/owed_begins.h"
-#include "tests/haptic_node/world.h"
+#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/owed_begins.h"
+#include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

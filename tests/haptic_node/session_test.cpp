@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/haptic_node/world.h"
+#include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "haptic_node/touch_input.h"
+#include "haptic_node/contact/touch_input.h"
 #include "sync/degradation/degraded_stream.h"
-#include "tests/haptic_node/paged_models.h"
+#include "tests/haptic_node/support/paged_models.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

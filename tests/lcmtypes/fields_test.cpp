@@ -5,7 +5,7 @@
 #include <random>
 
 #include "lcmtypes/channels.h"
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 #include "tests/lcmtypes/samples.h"
 #include "tests/lcmtypes/schema.h"
 

@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 #include "tests/lcmtypes/samples.h"
 #include "tests/lcmtypes/schema.h"
 

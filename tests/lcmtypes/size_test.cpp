@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "lcmtypes/channels.h"
-#include "sync/decode.h"
-#include "sync/histogram.h"
+#include "sync/bus/decode.h"
+#include "sync/time/histogram.h"
 #include "tests/lcmtypes/samples.h"
 
 using namespace tactus;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "lcmtypes/valid.h"
-#include "tests/sync/memory_sink.h"
+#include "tests/sync/support/memory_sink.h"
 
 using namespace tactus;
 using namespace tactus::live;

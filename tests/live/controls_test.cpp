@@ -5,7 +5,7 @@
 
 #include "lcmtypes/channels.h"
 #include "sync/degradation/profile.h"
-#include "sync/identity.h"
+#include "sync/bus/identity.h"
 
 using namespace tactus;
 using namespace tactus::live;

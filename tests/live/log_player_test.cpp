@@ -6,7 +6,7 @@
 #include <tactus/log_info_t.hpp>
 
 #include "lcmtypes/channels.h"
-#include "tests/sync/memory_sink.h"
+#include "tests/sync/support/memory_sink.h"
 
 using namespace tactus;
 using namespace tactus::live;

@@ -19,8 +19,8 @@ class CheckLayers(unittest.TestCase):
 
     def test_what_is_allowed_passes(self):
         self.assertEqual([], self.found({
-            "audio_node/a.cpp": '#include "audio_node/a.h"\n#include "sync/time.h"\n#include "lcmtypes/valid.h"\n#include <tactus/pose_t.hpp>\n',
-            "sync/bus.cpp": "#include <lcm/lcm-cpp.hpp>\n",
+            "audio_node/a.cpp": '#include "audio_node/a.h"\n#include "sync/time/time.h"\n#include "lcmtypes/valid.h"\n#include <tactus/pose_t.hpp>\n',
+            "sync/bus/bus.cpp": "#include <lcm/lcm-cpp.hpp>\n",
             "sim_node/behaviour/world.cpp": "#include <ode/ode.h>\n",
             "visual_node/egl/context.cpp": "#include <epoxy/egl.h>\n",
             "tests/sync/a_test.cpp": '#include "audio_node/a.h"\n',
@@ -29,13 +29,13 @@ class CheckLayers(unittest.TestCase):
     def test_each_offence_is_found_with_its_place(self):
         for name, line in [("audio_node/a.h", '#include "haptic_node/a.h"'), ("audio_node/a.h", '#include "a.h"'),
                            ("sync/a.h", '#include "sim_node/a.h"'), ("lcmtypes/a.h", '#include "sync/a.h"'),
-                           ("audio_node/a.h", "#include <lcm/lcm-cpp.hpp>"), ("sync/time.h", "#include <lcm/lcm.h>"),
+                           ("audio_node/a.h", "#include <lcm/lcm-cpp.hpp>"), ("sync/time/time.h", "#include <lcm/lcm.h>"),
                            ("sim_node/main.cpp", "#include <ode/ode.h>"), ("haptic_node/a.h", "#include <epoxy/gl.h>"),
                            ("visual_node/scene_view/a.cpp", "#include <EGL/egl.h>"),
                            ("visual_node/main.cpp", "#include <GL/gl.h>"),
                            ("sim_node/behaviour/a.cpp", "#include <sdf/sdf.hh>"),
                            ("sim_node/a.cpp", "#include <assimp/scene.h>"),
-                           ("audio_node/modal.cpp", "#include <portaudio.h>"),
+                           ("audio_node/modal/modal.cpp", "#include <portaudio.h>"),
                            ("sync/a.cpp", "// TO" "DO: later"), ("scripts/a.py", "# FIX" "ME")]:
             with self.subTest(name=name, line=line):
                 found = self.found({name: "\n" + line + "\n"})

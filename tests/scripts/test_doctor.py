@@ -25,7 +25,7 @@ LCM = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "
 
 def layout(name):
     """The fields of a message type of plain numbers, as struct has them."""
-    text = (ROOT / "lcmtypes" / f"{name}.lcm").read_text()
+    text = next((ROOT / "lcmtypes" / "types").glob(f"*/{name}.lcm")).read_text()
     fields = re.findall(r"^\s*(\w+) (\w+);", re.sub(r"//.*", "", text), re.M)
     return ">" + "".join(LCM[kind] for kind, _ in fields if kind in LCM)
 

@@ -21,7 +21,7 @@ def event(number, channel, data):
 
 
 def message(source, incarnation, seq, run=7):
-    """As lcmtypes/header_t.lcm has it, behind the hash of the type."""
+    """As lcmtypes/types/status/header_t.lcm has it, behind the hash of the type."""
     return struct.pack(">qqqiqiqq", 1, 0, 0, 4711, run, source, incarnation, seq)
 
 

@@ -36,7 +36,7 @@ class Keys(unittest.TestCase):
         said = [float(order.split()[1]) for order in self.orders.of_keys(b"-" * 40)]
         self.assertEqual(said[0], keys.FASTEST / 2)
         self.assertEqual(said[-1], keys.SLOWEST)
-        self.assertGreaterEqual(keys.SLOWEST, 0.01)  # sync/replay.h
+        self.assertGreaterEqual(keys.SLOWEST, 0.01)  # sync/tools/replay/replay.h
         self.assertLessEqual(keys.FASTEST, 100)
         list(self.orders.of_keys(b"1"))
         self.assertEqual(next(self.orders.of_keys(b"+")), "speed 2.0")

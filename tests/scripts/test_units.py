@@ -11,7 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
-SOURCES = {"sync": "sync/sync_node.cpp", "recorder": "sync/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
+SOURCES = {"sync": "sync/tools/sync_node.cpp", "recorder": "sync/tools/recorder/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
            "visual": "visual_node/run.cpp", "thermal": "thermal_node/run.cpp", "sim": "sim_node/run.cpp"}
 MOST_EXPOSED = 5  # systemd calls what is below "OK"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <tactus/thermal_device_t.hpp>
 
-#include "tests/audio_node/recorded_run.h"
+#include "tests/audio_node/support/recorded_run.h"
 #include "tests/rendered_log.h"
 
 using namespace tactus;

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/thermal_node/finite_differences.h"
-#include "thermal_node/bioheat_model.h"
-#include "thermal_node/contact_model.h"
-#include "thermal_node/skin_model.h"
+#include "tests/thermal_node/support/finite_differences.h"
+#include "thermal_node/skin/bioheat_model.h"
+#include "thermal_node/skin/contact_model.h"
+#include "thermal_node/skin/skin_model.h"
 
 using namespace tactus::thermal;
 using oracle::FiniteDifferences;

@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/thermal_node/hand.h"
+#include "tests/thermal_node/support/hand.h"
 #include "thermal_node/devices/simulated_peltier.h"
 
 using namespace tactus;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "lcmtypes/valid.h"
-#include "tests/thermal_node/hand.h"
+#include "tests/thermal_node/support/hand.h"
 
 using namespace tactus;
 using namespace tactus::thermal;

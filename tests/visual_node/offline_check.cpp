@@ -13,9 +13,9 @@
 #include <tactus/degradation_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "sync/identity.h"
-#include "tests/audio_node/recorded_run.h"
-#include "tests/visual_node/test_scene.h"
+#include "sync/bus/identity.h"
+#include "tests/audio_node/support/recorded_run.h"
+#include "tests/visual_node/support/test_scene.h"
 #include "visual_node/frame/marker.h"
 
 using namespace tactus;

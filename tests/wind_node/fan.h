@@ -8,9 +8,9 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "sync/body_history.h"
-#include "sync/contact_stream.h"
-#include "sync/late.h"
+#include "sync/resampling/body_history.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/presentation/late.h"
 #include "wind_node/settings.gen.h"
 
 namespace tactus::wind {

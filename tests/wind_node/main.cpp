@@ -10,9 +10,9 @@
 #include <fstream>
 #include <iostream>
 
-#include "sync/node.h"
-#include "sync/scene_exchange.h"
-#include "sync/sense.h"
+#include "sync/node/node.h"
+#include "sync/assets/scene_exchange.h"
+#include "sync/node/sense.h"
 #include "tests/wind_node/fan.h"
 
 using namespace tactus;

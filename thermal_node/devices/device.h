@@ -5,7 +5,7 @@
 #include <optional>
 #include <tactus/thermal_device_t.hpp>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::thermal {
 

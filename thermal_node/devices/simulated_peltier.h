@@ -2,7 +2,7 @@
 #pragma once
 
 #include "thermal_node/devices/device.h"
-#include "thermal_node/plate_controller.h"
+#include "thermal_node/display/plate_controller.h"
 
 namespace tactus::thermal {
 

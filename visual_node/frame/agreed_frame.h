@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "sync/body_history.h"
-#include "sync/how.h"
-#include "sync/time.h"
+#include "sync/resampling/body_history.h"
+#include "sync/resampling/how.h"
+#include "sync/time/time.h"
 #include "visual_node/frame/room_time.h"
 
 namespace tactus::visual {

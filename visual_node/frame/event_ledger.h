@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sync/late.h"
-#include "sync/time.h"
+#include "sync/presentation/late.h"
+#include "sync/time/time.h"
 #include "visual_node/settings.gen.h"
 
 namespace tactus::visual {

@@ -11,9 +11,9 @@
 #include <tactus/tool_state_t.hpp>
 #include <vector>
 
-#include "sync/body_history.h"
-#include "sync/contact_stream.h"
-#include "sync/pose_history.h"
+#include "sync/resampling/body_history.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/resampling/pose_history.h"
 #include "visual_node/frame/agreed_frame.h"
 #include "visual_node/frame/display_gain.h"
 #include "visual_node/frame/event_ledger.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <tactus/frame_shown_t.hpp>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::visual {
 

@@ -5,7 +5,7 @@
 #include <tactus/media_clock_t.hpp>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::visual {
 

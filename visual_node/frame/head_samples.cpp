@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lcmtypes/vectors.h"
-#include "sync/pose_history.h"
+#include "sync/resampling/pose_history.h"
 
 namespace tactus::visual {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <tactus/tool_state_t.hpp>
 
-#include "sync/body_history.h"
+#include "sync/resampling/body_history.h"
 #include "visual_node/frame/room_time.h"
 
 namespace tactus::visual {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sync/how.h"
+#include "sync/resampling/how.h"
 
 namespace tactus::visual {
 

@@ -2,7 +2,7 @@
 // Pure.
 #pragma once
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::visual {
 

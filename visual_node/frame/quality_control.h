@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sync/quality.h"
+#include "sync/node/quality.h"
 #include "visual_node/scene_view/quality.h"
 #include "visual_node/settings.gen.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::visual {
 

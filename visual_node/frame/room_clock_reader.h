@@ -7,8 +7,8 @@
 #include <tactus/header_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 
-#include "sync/sender_clock.h"
-#include "sync/sim_follower.h"
+#include "sync/clocks/sender_clock.h"
+#include "sync/clocks/sim_follower.h"
 #include "visual_node/frame/room_time.h"
 
 namespace tactus::visual {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::visual {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <tactus/frame_shown_t.hpp>
 
-#include "sync/node.h"
+#include "sync/node/node.h"
 #include "visual_node/frame/frame_lock.h"
 
 namespace tactus::visual {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <mutex>
 
-#include "sync/csv.h"
+#include "sync/text/csv.h"
 
 namespace tactus::visual {
 namespace {

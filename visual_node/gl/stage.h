@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sync/degradation/profile.h"
-#include "visual_node/egl/display.h"
+#include "visual_node/devices/display.h"
 #include "visual_node/frame/picture_rate.h"
 #include "visual_node/frame/quality_control.h"
 #include "visual_node/gl/renderer.h"

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sync/csv.h"
+#include "sync/text/csv.h"
 #include "visual_node/lens/room_text.h"
 
 namespace tactus::visual {

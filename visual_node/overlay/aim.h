@@ -7,7 +7,7 @@
 #include <tactus/device_state_t.hpp>
 #include <tactus/scene_t.hpp>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "visual_node/scene_view/draw_list.h"
 #include "visual_node/scene_view/triangles.h"
 

@@ -1,6 +1,6 @@
 #include "visual_node/overlay/desk.h"
 
-#include "sync/printable.h"
+#include "sync/text/printable.h"
 
 namespace tactus::visual {
 

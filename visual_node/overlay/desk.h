@@ -9,7 +9,7 @@
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "visual_node/egl/display.h"
+#include "visual_node/devices/display.h"
 #include "visual_node/overlay/aim.h"
 #include "visual_node/overlay/keys.h"
 

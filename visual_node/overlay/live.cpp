@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 #include "visual_node/frame/marker.h"
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/overlay/touches.h"

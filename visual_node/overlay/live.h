@@ -7,8 +7,8 @@
 #include <tactus/contact_events_t.hpp>
 #include <vector>
 
-#include "sync/bus.h"
-#include "sync/contact_stream.h"
+#include "sync/bus/bus.h"
+#include "sync/resampling/contact_stream.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/overlay/groups.h"
 #include "visual_node/overlay/kinds.h"

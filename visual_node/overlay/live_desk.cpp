@@ -1,6 +1,6 @@
 #include "visual_node/overlay/live_desk.h"
 
-#include "sync/asking.h"
+#include "sync/bus/asking.h"
 
 namespace tactus::visual {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "sync/bus.h"
+#include "sync/bus/bus.h"
 #include "visual_node/overlay/desk.h"
 #include "visual_node/overlay/live.h"
 #include "visual_node/overlay/live_questions.h"

@@ -2,7 +2,7 @@
 // has a window.
 #pragma once
 
-#include "sync/bus.h"
+#include "sync/bus/bus.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/overlay/question_desk.h"
 

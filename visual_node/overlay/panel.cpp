@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "sync/histogram.h"
+#include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"
 #include "visual_node/overlay/keys.h"
 

@@ -7,8 +7,8 @@
 #include <tactus/node_health_t.hpp>
 #include <vector>
 
-#include "sync/how.h"
-#include "sync/sense.h"
+#include "sync/resampling/how.h"
+#include "sync/node/sense.h"
 #include "visual_node/overlay/kinds.h"
 #include "visual_node/scene_view/draw_list.h"
 

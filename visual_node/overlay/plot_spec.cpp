@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "lcmtypes/near_names.h"
-#include "sync/identity.h"
-#include "sync/printable.h"
+#include "sync/bus/identity.h"
+#include "sync/text/printable.h"
 
 namespace tactus::visual {
 namespace {

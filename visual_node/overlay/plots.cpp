@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sync/printable.h"
+#include "sync/text/printable.h"
 #include "visual_node/frame/text.h"
 #include "visual_node/overlay/panel.h"
 

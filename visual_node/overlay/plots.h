@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "visual_node/overlay/plot_spec.h"
 #include "visual_node/scene_view/draw_list.h"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "visual_node/egl/gamepad.h"
+#include "visual_node/devices/gamepad.h"
 
 namespace tactus::visual {
 

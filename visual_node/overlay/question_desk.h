@@ -9,7 +9,7 @@
 #include <tactus/question_t.hpp>
 #include <utility>
 
-#include "sync/asked_question.h"
+#include "sync/node/asked_question.h"
 #include "visual_node/overlay/presses.h"
 
 namespace tactus::visual {

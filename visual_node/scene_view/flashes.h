@@ -6,7 +6,7 @@
 #include <tactus/contact_event_t.hpp>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "visual_node/scene_view/draw_list.h"
 #include "visual_node/settings.gen.h"
 

@@ -8,7 +8,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "sync/scene_exchange.h"
+#include "sync/assets/scene_exchange.h"
 #include "visual_node/scene_view/raster.h"
 
 namespace tactus::visual {

@@ -1,7 +1,7 @@
 // The meshes that the visible shapes of a scene refer to.
 #pragma once
 
-#include "sync/scene_exchange.h"
+#include "sync/assets/scene_exchange.h"
 #include "visual_node/scene_view/scene_view.h"
 
 namespace tactus::visual {

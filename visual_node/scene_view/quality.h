@@ -16,7 +16,7 @@ struct Quality {
   bool operator==(const Quality&) const = default;
 };
 
-// Each step costs a software renderer clearly less than the one before: tests/bench/picture_quality.cpp.
+// Each step costs a software renderer clearly less than the one before: tests/bench/visual_node/picture_quality.cpp.
 inline constexpr std::array<Quality, 4> kQualities{
     {{1, 1, false}, {0.75, 2, false}, {0.5, 2, false}, {0.5, 0, false}}};
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lcmtypes/relief.h"
-#include "sync/scene_pictures.h"
+#include "sync/assets/scene_pictures.h"
 
 namespace tactus::visual {
 

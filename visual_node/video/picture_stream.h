@@ -8,7 +8,7 @@
 #include <tactus/picture_chunk_t.hpp>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "visual_node/settings.gen.h"
 #include "visual_node/video/frame_sink.h"
 #include "visual_node/video/jpeg.h"

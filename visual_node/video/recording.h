@@ -9,7 +9,7 @@
 #include <tactus/media_clock_t.hpp>
 #include <thread>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 #include "visual_node/settings.gen.h"
 #include "visual_node/video/frame_sink.h"
 #include "visual_node/video/slots.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_node/turns.h"
+#include "haptic_node/contact/turns.h"
 
 namespace tactus::haptic {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "haptic_node/devices/spidar/string_frame.h"
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::haptic {
 

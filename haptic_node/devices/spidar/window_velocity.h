@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::haptic {
 

@@ -9,7 +9,7 @@
 #include "sim_node/behaviour/articulated/dormand_prince.h"
 #include "sim_node/behaviour/articulated/dynamics.h"
 #include "sim_node/behaviour/articulated/tree.h"
-#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/model/body_motion.h"
 
 namespace tactus::sim::articulated {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim::articulated {
 

@@ -10,7 +10,7 @@
 
 #include "sim_node/behaviour/impulse/step_report.h"
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/collision/manifold.h"
+#include "sim_node/model/manifold.h"
 
 namespace tactus::sim::impulse {
 

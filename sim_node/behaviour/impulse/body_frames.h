@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
-#include "sim_node/collision/manifold.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/body_motion.h"
+#include "sim_node/model/manifold.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim::impulse {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
 
 namespace tactus::sim::impulse {

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/model/body_motion.h"
 
 namespace tactus::sim::impulse {
 

@@ -1,6 +1,6 @@
 #include "sim_node/behaviour/impulse/law_of.h"
 
-#include "sim_node/behaviour/behaviour_model.h"
+#include "sim_node/model/behaviour_model.h"
 
 namespace tactus::sim {
 namespace {

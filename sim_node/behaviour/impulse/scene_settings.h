@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/scene/world_def.h"
+#include "sim_node/model/world_def.h"
 
 namespace tactus::sim::impulse {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/behaviour/body_motion.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/behaviour/impulse/contact_rows.h"
-#include "sim_node/collision/manifold.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/model/manifold.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim::impulse {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sync/phases.h"
+#include "sync/time/phases.h"
 
 namespace tactus::sim::impulse {
 

@@ -14,8 +14,8 @@
 #include "sim_node/behaviour/impulse/layers.h"
 #include "sim_node/behaviour/impulse/penalty.h"
 #include "sim_node/behaviour/impulse/warm_start.h"
-#include "sim_node/collision/manifold.h"
-#include "sim_node/state/state_archive.h"
+#include "sim_node/model/manifold.h"
+#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim::impulse {
 

@@ -1,7 +1,7 @@
 #include <Eigen/Cholesky>
 
 #include "sim_node/behaviour/impulse/world.h"
-#include "sim_node/state/archive_motion.h"
+#include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim::impulse {
 namespace {

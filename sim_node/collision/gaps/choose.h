@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "sim_node/collision/manifold.h"
+#include "sim_node/model/manifold.h"
 
 namespace tactus::sim::gaps {
 

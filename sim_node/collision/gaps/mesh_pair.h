@@ -5,7 +5,7 @@
 
 #include "sim_node/collision/gaps/convex.h"
 #include "sim_node/collision/layers/obb_tree.h"
-#include "sim_node/collision/point_pair.h"
+#include "sim_node/model/point_pair.h"
 #include "sim_node/collision/triangle_tree.h"
 
 namespace tactus::sim::gaps {

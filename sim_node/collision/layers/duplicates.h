@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim_node/collision/layers/mesh_check.h"
-#include "sim_node/collision/point_pair.h"
+#include "sim_node/model/point_pair.h"
 
 namespace tactus::sim {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/collision/point_pair.h"
+#include "sim_node/model/point_pair.h"
 
 namespace tactus::sim {
 

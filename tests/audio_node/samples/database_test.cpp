@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/audio_node/samples/sounds.h"
+#include "tests/audio_node/support/sounds.h"
 
 using namespace tactus::audio;
 using namespace tactus::audio::test;

@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "audio_node/bank/ring.h"
-#include "tests/audio_node/bench.h"
+#include "audio_node/modal/bank/ring.h"
+#include "tests/audio_node/support/bench.h"
 
 using namespace tactus;
 using namespace tactus::audio;

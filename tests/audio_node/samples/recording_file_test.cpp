@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/audio_node/samples/sounds.h"
+#include "tests/audio_node/support/sounds.h"
 
 using namespace tactus::audio;
 using namespace tactus::audio::test;

@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 
-#include "tests/audio_node/bench.h"
-#include "tests/audio_node/samples/sounds.h"
+#include "tests/audio_node/support/bench.h"
+#include "tests/audio_node/support/sounds.h"
 
 using namespace tactus;
 using namespace tactus::audio;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/audio_node/spatial/kemar.h"
+#include "tests/audio_node/support/kemar.h"
 
 using namespace tactus::audio;
 using namespace tactus::audio::test;

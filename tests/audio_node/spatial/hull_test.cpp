@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "tests/audio_node/spatial/kemar.h"
+#include "tests/audio_node/support/kemar.h"
 
 using namespace tactus::audio;
 using Eigen::Vector3d;

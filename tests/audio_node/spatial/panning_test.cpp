@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/audio_node/spatial/kemar.h"
+#include "tests/audio_node/support/kemar.h"
 
 using namespace tactus::audio;
 using test::towards;

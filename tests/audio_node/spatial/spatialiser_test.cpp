@@ -5,8 +5,8 @@
 
 #include "audio_node/spatial/air.h"
 #include "audio_node/spatial/onset.h"
-#include "tests/audio_node/bench.h"
-#include "tests/audio_node/spatial/kemar.h"
+#include "tests/audio_node/support/bench.h"
+#include "tests/audio_node/support/kemar.h"
 
 using namespace tactus;
 using namespace tactus::audio;

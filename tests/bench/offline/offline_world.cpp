@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sim_node/scene/scene_assets.h"
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 namespace tactus::bench {
 

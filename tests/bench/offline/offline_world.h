@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "haptic_node/session.h"
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/publish/publisher.h"
-#include "sync/bus.h"
-#include "sync/log_writer.h"
+#include "sync/bus/bus.h"
+#include "sync/log/log_writer.h"
 
 namespace tactus::bench {
 

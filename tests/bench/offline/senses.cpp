@@ -5,15 +5,15 @@
 #include <memory>
 #include <set>
 
-#include "audio_node/impact.h"
-#include "audio_node/renderer.h"
-#include "sync/contact_stream.h"
-#include "sync/decode.h"
-#include "sync/log_reader.h"
+#include "audio_node/excitation/impact.h"
+#include "audio_node/mixer/renderer.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/bus/decode.h"
+#include "sync/log/log_reader.h"
 #include "tests/bench/offline/offline_world.h"
-#include "thermal_node/choice.h"
+#include "thermal_node/devices/choice.h"
 #include "thermal_node/renderer.h"
-#include "thermal_node/ticks.h"
+#include "thermal_node/display/ticks.h"
 #include "visual_node/frame/frame_composer.h"
 
 namespace tactus::bench {

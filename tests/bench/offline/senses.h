@@ -9,7 +9,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "sync/time.h"
+#include "sync/time/time.h"
 
 namespace tactus::bench {
 

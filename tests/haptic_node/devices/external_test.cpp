@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "haptic_node/devices/make_device.h"
+#include "haptic_node/devices/selection/make_device.h"
 #include "lcmtypes/vectors.h"
 
 using namespace tactus;

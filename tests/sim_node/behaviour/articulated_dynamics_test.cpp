@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "tests/sim_node/articulated_trees.h"
+#include "tests/sim_node/support/articulated_trees.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::articulated;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/sim_node/articulated_trees.h"
+#include "tests/sim_node/support/articulated_trees.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::articulated;

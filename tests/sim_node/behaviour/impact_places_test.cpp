@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/solver.h"
-#include "tests/sim_node/small_worlds.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/sim_node/articulated_trees.h"
-#include "tests/sim_node/toys.h"
+#include "tests/sim_node/support/articulated_trees.h"
+#include "tests/sim_node/support/toys.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

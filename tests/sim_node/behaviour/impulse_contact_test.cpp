@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sync/identity.h"
-#include "tests/sim_node/toys.h"
+#include "sync/bus/identity.h"
+#include "tests/sim_node/support/toys.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

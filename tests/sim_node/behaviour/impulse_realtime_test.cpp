@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "tests/sim_node/articulated_trees.h"
-#include "tests/sim_node/toys.h"
+#include "tests/sim_node/support/articulated_trees.h"
+#include "tests/sim_node/support/toys.h"
 
 namespace {
 

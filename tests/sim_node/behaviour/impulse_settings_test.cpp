@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
-#include "tests/sim_node/small_worlds.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/scene/load_sdf.h"
-#include "sync/identity.h"
-#include "tests/sim_node/small_worlds.h"
+#include "sync/bus/identity.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

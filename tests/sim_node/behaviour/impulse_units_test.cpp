@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/impulse/world.h"
-#include "tests/sim_node/articulated_trees.h"
+#include "tests/sim_node/support/articulated_trees.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::impulse;

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
-#include "tests/sim_node/hard_scenes.h"
-#include "tests/sim_node/penetration_oracle.h"
+#include "tests/sim_node/support/hard_scenes.h"
+#include "tests/sim_node/support/penetration_oracle.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -3,9 +3,9 @@
 #include <numeric>
 #include <set>
 
-#include "sim_node/behaviour/simulation.h"
-#include "sim_node/scene/tool_shape.h"
-#include "tests/sim_node/simple_hand.h"
+#include "sim_node/world/simulation.h"
+#include "sim_node/model/tool_shape.h"
+#include "tests/sim_node/support/simple_hand.h"
 
 using namespace tactus;
 using namespace tactus::sim;

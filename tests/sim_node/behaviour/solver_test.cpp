@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "sync/identity.h"
-#include "tests/sim_node/small_worlds.h"
+#include "sync/bus/identity.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

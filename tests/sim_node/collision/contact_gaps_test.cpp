@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
-#include "sim_node/collision/contact_tracker.h"
-#include "tests/sim_node/small_worlds.h"
+#include "sim_node/contacts/contact_tracker.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus;
 using namespace tactus::sim;

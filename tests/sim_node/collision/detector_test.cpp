@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/collision/closest_surface.h"
-#include "tests/sim_node/collision/meshes.h"
+#include "tests/sim_node/support/meshes.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/collision/detector.h"
-#include "tests/sim_node/collision/convex_oracle.h"
+#include "tests/sim_node/support/convex_oracle.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -1,4 +1,4 @@
-#include "tests/sim_node/collision/contact_check.h"
+#include "tests/sim_node/support/contact_check.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/collision/detector.h"
-#include "tests/sim_node/collision/meshes.h"
-#include "tests/sim_node/collision/triangle_oracle.h"
+#include "tests/sim_node/support/meshes.h"
+#include "tests/sim_node/support/triangle_oracle.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

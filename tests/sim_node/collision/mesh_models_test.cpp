@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "sim_node/collision/detector.h"
-#include "sim_node/scene/mesh_file.h"
-#include "tests/sim_node/collision/contact_check.h"
+#include "sim_node/scene/meshes/mesh_file.h"
+#include "tests/sim_node/support/contact_check.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "lcmtypes/vectors.h"
-#include "tests/sim_node/simple_hand.h"
+#include "tests/sim_node/support/simple_hand.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "tests/sim_node/dual/dual_bench.h"
+#include "tests/sim_node/support/dual_bench.h"
 
 using namespace tactus;
 using namespace tactus::sim;

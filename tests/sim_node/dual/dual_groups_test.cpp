@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sim_node/behaviour/simulation.h"
-#include "tests/sim_node/dual/dual_bench.h"
+#include "sim_node/world/simulation.h"
+#include "tests/sim_node/support/dual_bench.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/sim_node/dual/adversary.h"
+#include "tests/sim_node/support/adversary.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "sim_node/collision/layers/isa.h"
-#include "tests/sim_node/golden/state_hash.h"
+#include "tests/sim_node/support/state_hash.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;

@@ -6,7 +6,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "sync/contact_stream.h"
+#include "sync/resampling/contact_stream.h"
 
 using namespace tactus;
 using namespace tactus::sim;

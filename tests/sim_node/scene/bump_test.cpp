@@ -1,10 +1,10 @@
 // Bump: the attributes of <tactus:material> that give a material a relief, and its way to the renderers.
 #include <map>
 
-#include "scene_file.h"
+#include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 #include "tests/grey_png.h"
 
 using namespace tactus;

@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/behaviour/simulation.h"
+#include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/single_group.h"
 #include "sim_node/collision/detector.h"
 #include "sim_node/scene/load_sdf.h"
-#include "tests/sim_node/simple_hand.h"
+#include "tests/sim_node/support/simple_hand.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -1,8 +1,8 @@
 // The attributes of <tactus:material> that give a material a friction map.
-#include "scene_file.h"
+#include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 #include "tests/grey_png.h"
 
 using namespace tactus;

@@ -1,7 +1,7 @@
 #include "sim_node/scene/lights.h"
 
 #include "lcmtypes/vectors.h"
-#include "scene_file.h"
+#include "tests/sim_node/support/scene_file.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -4,12 +4,12 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "scene_file.h"
-#include "sim_node/scene/gltf_document.h"
-#include "sim_node/scene/gltf_writer.h"
-#include "sim_node/scene/mesh_file.h"
-#include "sim_node/scene/mesh_reader.h"
-#include "sim_node/scene/tangents.h"
+#include "tests/sim_node/support/scene_file.h"
+#include "sim_node/scene/meshes/gltf_document.h"
+#include "sim_node/scene/meshes/gltf_writer.h"
+#include "sim_node/scene/meshes/mesh_file.h"
+#include "sim_node/scene/meshes/mesh_reader.h"
+#include "sim_node/scene/meshes/tangents.h"
 
 using namespace tactus;
 using namespace tactus::sim;

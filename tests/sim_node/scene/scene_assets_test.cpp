@@ -3,9 +3,9 @@
 #include <set>
 
 #include "lcmtypes/vectors.h"
-#include "scene_file.h"
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "tests/sim_node/support/scene_file.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 
 using namespace tactus;
 using namespace tactus::sim;

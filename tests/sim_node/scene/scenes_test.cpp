@@ -5,9 +5,9 @@
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
-#include "scene_file.h"
+#include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/decode.h"
+#include "sync/bus/decode.h"
 
 using namespace tactus;
 using namespace tactus::sim;

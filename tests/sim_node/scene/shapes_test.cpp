@@ -1,6 +1,6 @@
 #include "sim_node/scene/shapes.h"
 
-#include "scene_file.h"
+#include "tests/sim_node/support/scene_file.h"
 
 using namespace tactus::sim;
 using Eigen::Vector3d;

@@ -1,6 +1,6 @@
 // Our own elements: materials, tools, settings.
-#include "scene_file.h"
-#include "sim_node/scene/materials.h"
+#include "tests/sim_node/support/scene_file.h"
+#include "sim_node/scene/materials/materials.h"
 #include "sync/degradation/profile.h"
 
 using namespace tactus;

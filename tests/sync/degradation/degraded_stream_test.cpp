@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "sync/contact_stream.h"
-#include "sync/sender_clock.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/clocks/sender_clock.h"
 
 using namespace tactus;
 using namespace tactus::sync;

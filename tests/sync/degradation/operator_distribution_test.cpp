@@ -5,10 +5,10 @@
 #include <cmath>
 #include <functional>
 
-#include "sync/contact_stream.h"
-#include "sync/degradation/chance.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/random/chance.h"
 #include "sync/degradation/degraded_stream.h"
-#include "sync/identity.h"
+#include "sync/bus/identity.h"
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "sync/identity.h"
+#include "sync/bus/identity.h"
 
 using namespace tactus;
 using namespace tactus::sync;

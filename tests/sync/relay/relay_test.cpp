@@ -5,9 +5,9 @@
 #include <set>
 #include <tactus/contact_events_t.hpp>
 
-#include "sync/decode.h"
-#include "sync/identity.h"
-#include "sync/log_header.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
+#include "sync/log/log_header.h"
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "sync/node.h"
-#include "sync/opening.h"
-#include "sync/pacing.h"
+#include "sync/node/node.h"
+#include "sync/node/opening.h"
+#include "sync/clocks/pacing.h"
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sync/inbox.h"
+#include "sync/bus/inbox.h"
 
 using namespace tactus::sync;
 using namespace std::chrono_literals;

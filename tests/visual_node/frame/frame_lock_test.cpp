@@ -6,7 +6,7 @@
 #include <queue>
 #include <random>
 
-#include "tests/visual_node/test_scene.h"
+#include "tests/visual_node/support/test_scene.h"
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "reference.h"
+#include "tests/visual_node/support/reference.h"
 
 using namespace tactus;
 using namespace tactus::test;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "tests/visual_node/offscreen.h"
+#include "tests/visual_node/support/offscreen.h"
 
 using namespace tactus;
 using namespace tactus::test;

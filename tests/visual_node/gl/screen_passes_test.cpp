@@ -1,7 +1,7 @@
 // Passes over the whole picture against what they say they compute, from the picture without them.
 #include <catch2/catch.hpp>
 
-#include "reference.h"
+#include "tests/visual_node/support/reference.h"
 
 using namespace tactus;
 using namespace tactus::test;

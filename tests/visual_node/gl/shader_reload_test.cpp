@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/visual_node/offscreen.h"
+#include "tests/visual_node/support/offscreen.h"
 #include "visual_node/gl/shader_watch.h"
 
 using namespace tactus;

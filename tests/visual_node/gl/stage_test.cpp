@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "tests/visual_node/offscreen.h"
+#include "tests/visual_node/support/offscreen.h"
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -9,8 +9,8 @@
 #include <map>
 #include <memory>
 
-#include "colour_difference.h"
-#include "shipped_scene.h"
+#include "tests/visual_node/golden/colour_difference.h"
+#include "tests/visual_node/golden/shipped_scene.h"
 #include "visual_node/scene_view/raster.h"
 #include "visual_node/video/png.h"
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "lcmtypes/valid.h"
-#include "tests/visual_node/test_scene.h"
+#include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/scene_view.h"
 
 using namespace tactus;

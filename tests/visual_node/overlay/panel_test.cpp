@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "sync/histogram.h"
+#include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"
 #include "visual_node/overlay/keys.h"
 #include "visual_node/overlay/plots.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "sync/decode.h"
-#include "sync/identity.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
 #include "tests/lcmtypes/samples.h"
 
 using namespace tactus;

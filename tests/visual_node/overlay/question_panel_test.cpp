@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "lcmtypes/valid.h"
-#include "tests/visual_node/overlay/question_messages.h"
+#include "tests/visual_node/support/question_messages.h"
 #include "visual_node/frame/text.h"
 
 using namespace tactus;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "tests/visual_node/offscreen.h"
+#include "tests/visual_node/support/offscreen.h"
 
 using namespace tactus;
 using namespace tactus::test;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/visual_node/test_scene.h"
+#include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/scene_view.h"
 
 using namespace tactus;

@@ -10,7 +10,7 @@ extern "C" {
 }
 
 #include "lcmtypes/valid.h"
-#include "sync/picture_reader.h"
+#include "sync/tools/picture_reader.h"
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -1,6 +1,0 @@
-// With fused multiply-add: see CMakeLists.txt.
-#if defined(__x86_64__)
-#define TACTUS_RING avx512
-#define TACTUS_RING_WIDTH 16
-#include "audio_node/bank/ring_loop.h"
-#endif

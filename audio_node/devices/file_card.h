@@ -1,0 +1,58 @@
+// A card that plays into a WAV file at an even rate on a clock that it is handed: no thread, no clock, no
+// underflow. What it is given at the same times it plays the same, to the bit.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "audio_node/devices/card.h"
+
+struct sf_private_tag;
+
+namespace tactus::audio {
+
+class FileCard : public Card {
+ public:
+  // Its first sample is out at the first play_until(). Until finish() the file is WAV.part, which goes with this,
+  // so that what bears the name is whole. Throws std::runtime_error with one sentence when the file cannot be
+  // made.
+  FileCard(const StreamOptions& options, const std::string& wav, Render render);
+  ~FileCard() override;
+  FileCard(const FileCard&) = delete;
+  FileCard& operator=(const FileCard&) = delete;
+
+  bool alive(sync::HostTime) const override { return true; }
+  // Calls for every block that a card with its latency would have called for by then. Throws std::runtime_error
+  // with one sentence when the disk does not take it.
+  void play_until(sync::HostTime now) override;
+  std::int64_t callbacks() const override { return blocks_; }
+  std::int64_t underflows() const override { return 0; }
+  const std::string& card() const override { return card_; }
+  const std::string& medium() const override { return wav_; }
+  std::optional<MediaPair> next_pair() override;
+
+  // The file is whole and gets its name; nothing is played any more. Throws std::runtime_error with one sentence
+  // when the disk does not take it.
+  void finish();
+
+  // When the first sample was out.
+  std::optional<sync::HostTime> start() const { return start_; }
+  std::int64_t frames() const { return blocks_ * period_frames_; }
+
+ private:
+  sync::HostTime out_at(std::int64_t frame) const;
+
+  std::string wav_, part_, card_ = "file";
+  bool finished_ = false;
+  int lock_ = -1;
+  Render render_;
+  int rate_Hz_, period_frames_;
+  sync::Nanoseconds ahead_;
+  std::vector<float> block_;
+  std::unique_ptr<sf_private_tag, int (*)(sf_private_tag*)> file_;
+  std::optional<sync::HostTime> start_;
+  std::int64_t blocks_ = 0, next_pair_frame_ = 0;
+  std::optional<MediaPair> pair_;
+};
+
+}  // namespace tactus::audio

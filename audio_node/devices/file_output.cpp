@@ -1,0 +1,40 @@
+#include "audio_node/devices/file_output.h"
+
+#include <exception>
+#include <iostream>
+#include <utility>
+
+#include "audio_node/devices/file_card.h"
+
+namespace tactus::audio {
+namespace {
+
+class KeptFileCard : public FileCard {
+ public:
+  KeptFileCard(const StreamOptions& options, const std::string& folder, std::string name, Render render)
+      : FileCard(options, folder + "/" + name, std::move(render)), name_(std::move(name)) {}
+  // As a run names its sound, wherever its folder lies.
+  const std::string& medium() const override { return name_; }
+  ~KeptFileCard() override {
+    try {
+      finish();
+    } catch (const std::exception& e) {
+      std::cerr << "audio_node: " << e.what() << std::endl;
+    }
+  }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace
+
+OpenCard open_files(const std::string& folder, const std::string& device) {
+  return [=, number = 0](const StreamOptions& options, Card::Render render) mutable -> std::unique_ptr<Card> {
+    if (device == "null") return std::make_unique<FileCard>(options, "/dev/null", std::move(render));
+    const std::string name = ++number == 1 ? "audio.wav" : "audio." + std::to_string(number) + ".wav";
+    return std::make_unique<KeptFileCard>(options, folder, name, std::move(render));
+  };
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,245 @@
+#include "audio_node/devices/output.h"
+
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "audio_node/signal/sound_dose.h"
+#include "audio_node/spatial/space_of.h"
+
+namespace tactus::audio {
+namespace {
+
+// A card that has not started by then is said not to; USB cards take about a second.
+constexpr sync::Nanoseconds kPatience{5'000'000'000};
+
+// One until the callback's turn comes, one more that a card of normal priority is given.
+constexpr int kCallbackPeriods = 2;
+constexpr std::size_t kMostUnsounded = 1024;
+
+bool same_stream(const Settings& a, const Settings& b) {
+  return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
+         a.latency_periods == b.latency_periods && a.limiter_ceiling == b.limiter_ceiling &&
+         a.full_scale_level_dB == b.full_scale_level_dB && a.level_limit_dB == b.level_limit_dB &&
+         a.late_limit_s == b.late_limit_s && a.instructions == b.instructions && a.spatial == b.spatial &&
+         a.hrtf_file == b.hrtf_file && a.layout_file == b.layout_file;
+}
+
+// Those that this machine lacks are refused by name; the widest are used.
+Instructions instructions_of(const Settings& settings) {
+  return instructions_named(settings.instructions).value_or(available_instructions().back());
+}
+
+}  // namespace
+
+Output::Output(std::string folder, std::string device, int fifo_priority, OpenCard open, bool silent)
+    : folder_(std::move(folder)),
+      device_(std::move(device)),
+      fifo_priority_(fifo_priority),
+      crossing_(std::make_shared<Crossing>()),
+      scrapes_(*crossing_),
+      rubs_(crossing_->recorded.rubs),
+      library_(crossing_->recorded),
+      open_(std::move(open)),
+      silent_(silent) {}
+
+void Output::configure(Settings settings) {
+  if (!device_.empty()) settings.device = device_;
+  if (stream_ && !same_stream(settings, settings_)) close();
+  settings_ = std::move(settings);
+  retry_at_ = {};
+  library_.configure(settings_);
+}
+
+bool Output::keep_open(sync::HostTime now) {
+  if (stream_ && stream_->alive(now)) {
+    scrapes_.tell_ends();
+    rubs_.tell_ends();
+    stream_->play_until(now);
+    return true;
+  }
+  if (stream_) {
+    trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
+    close();
+  }
+  if (opening_)
+    end_opening(now);
+  else if (now >= retry_at_)
+    begin_to_open(now);
+  return stream_ != nullptr;
+}
+
+void Output::begin_to_open(sync::HostTime now) {
+  opening_since_ = now;
+  opened_with_ = settings_;
+  ordered_.reset();
+  heard_from_.reset();
+  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_, silent_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_, silent = silent_] {
+    return open(settings, folder, priority, crossing, {}, silent);
+  });
+}
+
+std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
+                                             const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent) {
+  RendererDef def;
+  def.rate_Hz = settings.sample_rate_Hz;
+  def.period_frames = settings.period_frames;
+  def.ceiling = settings.limiter_ceiling;
+  def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
+  def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
+  def.instructions = instructions_of(settings);
+  if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);  // reading ears takes a third of a second
+  def.silent = silent;
+  def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
+  const auto renderer = std::make_shared<Renderer>(*crossing, def);
+  const StreamOptions options{settings.device,
+                              static_cast<int>(settings.sample_rate_Hz),
+                              settings.period_frames,
+                              settings.latency_periods,
+                              folder,
+                              priority,
+                              renderer->channels()};
+  const Card::Render render = [crossing, renderer](float* out, int frames, const BlockTime& time) {
+    renderer->render(out, frames, time);
+  };
+  auto card = open ? open(options, render) : std::make_unique<Stream>(options, render);
+  return std::make_unique<Opened>(Opened{renderer, std::move(card)});
+}
+
+void Output::take(Opened& opened) {
+  renderer_ = std::move(opened.renderer);
+  stream_ = std::move(opened.card);
+  medium_ = stream_->medium();
+  trouble_.clear();
+}
+
+void Output::end_opening(sync::HostTime now) {
+  if (!opening_->done()) {
+    if (now - opening_since_ > kPatience)
+      trouble_ = "the sound card \"" + opened_with_.device +
+                 "\" does not start; choose another --audio-device or \"virtual\"";
+    return;
+  }
+  try {
+    take(*opening_->take());
+    // The scene may have chosen another card meanwhile.
+    if (!same_stream(opened_with_, settings_)) close();
+  } catch (const std::exception& e) {
+    trouble_ = e.what();
+    retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
+  }
+  opening_.reset();
+}
+
+void Output::close() {
+  const std::int64_t callbacks = stream_->callbacks(), underflows = stream_->underflows();
+  stream_.reset();
+  renderer_->abandon();
+  past_callbacks_ += callbacks, past_underflows_ += underflows;
+}
+
+void Output::degrade(const DropoutDef& dropout) {
+  const Orders orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
+  if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
+}
+
+void Output::hear_from(const Eigen::Isometry3d& listener) {
+  const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
+  if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
+}
+
+void Output::submit(const Strike& strike) {
+  if (!stream_ || !crossing_->strikes.push(strike)) drop(strike.event_id, strike.scheduled);
+}
+
+void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
+  if (unsounded_.size() >= kMostUnsounded) {
+    ++reports_lost_;
+    return;
+  }
+  presentation_t report{};
+  report.event_id = event_id;
+  report.part = presentation_t::WHOLE;
+  report.scheduled_ns = sync::to_ns(scheduled);
+  report.presented_ns = -1;
+  report.outcome = presentation_t::DROPPED_LATE;
+  unsounded_.push_back(report);
+}
+
+sync::Nanoseconds Output::latency() const {
+  const double periods = settings_.latency_periods + kCallbackPeriods;
+  const int ears = settings_.spatial == "hrtf" ? kMostEarsLatency : 0;
+  return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
+                            settings_.sample_rate_Hz);
+}
+
+// A telling waits until the callback's turn after its sample has been reached. Two of the tellings are for ticks
+// that are not evenly spaced.
+sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
+  const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
+  return (latency() + lead + period) / (kTellings - 2);
+}
+
+std::optional<presentation_t> Output::next_report() {
+  presentation_t report;
+  if (!unsounded_.empty()) {
+    report = unsounded_.front();
+    unsounded_.pop_front();
+    return report;
+  }
+  if (!crossing_->reports.pop(report)) return std::nullopt;
+  return report;
+}
+
+std::optional<std::string> Output::news() {
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + too_slow() : trouble_;
+  if (now == told_) return std::nullopt;
+  return told_ = std::move(now);
+}
+
+std::string Output::note() const {
+  if (!stream_) return (trouble_.empty() ? "sound card not opened yet" : trouble_) + losses();
+  return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
+         std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
+         " underflows" + costs() + hearing() + losses() + too_slow();
+}
+
+std::string Output::too_slow() const {
+  if (!delay_ || latency() <= *delay_ + sync::from_seconds(settings_.late_limit_s)) return "";
+  return ", too slowly for the delay of sound: most blows come too late to be heard; make period_frames or "
+         "latency_periods smaller, or the delay longer";
+}
+
+std::string Output::losses() const {
+  std::string text;
+  if (const std::int64_t states = scrapes_.lost() + rubs_.lost(); states > 0)
+    text += ", " + std::to_string(states) + " states of contacts lost";
+  const std::int64_t reports = reports_lost_ + crossing_->reports_lost.load(std::memory_order_relaxed);
+  if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
+  return text;
+}
+
+std::string Output::costs() const {
+  std::string text;
+  for (std::size_t i = 0; i < crossing_->costs.size(); ++i) {
+    const std::int64_t contacts = crossing_->costs[i].contacts.load(std::memory_order_relaxed);
+    if (contacts == 0) continue;
+    const double us = 1e-3 * static_cast<double>(crossing_->costs[i].ns.load(std::memory_order_relaxed)) /
+                      static_cast<double>(contacts);
+    text +=
+        std::string(", ") + (i == 0 ? "modal " : "samples ") + std::to_string(std::lround(us)) + " us a contact";
+  }
+  return text;
+}
+
+std::string Output::hearing() const {
+  const Heard& heard = crossing_->heard;
+  const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
+  std::string text = dose_in_words(days_of_sound(exposure, settings_.weekly_level_dB));
+  const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));
+  if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
+  return text;
+}
+
+}  // namespace tactus::audio

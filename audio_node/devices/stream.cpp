@@ -1,0 +1,217 @@
+#include "audio_node/devices/stream.h"
+
+#include <fcntl.h>
+#include <pa_linux_alsa.h>
+#include <portaudio.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#include <tactus/media_clock_t.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "sync/clocks/pacing.h"
+
+namespace tactus::audio {
+namespace {
+
+static_assert(MediaPair::kStart == media_clock_t::START && MediaPair::kPeriodic == media_clock_t::PERIODIC &&
+              MediaPair::kUnderflow == media_clock_t::UNDERFLOW);
+
+constexpr sync::Nanoseconds kSilentFor{500'000'000};
+
+void check(PaError error, const std::string& what) {
+  if (error < 0)
+    throw std::runtime_error(what + " (" + Pa_GetErrorText(error) +
+                             "); choose another --audio-device or \"virtual\"");
+}
+
+constexpr int kFewestChannels = 2;  // of a card that is offered by name
+
+[[noreturn]] void refuse_channels(const PaDeviceInfo& card, int channels) {
+  throw std::runtime_error("the sound card \"" + std::string(card.name) + "\" has " +
+                           std::to_string(card.maxOutputChannels) + " channels, but the loudspeakers need " +
+                           std::to_string(channels) + "; choose another layout_file or --audio-device");
+}
+
+PaDeviceIndex find_device(const std::string& wanted, int channels) {
+  if (wanted == "default") {
+    const PaDeviceIndex index = Pa_GetDefaultOutputDevice();
+    if (index == paNoDevice)
+      throw std::runtime_error("no sound card can be opened; choose --audio-device virtual");
+    return index;
+  }
+  std::string known;
+  const PaDeviceInfo* few = nullptr;
+  for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i) {
+    const PaDeviceInfo* info = Pa_GetDeviceInfo(i);
+    if (info->maxOutputChannels < kFewestChannels) continue;
+    if (std::string(info->name).find(wanted) != std::string::npos) {
+      if (info->maxOutputChannels >= channels) return i;
+      few = info;
+    }
+    known += std::string(known.empty() ? "" : ", ") + info->name;
+  }
+  if (few) refuse_channels(*few, channels);
+  throw std::runtime_error("there is no sound card \"" + wanted + "\"; choose default, virtual" +
+                           (known.empty() ? "" : " or one of: " + known));
+}
+
+// Without real-time priority a thread that asks for short slices is served sooner among busy ones: since
+// Linux 6.12 sched_runtime of a normal thread is its slice, 0.1 ms at least (sched(7), EEVDF). Older kernels
+// ignore it.
+void wake_early() {
+  struct {
+    std::uint32_t size, policy;
+    std::uint64_t flags;
+    std::int32_t nice;
+    std::uint32_t priority;
+    std::uint64_t runtime_ns, deadline_ns, period_ns;
+  } attributes{};
+  attributes.size = sizeof attributes;
+  attributes.policy = SCHED_OTHER;
+  attributes.nice = getpriority(PRIO_PROCESS, 0);
+  attributes.runtime_ns = 100'000;
+  syscall(SYS_sched_setattr, 0, &attributes, 0);
+}
+
+}  // namespace
+
+struct Stream::PortAudio {
+  PortAudio() { check(Pa_Initialize(), "PortAudio does not start"); }
+  ~PortAudio() { Pa_Terminate(); }
+};
+
+std::string free_wav_name(const std::string& folder) {
+  for (int n = 1;; ++n) {
+    const std::string name = n == 1 ? "audio.wav" : "audio." + std::to_string(n) + ".wav";
+    if (!std::filesystem::exists(std::filesystem::path(folder) / name)) return name;
+  }
+}
+
+Stream::Stream(const StreamOptions& options, Render render)
+    : render_(std::move(render)),
+      rate_Hz_(options.rate_Hz),
+      fifo_priority_(options.fifo_priority),
+      dac_(options.rate_Hz) {
+  silence_sound_libraries();
+  medium_ = free_wav_name(options.folder);
+  const std::string wav = std::filesystem::path(options.folder) / medium_;
+  if (pipe2(pairs_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("no pipe can be had; close some files");
+  try {
+    open(options, wav);
+  } catch (...) {
+    ::close(pairs_[0]), ::close(pairs_[1]);
+    throw;
+  }
+}
+
+void Stream::open(const StreamOptions& options, const std::string& wav) {
+  const bool real = options.device != "virtual" && (options.device != "default" || has_sound_card());
+  PaDeviceIndex device = paNoDevice;
+  if (real) {
+    try {
+      portaudio_ = std::make_unique<PortAudio>();
+      device = find_device(options.device, options.channels);
+    } catch (const std::exception&) {
+      portaudio_.reset();
+      if (options.device != "default") throw;  // what was asked for by name is not replaced in silence
+    }
+  }
+  if (!portaudio_) {
+    virtual_card_ = std::make_unique<VirtualCard>(wav, options.rate_Hz, options.channels, pairs_[1]);
+    portaudio_ = std::make_unique<PortAudio>();
+    device = find_device(VirtualCard::kName, options.channels);
+  }
+  if (const PaDeviceInfo* info = Pa_GetDeviceInfo(device); info->maxOutputChannels < options.channels)
+    refuse_channels(*info, options.channels);
+  card_ = virtual_card_ ? "virtual card" : Pa_GetDeviceInfo(device)->name;
+
+  PaStreamParameters parameters{};
+  parameters.device = device;
+  parameters.channelCount = options.channels;
+  parameters.sampleFormat = paFloat32;
+  // A thread of normal priority wakes later: one period more.
+  const double periods = options.latency_periods + (sync::is_realtime() ? 0 : 1);
+  parameters.suggestedLatency = periods * options.period_frames / options.rate_Hz;
+  check(Pa_OpenStream(&stream_, nullptr, &parameters, options.rate_Hz,
+                      static_cast<unsigned long>(options.period_frames), paNoFlag, on_block, this),
+        "the sound card \"" + card_ + "\" cannot be opened at " + std::to_string(options.rate_Hz) + " Hz");
+  latency_s_ = Pa_GetStreamInfo(stream_)->outputLatency;
+  try {
+    if (!virtual_card_) tee_ = std::make_unique<Capture>(wav, options.rate_Hz, options.channels, pairs_[1]);
+    last_ns_ = sync::to_ns(sync::host_now());
+    check(Pa_StartStream(stream_), "the sound card \"" + card_ + "\" does not start");
+  } catch (...) {
+    Pa_CloseStream(stream_);
+    throw;
+  }
+}
+
+Stream::~Stream() {
+  Pa_AbortStream(stream_);
+  Pa_CloseStream(stream_);
+  portaudio_.reset();
+  virtual_card_.reset();
+  tee_.reset();
+  ::close(pairs_[0]), ::close(pairs_[1]);
+}
+
+bool Stream::alive(sync::HostTime now) const {
+  return Pa_IsStreamActive(stream_) == 1 &&
+         sync::to_ns(now) - last_ns_.load(std::memory_order_relaxed) < kSilentFor.count();
+}
+
+std::optional<MediaPair> Stream::next_pair() {
+  MediaPair pair;
+  if (::read(pairs_[0], &pair, sizeof pair) != static_cast<ssize_t>(sizeof pair)) return std::nullopt;
+  return pair;
+}
+
+int Stream::on_block(const void*, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,
+                     unsigned long flags, void* self) {
+  static_cast<Stream*>(self)->block(static_cast<float*>(out), static_cast<int>(frames), *time,
+                                    (flags & paOutputUnderflow) != 0);
+  return paContinue;
+}
+
+// The callback's thread inherits the priority of the thread that opened the stream; the card's is higher.
+void Stream::enter_thread() {
+  entered_ = true;
+  if (!sync::is_realtime()) return wake_early();
+  if (fifo_priority_ <= 0) return;
+  sched_param param{};
+  param.sched_priority = fifo_priority_;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+}
+
+void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow) {
+  if (!entered_) enter_thread();
+  const sync::HostTime now = sync::host_now();
+  const auto estimate =
+      dac_.block(frames, {time.currentTime, time.outputBufferDacTime, now, underflow}, latency_s_);
+  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, used_};
+  render_(out, frames, block_time);
+  if (tee_) tee(out, frames, block_time, underflow);
+  callbacks_.fetch_add(1, std::memory_order_relaxed);
+  if (underflow) underflows_.fetch_add(1, std::memory_order_relaxed);
+  last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
+  const sync::HostTime done = sync::host_now();
+  used_ = done - now;
+  if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
+}
+
+void Stream::tee(const float* out, int frames, const BlockTime& time, bool underflow) {
+  const std::int64_t index = tee_->frames();
+  if (index >= next_pair_frame_ || underflow) {
+    const auto reason = index == 0 ? MediaPair::kStart : underflow ? MediaPair::kUnderflow : MediaPair::kPeriodic;
+    tee_->mark({index, sync::to_ns(time.first_sample), reason, static_cast<std::int32_t>(underflows())});
+    next_pair_frame_ = index + rate_Hz_;
+  }
+  tee_->append(out, static_cast<std::size_t>(frames));
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,31 @@
+#include "audio_node/excitation/heard_surfaces.h"
+
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+namespace tactus::audio {
+
+std::unique_ptr<HeardSurfaces> read_surfaces(const scene_t& scene, const sync::Pictures& pictures) {
+  std::map<std::int64_t, HeightMap> maps;
+  for (const auto& [hash, bytes] : pictures) try {
+      maps.emplace(hash, read_height_map(bytes));
+    } catch (const std::runtime_error&) {  // vision and touch say which and why
+    }
+  auto surfaces = std::make_unique<HeardSurfaces>();
+  // Materials that inherited a map share it.
+  std::map<std::tuple<std::int64_t, double, double, double>, std::shared_ptr<const ReliefLevels>> reliefs;
+  for (const material_def_t& m : scene.materials) {
+    HeardSurface& of = surfaces->by_material.emplace_back();
+    if (const auto map = maps.find(m.bump_asset); map != maps.end()) {
+      auto& relief = reliefs[{m.bump_asset, m.bump_size_u_m, m.bump_size_v_m, m.bump_height_m}];
+      if (!relief) relief = std::make_shared<const ReliefLevels>(make_relief(map->second, m));
+      of.relief = relief;
+    }
+    if (const auto map = maps.find(m.friction_asset); map != maps.end())
+      of.friction = std::make_shared<const FrictionMap>(map->second, m);
+  }
+  return surfaces;
+}
+
+}  // namespace tactus::audio

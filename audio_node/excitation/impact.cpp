@@ -1,0 +1,236 @@
+#include "audio_node/excitation/impact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "audio_node/excitation/contact_patch.h"
+#include "audio_node/signal/loudness.h"
+#include "audio_node/modal/measured_modes.h"
+#include "audio_node/excitation/peak.h"
+#include "audio_node/signal/plausible.h"
+#include "lcmtypes/vectors.h"
+
+namespace tactus::audio {
+namespace {
+
+using std::numbers::pi;
+
+// Air at 20 degrees Celsius (Kinsler et al., Fundamentals of Acoustics, 4th ed., appendix A10).
+constexpr double kAirDensity_kg_m3 = 1.21;
+constexpr double kSoundSpeed_m_s = 343;
+// What no sound may depend on: values beyond these are not of this world.
+constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
+// FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
+constexpr std::size_t kMicroCollisions = 4;
+constexpr double kMicroWithin_s = 0.015;
+// Of a strike that is not to be heard at any strength.
+constexpr float kNeverHeard = 2;
+
+// How well an oscillating ball of radius a radiates: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 +
+// (ka)^4) (the dipole field with the ball's velocity as boundary condition; Pierce, Acoustics, 1981, section 4.2).
+double radiation_m(double frequency_Hz, double radius_m) {
+  const double ka = 2 * pi * frequency_Hz * radius_m / kSoundSpeed_m_s;
+  return radius_m * ka * ka / std::sqrt(4 + ka * ka * ka * ka);
+}
+
+// The shape that stands for a body: the largest that it collides with.
+const shape_def_t* main_shape(const scene_t& scene, int body) {
+  const shape_def_t* best = nullptr;
+  double best_size = -1;
+  for (const shape_def_t& shape : scene.shapes) {
+    if (shape.body != body) continue;
+    const double size =
+        shape.size_m.x * std::max(shape.size_m.y, shape.size_m.x) * std::max(shape.size_m.z, shape.size_m.x);
+    if (size > best_size) best = &shape, best_size = size;
+  }
+  return best;
+}
+
+// What touches of a tool, which has no shape that collides. A ball of radius 0, a point, stays as nothing.
+std::optional<shape_def_t> shape_of(const tool_def_t& tool) {
+  shape_def_t shape{};
+  shape.pose.orientation.w = 1;
+  shape.body = tool.body, shape.material = tool.material;
+  shape.size_m = tool.size_m, shape.mesh_hash = tool.mesh_hash;
+  switch (tool.shape) {
+    case tool_def_t::BOX: shape.kind = shape_def_t::BOX; break;
+    case tool_def_t::CAPSULE: shape.kind = shape_def_t::CAPSULE; break;
+    case tool_def_t::MESH: shape.kind = shape_def_t::MESH; break;
+    default:
+      if (!(tool.radius_m > 0)) return std::nullopt;
+      shape.kind = shape_def_t::SPHERE;
+      shape.size_m.x = tool.radius_m;
+  }
+  return shape;
+}
+
+}  // namespace
+
+double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a, const Elastic& b) {
+  const double e = reduced_modulus_Pa(a, b);
+  return 2.87 * std::pow(mass_kg * mass_kg * curvature_1_m / (e * e * speed_m_s), 0.2);
+}
+
+double pulse_spectrum(double frequency_Hz, double length_s) {
+  const double x = frequency_Hz * length_s;
+  if (x < 1e-6) return 1;
+  if (std::abs(x - 1) < 1e-6) return 0.5;
+  return std::abs(std::sin(pi * x) / (pi * x * (1 - x * x)));
+}
+
+Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
+  const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
+  const double r = p.norm();
+  return {r > 1e-9 ? Eigen::Vector3f((p / r).cast<float>()) : Eigen::Vector3f::UnitX(),
+          static_cast<float>(std::max(r, nearest_m)), source_m.cast<float>()};
+}
+
+Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
+                 const Settings& settings, double rate_Hz, std::int64_t generation)
+    : settings_(settings), rate_Hz_(rate_Hz), generation_(generation), listener_(to_eigen(scene.listener)) {
+  for (const material_def_t& m : scene.materials) materials_.push_back(elastic(m));
+  const auto add = [&](const body_def_t& body, const shape_def_t* shape, int material_index) {
+    const auto extent = shape && shape->kind == shape_def_t::MESH ? mesh(shape->mesh_hash) : std::nullopt;
+    Voice v{body_sound(body, shape, material(material_index), extent, settings), {}, {}, {}};
+    if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
+      sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
+    if (body.is_static) v.stands = to_eigen(body.pose);
+    // Nearer to half the rate a resonator would sound as another.
+    std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
+    for (const Mode& mode : v.sound.modes) {
+      const double lost = mode.damping_1_s / (2 * pi);
+      const ModeStep step =
+          mode_step(std::sqrt(std::max(1.0, mode.frequency_Hz * mode.frequency_Hz - lost * lost)),
+                    mode.damping_1_s, rate_Hz);
+      v.resonators.add(step);
+      v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
+                           kSoundSpeed_m_s *
+                           radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
+    }
+    return v;
+  };
+  for (body_def_t body : scene.bodies) {
+    const shape_def_t* shape = main_shape(scene, body.id);
+    std::optional<shape_def_t> held;
+    int material_index = shape ? shape->material : -1;
+    if (body.tool >= 0 && body.tool < scene.tool_count) {
+      const tool_def_t& tool = scene.tools[static_cast<std::size_t>(body.tool)];
+      if (material_index < 0) material_index = tool.material;
+      if (!shape && (held = shape_of(tool))) shape = &*held;
+      body.mass_kg = std::max(1e-3, tool.mass_kg);
+    }
+    voices_.push_back(add(body, shape, material_index));
+  }
+  body_def_t none{};
+  unknown_ = add(none, nullptr, -1);
+}
+
+const Impacts::Voice& Impacts::voice(int id) const {
+  return id >= 0 && static_cast<std::size_t>(id) < voices_.size() ? voices_[static_cast<std::size_t>(id)]
+                                                                  : unknown_;
+}
+
+Elastic Impacts::material(int index) const {
+  return index >= 0 && static_cast<std::size_t>(index) < materials_.size()
+             ? materials_[static_cast<std::size_t>(index)]
+             : Elastic{};
+}
+
+PerMode Impacts::gains(int body, const std::optional<BodyPlace>& place) const {
+  const Voice& v = voice(body);
+  PerMode gains{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.resonators.count); ++i) {
+    const Mode& mode = v.sound.modes[i];
+    gains[i] = static_cast<float>(v.radiated[i] * (place ? gain_at(v.sound, mode, *place) : mode.gain));
+  }
+  return gains;
+}
+
+std::optional<BodyPlace> Impacts::on_body(int body, const Eigen::Vector3d& point_m,
+                                          const Eigen::Vector3d& direction, const PoseOf& pose) const {
+  std::optional<Eigen::Isometry3d> lies = voice(body).stands;
+  if (!lies && pose) lies = pose(body);
+  if (!lies || !lies->matrix().allFinite() || !point_m.allFinite() || !(direction.norm() > 0.5))
+    return std::nullopt;
+  return BodyPlace{lies->inverse() * point_m, lies->linear().transpose() * direction.normalized()};
+}
+
+// Peak pressure at 1 m of the click that a body makes because the impact accelerates it as a whole (acceleration
+// noise; Chadwick, Zheng, James, "Precomputed acceleration noise", SIGGRAPH 2012): an oscillating ball whose
+// velocity changes by impulse / mass within the contact time.
+double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s) const {
+  if (!s.moves) return 0;
+  return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
+}
+
+// Hard bodies meet again and again in the first 15 ms, in step with their first four modes; the model of van den
+// Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard: the blow is over before the slowest of
+// them has swung back. The share of the impulse that they carry is theirs; what is left is the blow.
+ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const {
+  const auto in_samples = [&](double s) { return std::max(1, static_cast<int>(std::lround(s * rate_Hz_))); };
+  ForcePulse pulse = one_hump(in_samples(length_s));
+  std::vector<double> frequencies;
+  for (const Voice* v : {&a, &b})
+    for (std::size_t i = 0; i < std::min<std::size_t>(v->sound.modes.size(), kMicroCollisions); ++i)
+      frequencies.push_back(v->sound.modes[i].frequency_Hz);
+  std::sort(frequencies.begin(), frequencies.end());
+  if (frequencies.empty() || length_s > 0.5 / frequencies.front()) return pulse;
+  std::vector<double> after_s;
+  for (const double f : frequencies)
+    if (1 / f > 2 * length_s && 1 / f < kMicroWithin_s) after_s.push_back(1 / f);
+  // The latest first: of the lowest modes.
+  after_s.resize(std::min<std::size_t>(after_s.size(), kMicroCollisions));
+  const auto share = static_cast<float>(settings_.micro_collisions);
+  for (std::size_t i = 0; i < after_s.size(); ++i) {
+    const float each = share / static_cast<float>(after_s.size());
+    pulse[i + 1] = {in_samples(after_s[i]), pulse[0].samples, each};
+    pulse[0].share -= each;
+  }
+  return pulse;
+}
+
+Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose) const {
+  Strike strike;
+  strike.event_id = event.event_id;
+  strike.scheduled = scheduled;
+  strike.heard_from = kNeverHeard;
+  if (!plausible(event)) return strike;
+  const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
+  const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
+  const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
+  const std::array<const Voice*, 2> bodies{&voice(event.body_a), &voice(event.body_b)};
+  const std::array<int, 2> ids{event.body_a, event.body_b}, surfaces{event.material_a, event.material_b};
+  const auto surface = [&](std::size_t i) {
+    return surfaces[i] >= 0 ? material(surfaces[i]) : bodies[i]->sound.material;
+  };
+  const Elastic a = surface(0), b = surface(1);
+  const double impulse = mass * speed * (1 + std::clamp(std::min(a.restitution, b.restitution), 0.0, 1.0));
+  const double length_s = std::min(settings_.longest_contact_s, contact_time_s(mass, curvature, speed, a, b));
+
+  strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
+  strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
+  const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
+  const Place place = place_of(listener_, point, settings_.nearest_m);
+  // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
+  const double n = strike.pulse[0].samples;
+  const double steepest = n > 1 ? 2 / n * std::sin(pi / n) : 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    StrikeSide& side = strike.sides[i];
+    side.voice = voice_id(ids[i]);
+    side.resonators = bodies[i]->resonators;
+    side.gains = gains(ids[i], on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
+    side.impulse = static_cast<float>(impulse);
+    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);
+    side.place = place;
+  }
+  // Full scale per Pa.
+  const double pressure = std::max(peak_Pa(strike, rate_Hz_), 1e-9), level = level_of(pressure, settings_);
+  const auto scale = static_cast<float>(settings_.gain * level / pressure);
+  for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
+  const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);
+  strike.heard_from = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
+  return strike;
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,77 @@
+// Turns a contact event into a strike: contact time, impulse, place on both bodies, loudness, direction. Pure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "audio_node/modal/body_sound.h"
+#include "audio_node/excitation/strike.h"
+
+namespace tactus::audio {
+
+// Duration of an elastic impact of a ball, s: T = 2.87 (m^2 / (R E*^2 v))^(1/5) (Hertz 1882; Johnson, Contact
+// Mechanics, 1985, eq. 11.24).
+double contact_time_s(double effective_mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a,
+                      const Elastic& b);
+
+// Magnitude of the spectrum of a raised-cosine pulse of unit area and length T at a frequency.
+double pulse_spectrum(double frequency_Hz, double length_s);
+
+// Where a source in the world is for a listener who looks along +x, z up; not nearer than that.
+Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
+
+// T_world_body of a body at the time of an event, as far as anybody has said.
+using PoseOf = std::function<std::optional<Eigen::Isometry3d>(int body)>;
+
+// The sounding bodies of one scene.
+class Impacts {
+ public:
+  // mesh: the extent of the mesh asset of that hash. generation: other scenes get other voices, so that old ones
+  // ring out.
+  Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
+          const Settings& settings, double rate_Hz, std::int64_t generation);
+
+  // Factor on everything from the next strike on.
+  void set_gain(double gain) { settings_.gain = gain; }
+  // T_world_listener from the next strike on; at first the scene's.
+  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+
+  // An event that cannot be of this world is a strike that nobody hears (plausible.h).
+  // Bodies or materials that the scene does not have sound as small wooden ones. A body of which nobody says how
+  // it lies sounds as if it were struck anywhere.
+  Strike strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose = {}) const;
+
+  const BodySound& body(int id) const { return voice(id).sound; }
+  std::int64_t voice_id(int body) const { return generation_ << 32 | static_cast<std::uint32_t>(body); }
+  const Resonators& resonators(int body) const { return voice(body).resonators; }
+  // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
+  PerMode gains(int body, const std::optional<BodyPlace>& place) const;
+  // Where a point of the world and a direction lie on a body: by `pose`, or by the scene when it stands still.
+  std::optional<BodyPlace> on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
+                                   const PoseOf& pose) const;
+
+ private:
+  struct Voice {
+    BodySound sound;
+    Resonators resonators;
+    std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
+    std::optional<Eigen::Isometry3d> stands;  // T_world_body of one that never moves
+  };
+  const Voice& voice(int id) const;
+  Elastic material(int index) const;
+  double click_Pa(const BodySound& sound, double impulse_N_s, double length_s) const;
+  ForcePulse pulse(const Voice& a, const Voice& b, double length_s) const;
+
+  Settings settings_;
+  double rate_Hz_;
+  std::int64_t generation_;
+  Eigen::Isometry3d listener_;
+  std::vector<Elastic> materials_;
+  std::vector<Voice> voices_;
+  Voice unknown_;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,207 @@
+#include "audio_node/excitation/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "audio_node/signal/plausible.h"
+#include "audio_node/samples/loops.h"
+#include "lcmtypes/vectors.h"
+
+namespace tactus::audio {
+namespace {
+
+// Of a blow: louder than its recording by 12 dB at most, as computed ones are above the reference (design).
+constexpr double kMostLevel = 4;
+// An octave either way; beyond it a recording sounds of another material (design).
+constexpr double kLeastPitch = 0.5, kMostPitch = 2;
+// As for scrapes: below, nothing slides or rolls; beyond, nothing becomes louder or faster (design).
+constexpr double kLeastSpeed_m_s = 1e-3, kMostSpeed_m_s = 5, kMostForce_N = 50;
+// Between two looks at contacts; more is a gap (design).
+constexpr double kMostStep_s = 0.1;
+constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
+
+// That of a pair: a ball on a floor, a hand on a bar are told by the smaller of the two (design).
+double size_of(const BodySound& a, const BodySound& b) { return std::min(a.radius_m, b.radius_m); }
+
+}  // namespace
+
+MethodGains gains_of(const Settings& s) {
+  if (s.method == "samples") return {0, 1};
+  if (s.method != "both") return {1, 0};
+  // Exactly nothing of the one that is not wanted: it costs nothing then.
+  if (s.mix <= 0) return {1, 0};
+  if (s.mix >= 1) return {0, 1};
+  const double angle = s.mix * std::numbers::pi / 2;
+  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+}
+
+double level_of(double impulse_N_s, const Settings& s) {
+  const double relative = std::max(impulse_N_s, 0.0) / s.recorded_impulse_Ns;
+  return s.gain * s.recorded_level * std::min(kMostLevel, std::pow(relative, s.loudness_exponent));
+}
+
+double pitch_of(double size_m, double recorded_size_m) {
+  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMostPitch);
+}
+
+Sampler::Sampler(const scene_t& scene, const Settings& settings)
+    : settings_(settings), listener_(to_eigen(scene.listener)) {
+  for (const material_def_t& m : scene.materials) {
+    materials_.push_back(m.name);
+    mu_.push_back(m.friction_dynamic);
+  }
+}
+
+std::string Sampler::material(std::int32_t i) const {
+  return i >= 0 && static_cast<std::size_t>(i) < materials_.size() ? materials_[static_cast<std::size_t>(i)] : "";
+}
+
+void Sampler::say(const std::string& a, const std::string& b, Interaction interaction,
+                  const Database::Found& found) {
+  if (found.pair || !said_.insert({pair_of(a, b), interaction}).second) return;
+  const auto named = [](const std::string& m) { return m.empty() ? std::string("(no material)") : m; };
+  const std::string of = named(a) + " on " + named(b) + ": no recording of this " + name(interaction);
+  if (!found.any()) return news_.push_back(of + "; it is computed");
+  std::string materials = found.alone[0] ? a : b;
+  if (found.alone[0] && found.alone[1]) materials += " and of " + b;
+  news_.push_back(of + "; that of " + materials + " alone is played");
+}
+
+Database::Found Sampler::find(std::int32_t a, std::int32_t b, Interaction interaction) {
+  if (!plays()) return {};
+  const std::string of_a = material(a), of_b = material(b);
+  const Database::Found found = database_->find(of_a, of_b, interaction);
+  say(of_a, of_b, interaction, found);
+  return found;
+}
+
+void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts& impacts) {
+  const Database::Found found = find(event.material_a, event.material_b, Interaction::kImpact);
+  if (!found.any() || !plausible(event)) return;
+  const MethodGains method = gains_of(settings_);
+  const double level = level_of(static_cast<double>(strike.impulse_N_s), settings_);
+  const BodySound &a = impacts.body(event.body_a), &b = impacts.body(event.body_b);
+  std::size_t next = 0;
+  float peak = 0;
+  const auto add = [&](const Layers& layers, double size_m, float share) {
+    const LayerMix mix = mix_of(layers, static_cast<double>(strike.speed_m_s));
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (mix.layer[k] < 0) continue;
+      const Layer& layer = layers.by_speed[static_cast<std::size_t>(mix.layer[k])];
+      const Recording& take = take_of(layer, event.event_id);
+      const float gain = static_cast<float>(level) * share * layer.gain * mix.gain[k] * method.recorded;
+      strike.recorded.shots[next++] = {&take, gain, static_cast<float>(pitch_of(size_m, layers.size_m))};
+      peak += gain * take.peak;
+    }
+  };
+  if (found.pair) add(*found.pair, size_of(a, b), 1);
+  const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
+  if (found.alone[0]) add(*found.alone[0], a.radius_m, each);
+  if (found.alone[1]) add(*found.alone[1], b.radius_m, each);
+  strike.recorded.database = number_;
+  strike.recorded.place = strike.sides[0].place;
+  for (StrikeSide& side : strike.sides) {
+    side.impulse *= method.modal, side.click *= method.modal;
+    if (method.modal <= 0) side.voice = -1;  // costs nothing
+  }
+  // Both are known by their peaks; what is heard of them is no less than the louder.
+  const auto inaudible = static_cast<float>(settings_.inaudible_level);
+  const float computed = inaudible / std::max(strike.heard_from, 1e-12f) * method.modal;
+  strike.heard_from = inaudible / std::max({computed, peak / strike.recorded.place.distance_m, 1e-12f});
+}
+
+void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
+  // What does not move needs no recording: nothing is said of it.
+  const Database::Found found = level > 0
+                                    ? find(c.material_a, c.material_b, interaction)
+                                    : database_->find(material(c.material_a), material(c.material_b), interaction);
+  const std::array<const Layers*, 3> all{found.pair, found.alone[0], found.alone[1]};
+  const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
+  if (found.any()) recorded_.insert({c.contact_id, interaction});
+  if (!(level > 0)) return;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i]) continue;
+    Rub r;
+    r.contact = c.contact_id;
+    r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
+    r.database = number_;
+    r.at = at;
+    r.over_s = std::max(r.over_s, period_s_);
+    r.layers = all[i];
+    r.speed_m_s = speed_m_s;
+    r.level = each * gains_of(settings_).recorded *
+              static_cast<float>(settings_.gain * settings_.recorded_level * level);
+    r.place = place_of(listener_, 0.5 * (to_eigen(c.points[0].a_world_m) + to_eigen(c.points[0].b_world_m)),
+                       settings_.nearest_m);
+    rubs_.push_back(r);
+  }
+}
+
+// What is beyond the loops that can be heard is computed instead.
+void Sampler::keep_loudest() {
+  constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMost);
+  if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
+  std::partial_sort(rubs_.begin(), rubs_.begin() + most, rubs_.end(),
+                    [](const Rub& a, const Rub& b) { return a.level > b.level; });
+  for (auto r = rubs_.begin() + most; r != rubs_.end(); ++r)
+    recorded_.erase({r->contact, static_cast<Interaction>(r->part / 2)});
+  rubs_.erase(rubs_.begin() + most, rubs_.end());
+}
+
+void Sampler::end_others(sync::HostTime at) {
+  std::set<std::pair<std::int64_t, std::int32_t>> heard;
+  for (const Rub& r : rubs_) heard.insert({r.contact, r.part});
+  std::vector<Rub> ends;
+  for (const auto& [contact, part] : heard_) {
+    if (heard.contains({contact, part})) continue;
+    Rub& end = ends.emplace_back();
+    end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
+  }
+  // First, to make room.
+  rubs_.insert(rubs_.begin(), ends.begin(), ends.end());
+  heard_ = std::move(heard);
+}
+
+const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
+  rubs_.clear();
+  recorded_.clear();
+  const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMostStep_s);
+  rubbed_ = at;
+  if (!plays()) {
+    moves_.clear();
+    heard_.clear();
+    return rubs_;
+  }
+  for (auto& [id, moves] : moves_) moves.seen = false;
+  const auto mu = [&](std::int32_t m) {
+    return m >= 0 && static_cast<std::size_t>(m) < mu_.size() ? mu_[static_cast<std::size_t>(m)] : 1.0;
+  };
+  for (const contact_t& c : contacts) {
+    if (c.points.empty() || !plausible(c)) continue;
+    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
+    const Eigen::Vector3d past = to_eigen(c.sliding_velocity_m_s), round = to_eigen(c.rolling_velocity_m_s);
+    const double slides = std::min(past.norm(), kMostSpeed_m_s), rolls = std::min(round.norm(), kMostSpeed_m_s);
+    Moves& moves = moves_[c.contact_id];
+    moves.seen = true;
+    moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
+    // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
+    const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMostFriction);
+    const double power_W = friction * force_N * slides;
+    const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
+    rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
+    // The point of contact of a body that slides moves too: that is no rolling.
+    const double rolling = rolls >= kLeastSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
+    rub(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
+  }
+  std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
+  keep_loudest();
+  end_others(at);
+  return rubs_;
+}
+
+float Sampler::modal_of(std::int64_t contact, Interaction interaction) const {
+  return recorded_.contains({contact, interaction}) ? gains_of(settings_).modal : 1;
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,91 @@
+// Which recordings sound for what happens in a scene, and how strongly beside the modes. Pure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <set>
+#include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "audio_node/excitation/contact_way.h"
+#include "audio_node/excitation/impact.h"
+#include "audio_node/samples/database.h"
+#include "audio_node/samples/shot.h"
+#include "audio_node/settings.gen.h"
+#include "sync/resampling/contact_stream.h"
+
+namespace tactus::audio {
+
+// Factors on the amplitude of what is computed and of what is recorded.
+struct MethodGains {
+  float modal = 1, recorded = 0;
+};
+MethodGains gains_of(const Settings& settings);
+
+// Level at 1 m of a blow of that impulse, per level of its recording.
+double level_of(double impulse_N_s, const Settings& settings);
+// How much faster than it was recorded the sound of a body is played: free vibrations of bodies of one form and
+// material are as 1 / size (Fletcher and Rossing, The Physics of Musical Instruments, 1998, chapters 2 and 3).
+double pitch_of(double size_m, double recorded_size_m);
+
+// Of one scene.
+class Sampler {
+ public:
+  Sampler(const scene_t& scene, const Settings& settings);
+
+  void configure(const Settings& settings) { settings_ = settings; }
+  // T_world_listener from the next contacts on; at first the scene's.
+  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  // Contacts are told so often.
+  void tell_every(double period_s) { period_s_ = period_s; }
+  // Of which database recordings are from now on; null: of none. It outlives all calls until the next of this.
+  void play(const Database* database, std::int64_t number) {
+    if (number != number_) said_.clear();
+    database_ = database, number_ = number;
+  }
+
+  // False: nothing is recorded, and nobody need look at contacts.
+  bool plays() const { return database_ && gains_of(settings_).recorded > 0; }
+  // Gives a strike the recordings of its event, and its modes what the method leaves to them.
+  void record(Strike& strike, const contact_event_t& event, const Impacts& impacts);
+  // What of these contacts is to be heard at `at`; each that is heard no more ends once. When the method changes
+  // they fade by themselves.
+  const std::vector<Rub>& rubs(const sync::Contacts& contacts, sync::HostTime at);
+  // Factor on what is computed of the scraping or the rolling of a contact, as of the last rubs().
+  float modal_of(std::int64_t contact, Interaction interaction) const;
+
+  // One sentence for each pair and interaction that falls back, once.
+  std::vector<std::string> news() { return std::exchange(news_, {}); }
+
+ private:
+  Database::Found find(std::int32_t a, std::int32_t b, Interaction interaction);
+  std::string material(std::int32_t index) const;
+  void say(const std::string& a, const std::string& b, Interaction interaction, const Database::Found& found);
+  void keep_loudest();
+  void end_others(sync::HostTime at);
+  void rub(const contact_t& contact, Interaction interaction, double speed_m_s, double level, sync::HostTime at);
+
+  Settings settings_;
+  Eigen::Isometry3d listener_;
+  std::vector<std::string> materials_;
+  std::vector<double> mu_;  // by material
+  const Database* database_ = nullptr;
+  std::int64_t number_ = 0;
+  double period_s_ = 0;
+  std::vector<Rub> rubs_;
+  std::set<std::pair<std::int64_t, std::int32_t>> heard_;  // contacts and parts of the last rubs()
+  sync::HostTime rubbed_{};                                // when the last rubs() were to be heard
+  struct Moves {
+    Presliding slides, rolls;
+    bool seen = true;
+  };
+  std::map<std::int64_t, Moves> moves_;                      // of each contact
+  std::set<std::pair<std::int64_t, Interaction>> recorded_;  // contacts of the last rubs()
+  std::set<Database::Key> said_;
+  std::vector<std::string> news_;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,297 @@
+#include "audio_node/excitation/sliding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "audio_node/excitation/contact_patch.h"
+#include "audio_node/modal/finish.h"
+#include "audio_node/signal/loudness.h"
+#include "audio_node/signal/plausible.h"
+#include "audio_node/excitation/scrape.h"
+#include "lcmtypes/vectors.h"
+
+namespace tactus::audio {
+namespace {
+
+using Eigen::Vector3d;
+
+// Beyond these nothing becomes louder or faster: no hand does so, and nothing on the bus shall.
+constexpr double kMostSpeed_m_s = 5, kMostForce_N = 50;
+constexpr double kEdge_1_m = 1000;  // where nobody knows better: a corner that is round by 1 mm (design)
+// Gains go with the place: anew when it has gone so far, or so long ago. Design: below a tenth of the bending
+// waves that 64 modes of a floor board have.
+constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
+// More contacts than these are looked at as often as they are told. Design: 0.1 ms.
+constexpr std::size_t kMany = 50;
+// Who is heard gives way to who is so much stronger. Design.
+constexpr double kGivesWay = 2;
+// What is as loud as the law of levels says: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
+constexpr double kReferenceForce_N = 1, kReferenceSpeed_m_s = 0.1, kReferenceStrength = 0.22360679774997896;
+// Of noise, over its rms (design).
+constexpr double kCrest = 3;
+constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker ones are no more raised than that
+// The heavier side of a body that rolls. Design: an axis of no box.
+const Vector3d kHeavySide = Vector3d(2, -1, 2) / 3;
+
+Vector3d bounded(const Vector3d& v, double most) { return v.norm() > most ? Vector3d(v * (most / v.norm())) : v; }
+
+}  // namespace
+
+double sliding_strength(double friction, double force_N, double speed_m_s) {
+  return std::sqrt(friction * force_N * speed_m_s);
+}
+
+Sliding::Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces,
+                 const sync::BodyHistory& bodies, const Impacts& impacts, const Settings& settings, double rate_Hz)
+    : settings_(settings),
+      rate_Hz_(rate_Hz),
+      listener_(to_eigen(scene.listener)),
+      surfaces_(std::move(surfaces)),
+      bodies_(bodies),
+      impacts_(impacts),
+      materials_(scene.materials),
+      masses_kg_(scene.bodies.size()),
+      curvatures_1_m_(scene.bodies.size()) {
+  for (const body_def_t& b : scene.bodies) {
+    if (b.is_static) standing_[b.id] = to_eigen(b.pose.orientation);
+    if (!b.is_static && b.id >= 0 && static_cast<std::size_t>(b.id) < masses_kg_.size())
+      masses_kg_[static_cast<std::size_t>(b.id)] = b.mass_kg;
+  }
+  for (const shape_def_t& s : scene.shapes) {
+    const bool round =
+        s.kind == shape_def_t::SPHERE || s.kind == shape_def_t::CYLINDER || s.kind == shape_def_t::CAPSULE;
+    if (round && s.body >= 0 && static_cast<std::size_t>(s.body) < curvatures_1_m_.size() && s.size_m.x > 0)
+      curvatures_1_m_[static_cast<std::size_t>(s.body)] = 1 / s.size_m.x;
+  }
+}
+
+Elastic Sliding::elastic_of(std::int32_t material, std::int32_t body) const {
+  const auto i = static_cast<std::size_t>(material);
+  return material >= 0 && i < materials_.size() ? elastic(materials_[i]) : impacts_.body(body).material;
+}
+
+Sliding::Ground Sliding::ground(const contact_t& c, std::size_t side, sync::SimTime t) const {
+  Ground g{side == 0 ? c.body_a : c.body_b, side == 0 ? c.material_a : c.material_b, nullptr, {}};
+  g.surface = surfaces_->of(g.material);
+  if (const auto stands = standing_.find(g.body); stands != standing_.end())
+    g.to_body = stands->second.conjugate();
+  else if (const auto pose = bodies_.pose(g.body, t); pose.how != sync::How::kNone)
+    g.to_body = pose.value.orientation.conjugate();
+  return g;
+}
+
+// Of what is round by its shape; else as large as the simulation says. The profile does not throw up what rolls:
+// its force is as large as the load, root mean square, at the most.
+Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m_s, double rms_slope) const {
+  double curvature = 0, mobility_1_kg = 0;
+  for (const std::int32_t body : {c.body_a, c.body_b}) {
+    const auto i = static_cast<std::size_t>(body);
+    if (body < 0 || i >= curvatures_1_m_.size()) continue;
+    curvature += curvatures_1_m_[i];
+    if (masses_kg_[i] > 0) mobility_1_kg += 1 / masses_kg_[i];
+  }
+  const double reduced =
+      reduced_modulus_Pa(elastic_of(c.material_a, c.body_a), elastic_of(c.material_b, c.body_b));
+  if (curvature == 0 && !(c.area_m2 > 0)) curvature = kEdge_1_m;
+  const double radius = curvature > 0 ? patch_radius_m(force_N, curvature, reduced)
+                                      : std::sqrt(static_cast<double>(c.area_m2) / M_PI);
+  const double mass = mobility_1_kg > 0 ? 1 / mobility_1_kg : 1;
+  return {patch_cutoff_Hz(speed_m_s, radius),
+          std::min(rolling_force_N(radius, reduced, mass, speed_m_s), force_N / std::max(rms_slope, 1e-9))};
+}
+
+// Of the finish of both, since only what is known of a surface moves anything.
+double Sliding::rms_slope(const std::array<Ground, 2>& grounds) const {
+  double sum = 0;
+  for (const Ground& g : grounds)
+    if (g.to_body) sum += mean_square_slope({finish_m(elastic_of(g.material, g.body)), 0});
+  return std::sqrt(sum);
+}
+
+// Once a turn a body that rolls is heavier: as it lies on the place that it touches with.
+double Sliding::turn(const Candidate& c) const {
+  double factor = 1;
+  const Vector3d normal = to_eigen(c.contact->normal);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Ground& g = c.grounds[i];
+    if (!g.to_body || standing_.contains(g.body)) continue;
+    factor *= 1 + settings_.turn_depth * (*g.to_body * (i == 0 ? normal : Vector3d(-normal))).dot(kHeavySide);
+  }
+  return factor;
+}
+
+std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::SimTime t, double dt_s) {
+  const Vector3d past = bounded(to_eigen(c.sliding_velocity_m_s), kMostSpeed_m_s);
+  if (c.points.empty() || !past.allFinite()) return std::nullopt;
+  Candidate k{&c, nullptr, {ground(c, 0, t), ground(c, 1, t)}, 1, 0, 0, 0};
+  const auto surest = [&](const Ground& g) {
+    return g.to_body ? 1 + (g.surface ? 2 : 0) + (standing_.contains(g.body) ? 1 : 0) : 0;
+  };
+  const std::size_t best = surest(k.grounds[1]) > surest(k.grounds[0]) ? 1 : 0;
+  if (!k.grounds[best].to_body) return std::nullopt;
+  k.live = &live_[c.contact_id];
+  k.live->seen = true;
+  ContactWay& way = k.live->way;
+  way.step(c, {k.grounds[0].to_body, k.grounds[1].to_body}, best, past, dt_s);
+  const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
+  double mu = 1;  // one without a material: that of the other counts
+  for (const Ground& g : k.grounds) {
+    const auto i = static_cast<std::size_t>(g.material);
+    if (g.material >= 0 && i < materials_.size()) mu *= materials_[i].friction_dynamic;
+  }
+  k.friction = std::clamp(std::sqrt(std::max(0.0, mu)), 0.0, kMostFriction);
+  const double rolling = std::min(way.over().rolling.norm(), kMostSpeed_m_s);
+  k.slide = way.slides() * settings_.scrape_force_N * sliding_strength(k.friction, force_N, past.norm());
+  if (way.rolls() > 0) {
+    const Patch rests_on = patch(c, force_N, rolling, rms_slope(k.grounds));
+    k.roll = way.rolls() * rests_on.force_N * turn(k);
+    k.cutoff_Hz = rests_on.cutoff_Hz;
+  }
+  if (!(k.strength() > 0) || !std::isfinite(k.strength()) || !std::isfinite(k.cutoff_Hz)) return std::nullopt;
+  return k;
+}
+
+void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const {
+  Live& live = *k.live;
+  const contact_t& c = *k.contact;
+  const Vector3d point = to_eigen(c.points[live.way.point()].a_world_m), normal = to_eigen(c.normal);
+  live.since_s += dt_s;
+  if (live.struck_m && (*live.struck_m - point).norm() < kNear_m && live.since_s < kGainsFor_s) return;
+  const bool first = !live.struck_m;
+  live.struck_m = point, live.since_s = 0;
+  const PoseOf pose = [&](int body) -> std::optional<Eigen::Isometry3d> {
+    const auto p = bodies_.pose(body, t);
+    if (p.how == sync::How::kNone) return std::nullopt;
+    return Eigen::Translation3d(p.value.position) * p.value.orientation;
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int body = k.grounds[i].body;
+    live.gains[i] = impacts_.gains(body, impacts_.on_body(body, point, i == 0 ? Vector3d(-normal) : normal, pose));
+    if (first) find_loudness(k, i);
+  }
+}
+
+// By gains as of anywhere: on a nodal line it shall be quiet.
+void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
+  const int body = k.grounds[side].body;
+  const PerMode gains = impacts_.gains(body, std::nullopt);
+  const Resonators& r = impacts_.resonators(body);
+  const auto count = static_cast<std::size_t>(r.count);
+  // A mode that is pushed by white noise of variance 1 a sample has the variance g^2 / (1 - r^2) / 2 of an
+  // oscillation whose envelope falls by r a sample.
+  const Patch reference = patch(*k.contact, kReferenceForce_N, kReferenceSpeed_m_s, 0);
+  const auto passes = [&](double f_Hz) { return 1 / (1 + std::pow(f_Hz / reference.cutoff_Hz, 4)); };
+  double all = 0, last = 0, rolled = 0;
+  for (std::size_t m = 0; m < count; ++m) {
+    const double one =
+        0.5 * std::pow(static_cast<double>(gains[m]), 2) / std::max(1e-9, 1 - static_cast<double>(r.damping[m]));
+    all += one;
+    rolled += one * passes(impacts_.body(body).modes[m].frequency_Hz);
+    if (4 * m >= 3 * count) last += one;
+  }
+  // A plate has as many modes in each Hz, which lose sound as the square of their frequency (beta of Rayleigh):
+  // all above the highest that is rendered have together the variance of `count` such as it, of which a quarter
+  // was added up. They die away before anybody could tell them apart.
+  // A measured body has the modes that it was heard to have.
+  const bool measured = impacts_.body(body).radiates_as_Hz.has_value();
+  const bool cut = !measured && count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
+  const double beyond = cut ? 4 * last : 0;
+  k.live->heard_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
+  k.live->beyond_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;
+  if (beyond > 0) rolled += beyond * passes(impacts_.body(body).modes.back().frequency_Hz);
+  k.live->rolled_Pa_N[side] = std::sqrt(rolled) / rate_Hz_;
+}
+
+ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
+  const Ground& g = k.grounds[i];
+  const Over& over = k.live->way.over();
+  ScrapeSide s;
+  s.voice = impacts_.voice_id(g.body);
+  s.resonators = impacts_.resonators(g.body);
+  s.gains = k.live->gains[i];
+  if (k.live->beyond_Pa_N[i] > 0) {
+    // Per N s a sample, as gains are.
+    s.beyond = static_cast<float>(k.live->beyond_Pa_N[i] * rate_Hz_);
+    s.beyond_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
+  }
+  if (!g.to_body) return s;
+  s.known = true;
+  s.outward = *g.to_body * Vector3d((i == 0 ? 1 : -1) * to_eigen(k.contact->normal));
+  s.axes = bump_axes(s.outward);
+  if (g.surface) s.relief = g.surface->relief.get(), s.friction = g.surface->friction.get();
+  s.roughness = {finish_m(elastic_of(g.material, g.body)), s.relief ? s.relief->texel_m() : 0};
+  s.place_m = k.live->way.place_m(i);
+  s.velocity_m_s = *g.to_body * over.surface[i];
+  const double sliding = (over.surface[0] - over.surface[1]).norm(), rolling = over.rolling.norm();
+  if (sliding > 0) s.slides = (*g.to_body * (over.surface[i] - over.rolling) / sliding).cast<float>();
+  if (rolling > 0) s.rolls = (*g.to_body * over.rolling / rolling).cast<float>();
+  return s;
+}
+
+Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, double dt_s) {
+  find_gains(k, t, dt_s);
+  const contact_t& c = *k.contact;
+  Scrape s;
+  s.id = c.contact_id;
+  s.at = at;
+  s.over_s = period_s();
+  s.cutoff_Hz = k.cutoff_Hz;
+  double slid = 0, slid_Pa_N = 0, rolled_Pa_N = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ScrapeSide& side = s.sides[i] = this->side(k, i);
+    slid_Pa_N += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
+    rolled_Pa_N += k.live->rolled_Pa_N[i] * k.live->rolled_Pa_N[i];
+    // As of its material alone: a map makes it louder, not its roughness quieter.
+    if (side.known)
+      slid += static_cast<double>(side.slides.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
+  }
+  // Full scale per N: the reference over these two is as loud as a blow of the pressure that is to be expected;
+  // others by their force. Friction is that of the surfaces without their maps, which the callback reads on the
+  // way.
+  const auto scale = [&](double force_N, double slope, double Pa_N) {
+    const double expected = std::max(kHearing_Pa, kCrest * force_N * slope * std::sqrt(Pa_N));
+    return settings_.gain * level_of(expected, settings_) / expected / rate_Hz_;
+  };
+  if (k.slide > 0)
+    s.slide = static_cast<float>(k.slide *
+                                 scale(settings_.scrape_force_N * kReferenceStrength, std::sqrt(slid), slid_Pa_N));
+  if (k.roll > 0) {
+    const double steep = rms_slope(k.grounds);
+    const Patch reference = patch(c, kReferenceForce_N, kReferenceSpeed_m_s, steep);
+    s.roll = static_cast<float>(k.roll * scale(reference.force_N, steep, rolled_Pa_N));
+  }
+  s.place = place_of(listener_, to_eigen(c.points[k.live->way.point()].a_world_m), settings_.nearest_m);
+  return s;
+}
+
+const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync::SimTime t, sync::HostTime at,
+                                            double dt_s) {
+  out_.clear();
+  candidates_.clear();
+  dt_s = std::clamp(dt_s, 0.0, 0.1);
+  many_ = contacts.size() > kMany;
+  for (auto& [id, live] : live_) live.seen = false;
+  for (const contact_t& c : contacts)
+    if (plausible(c))
+      if (auto found = candidate(c, t, dt_s)) candidates_.push_back(*found);
+  const auto most = std::min<std::size_t>(candidates_.size(), kMaxScrapes);
+  const auto kept = [](const Candidate& k) { return k.strength() * (k.live->heard ? kGivesWay : 1); };
+  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(most),
+                    candidates_.end(), [&](const Candidate& a, const Candidate& b) { return kept(a) > kept(b); });
+  candidates_.resize(most);
+  // Who is not among them ends first, to make room.
+  for (auto& [id, live] : live_) {
+    const auto is_it = [&, live = &live](const Candidate& k) { return k.live == live; };
+    if (!std::exchange(live.heard, std::any_of(candidates_.begin(), candidates_.end(), is_it)) || live.heard)
+      continue;
+    Scrape end;
+    end.id = id, end.at = at, end.ends = true;
+    out_.push_back(end);
+  }
+  for (const Candidate& k : candidates_) out_.push_back(scrape(k, t, at, dt_s));
+  std::erase_if(live_, [](const auto& l) { return !l.second.seen; });
+  return out_;
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,106 @@
+// From contacts that slide or roll to what is heard of them: where on both surfaces, how fast, how strongly. Pure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tactus/contact_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "audio_node/excitation/contact_way.h"
+#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/impact.h"
+#include "audio_node/excitation/scrape.h"
+#include "audio_node/settings.gen.h"
+#include "sync/resampling/body_history.h"
+#include "sync/resampling/contact_stream.h"
+
+namespace tactus::audio {
+
+// Root of the power that friction takes of a contact, W^(1/2).
+double sliding_strength(double friction, double force_N, double speed_m_s);
+
+// The contacts of one scene. What is fixed to a body that moves is silent until somebody has said how it is
+// turned.
+class Sliding {
+ public:
+  // surfaces: of that scene, not null. bodies: how those that move are turned. These and impacts outlive this.
+  Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces, const sync::BodyHistory& bodies,
+          const Impacts& impacts, const Settings& settings, double rate_Hz);
+
+  // Factor on everything from the next instant on.
+  void set_gain(double gain) { settings_.gain = gain; }
+  // T_world_listener from the next contacts on; at first the scene's.
+  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+
+  // How often to look at contacts: at every tick, when there are many as often as they are told, and never more
+  // often than that.
+  double period_s() const { return std::max(period_s_, many_ ? kSnapshot_s : 0); }
+  void tell_every(double period_s) { period_s_ = period_s; }
+  // What of the contacts of the instant t is to be heard at `at`; each that is heard no more ends once. dt_s:
+  // since the instant before.
+  const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::SimTime t, sync::HostTime at,
+                                     double dt_s);
+
+ private:
+  static constexpr double kSnapshot_s = 1 / 60.;
+  // One of the surfaces of a contact.
+  struct Ground {
+    std::int32_t body = -1, material = -1;
+    const HeardSurface* surface = nullptr;  // with a map
+    std::optional<Eigen::Quaterniond> to_body;
+  };
+  struct Live {
+    ContactWay way;
+    bool seen = false, heard = false;
+    std::array<PerMode, 2> gains;
+    std::array<double, 2> heard_Pa_N{};       // of each body: rms of the pressure at 1 m per rms of a white force
+    std::array<double, 2> beyond_Pa_N{};      // of its modes beyond those that are rendered, likewise
+    std::array<double, 2> rolled_Pa_N{};      // of all, by a force that went through the patch of the reference
+    std::optional<Eigen::Vector3d> struck_m;  // where they are for, world
+    double since_s = 0;                       // they were found
+  };
+  // A contact and how strongly it slides and rolls, N for a slope of 1.
+  struct Candidate {
+    const contact_t* contact;
+    Live* live;
+    std::array<Ground, 2> grounds;
+    double friction, slide, roll, cutoff_Hz;
+    double strength() const { return slide * slide + roll * roll; }
+  };
+  Ground ground(const contact_t& contact, std::size_t side, sync::SimTime t) const;
+  std::optional<Candidate> candidate(const contact_t& contact, sync::SimTime t, double dt_s);
+  Scrape scrape(const Candidate& candidate, sync::SimTime t, sync::HostTime at, double dt_s);
+  ScrapeSide side(const Candidate& candidate, std::size_t side) const;
+  void find_gains(const Candidate& candidate, sync::SimTime t, double dt_s) const;
+  void find_loudness(const Candidate& candidate, std::size_t side) const;
+  double turn(const Candidate& candidate) const;
+  // Of what rolls with that force at that speed.
+  struct Patch {
+    double cutoff_Hz, force_N;
+  };
+  Patch patch(const contact_t& contact, double force_N, double speed_m_s, double rms_slope) const;
+  double rms_slope(const std::array<Ground, 2>& grounds) const;
+  Elastic elastic_of(std::int32_t material, std::int32_t body) const;
+
+  Settings settings_;
+  double rate_Hz_;
+  Eigen::Isometry3d listener_;
+  std::shared_ptr<const HeardSurfaces> surfaces_;
+  const sync::BodyHistory& bodies_;
+  const Impacts& impacts_;
+  std::vector<material_def_t> materials_;
+  std::vector<double> masses_kg_;                        // of those that move; 0: none, or nobody knows
+  std::vector<double> curvatures_1_m_;                   // of bodies that are round; 0: flat, or nobody knows
+  std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move, of which nobody tells often
+  std::map<std::int64_t, Live> live_;
+  bool many_ = false;
+  double period_s_ = 0;
+  std::vector<Candidate> candidates_;
+  std::vector<Scrape> out_;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,54 @@
+// What crosses into the audio callback: one impact, by value, with all that is needed to sound it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "audio_node/modal/bank/ring.h"
+#include "audio_node/excitation/force_pulse.h"
+#include "audio_node/spatial/place.h"
+#include "audio_node/samples/shot.h"
+#include "sync/time/time.h"
+
+namespace tactus::audio {
+
+inline constexpr int kMaxModes = 128;
+static_assert(kMaxModes % kModeGroup == 0);
+
+// One number for each mode of a body; those that it does not have are 0.
+struct alignas(64) PerMode : std::array<float, kMaxModes> {};
+
+// The modes of one body at one sample rate (bank/ring.h).
+struct Resonators {
+  int count = 0;
+  PerMode damping{}, stiffness{};
+
+  // A mode more; nothing happens beyond kMaxModes.
+  void add(const ModeStep& step) {
+    if (count == kMaxModes) return;
+    const auto i = static_cast<std::size_t>(count++);
+    damping[i] = step.damping, stiffness[i] = step.stiffness;
+  }
+};
+
+// One of the two bodies of an impact.
+struct StrikeSide {
+  std::int64_t voice = -1;  // the same for the same body: it is excited again without losing its state; -1: none
+  Resonators resonators;
+  PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
+  float impulse = 0;  // N s, scaled to full scale per Pa
+  float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
+  Place place;        // where it is heard from
+};
+
+struct Strike {
+  std::int64_t event_id = 0;
+  sync::HostTime scheduled{};
+  ForcePulse pulse = one_hump(1);
+  float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction
+  std::array<StrikeSide, 2> sides;
+  float impulse_N_s = 0, speed_m_s = 0;  // of the blow
+  RecordedStrike recorded;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,89 @@
+#include "audio_node/mixer/capture.h"
+
+#include <pthread.h>
+#include <sndfile.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace tactus::audio {
+namespace {
+
+constexpr int kRingSeconds = 5;  // how long the disk may stand still
+constexpr std::chrono::milliseconds kWritePeriod{20};
+
+}  // namespace
+
+Capture::Capture(const std::string& path, int rate_Hz, int channels, int pairs_fd)
+    : channels_(channels),
+      pairs_fd_(pairs_fd),
+      samples_(static_cast<std::size_t>(kRingSeconds) * static_cast<std::size_t>(rate_Hz) *
+               static_cast<std::size_t>(channels)) {
+  SF_INFO info{};
+  info.samplerate = rate_Hz;
+  info.channels = channels;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  file_ = sf_open(path.c_str(), SFM_WRITE, &info);
+  if (!file_)
+    throw std::runtime_error("cannot write " + path + " (" + sf_strerror(nullptr) + "); choose another --out");
+  // The peak chunk holds the time of day, which would make two equal runs differ.
+  sf_command(file_, SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
+  sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
+  writer_ = std::thread([this] { write_on(); });
+}
+
+Capture::~Capture() {
+  stop_ = true;
+  writer_.join();
+  sf_close(file_);
+}
+
+void Capture::append(const float* interleaved, std::size_t frames) {
+  frames_ += static_cast<std::int64_t>(frames);
+  if (pay_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
+  owed_silence_ += static_cast<std::int64_t>(frames);
+  lost_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
+}
+
+// True when nothing is owed any more.
+bool Capture::pay_silence() {
+  static constexpr std::array<float, 1024> kZeros{};
+  while (owed_silence_ > 0) {
+    const std::int64_t frames =
+        std::min<std::int64_t>(owed_silence_, static_cast<std::int64_t>(kZeros.size()) / channels_);
+    if (!samples_.push(kZeros.data(), static_cast<std::size_t>(frames * channels_))) return false;
+    owed_silence_ -= frames;
+  }
+  return true;
+}
+
+void Capture::write_on() {
+  // The thread that opens a card may be a real-time one; this one must not be.
+  const sched_param normal{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &normal);
+  while (!stop_) {
+    std::this_thread::sleep_for(kWritePeriod);
+    write_all();
+  }
+  write_all();
+}
+
+void Capture::write_all() {
+  std::array<float, 4096> buffer;
+  const std::size_t whole =
+      buffer.size() / static_cast<std::size_t>(channels_) * static_cast<std::size_t>(channels_);
+  bool wrote = false;
+  while (const std::size_t count = samples_.pop(buffer.data(), whole)) {
+    sf_write_float(file_, buffer.data(), static_cast<sf_count_t>(count));
+    wrote = true;
+  }
+  if (wrote) sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
+  for (MediaPair pair; pairs_.pop(pair);)
+    if (pairs_fd_ >= 0 && ::write(pairs_fd_, &pair, sizeof pair) != static_cast<ssize_t>(sizeof pair)) continue;
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,68 @@
+#include "audio_node/mixer/recorded.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::audio {
+
+void let_go_unheard(RecordedCrossing& crossing) {
+  for (Rub r; crossing.rubs.pop(r);) continue;
+  for (std::int64_t number; crossing.databases.pop(number);)
+    crossing.let_go.store(number, std::memory_order_release);
+}
+
+void Recorded::take_databases() {
+  const std::int64_t before = database_;
+  for (std::int64_t number; crossing_.databases.pop(number);) database_ = number;
+  if (database_ == before) return;
+  // Rubs of the databases before crossed before: those of the newest follow in a tick.
+  if (next_ && next_->database >= database_) return;
+  next_.reset();
+  for (Rub r; crossing_.rubs.pop(r);) {
+    if (r.database < database_) continue;
+    next_ = r;
+    return;
+  }
+}
+
+// They cross in the order in which they are to be heard; one that is early waits.
+int Recorded::take_rubs(sync::HostTime until) {
+  int begun = 0;
+  for (Rub r; next_ || crossing_.rubs.pop(r);) {
+    if (next_) r = *std::exchange(next_, std::nullopt);
+    if (r.at > until) {
+      next_ = r;
+      break;
+    }
+    begun += loops_.take(r) ? 1 : 0;
+  }
+  return begun;
+}
+
+int Recorded::render(float* mix, int frames, sync::HostTime first) {
+  const int begun = take_rubs(first);
+  shots_.render(mix, frames);
+  loops_.render(mix, frames, first);
+  return begun;
+}
+
+void Recorded::let_go(const Scheduler& waiting) {
+  if (crossing_.let_go.load(std::memory_order_relaxed) == database_) return;
+  std::int64_t held = loops_.oldest(shots_.oldest(database_));
+  if (next_) held = std::min(held, next_->database);
+  waiting.for_each([&](const Strike& s) {
+    if (s.recorded.database > 0) held = std::min(held, s.recorded.database);
+  });
+  crossing_.let_go.store(held, std::memory_order_release);
+}
+
+void Recorded::abandon(const Scheduler& waiting) {
+  take_databases();
+  for (Rub r; crossing_.rubs.pop(r);) continue;
+  next_.reset();
+  shots_.clear();
+  loops_.clear();
+  let_go(waiting);
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,225 @@
+#include "audio_node/mixer/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace tactus::audio {
+namespace {
+
+// Sound that dies away ends in denormal numbers, which cost a hundred times a normal one: taken for 0 while this
+// lives.
+class FlushToZero {
+ public:
+#if defined(__SSE__)
+  FlushToZero() { _mm_setcsr(saved_ | 0x8040); }  // FTZ | DAZ, Intel SDM vol. 1, section 10.2.3
+  ~FlushToZero() { _mm_setcsr(saved_); }
+
+ private:
+  unsigned saved_ = _mm_getcsr();
+#endif
+};
+
+// Blocks are placed anew by the device's clock; a strike on their border may so miss its sample by one without
+// being late. Two samples, and the half by which every onset is rounded.
+constexpr double kSlack_samples = 2.5;
+
+// Share of the time of a block that its rendering may take: the rest is for a wake-up that comes late, and for the
+// card's own work. Design.
+constexpr double kBudget = 0.5;
+// The ladder is told of so many means a second. Design, as pictures: at the rate of blocks it would heed every
+// moment in which another process has the processor, to which fewer modes are no answer.
+constexpr double kMeans_Hz = 60;
+constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+
+// The onset of a sound is lost when a drop-out takes more than half of its amplitude.
+constexpr float kSilenced = 0.5f;
+
+HearingDef hearing_of(const RendererDef& def) {
+  HearingDef hearing = def.hearing;
+  hearing.ears = def.space.hrtf != nullptr;
+  return hearing;
+}
+
+}  // namespace
+
+sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
+  const sync::Nanoseconds slack = sync::from_seconds(kSlack_samples / rate_Hz);
+  return {kLate, slack, std::max(slack, limit)};
+}
+
+Renderer::Renderer(Crossing& crossing, const RendererDef& def)
+    : crossing_(crossing),
+      rate_Hz_(def.rate_Hz),
+      channels_(def.space.channels()),
+      delay_(def.space.latency() + Limiter::kDelay),
+      silent_(def.silent),
+      late_(def.late),
+      voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
+      scrapes_(def.rate_Hz),
+      recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
+      clock_ns_(def.clock_ns),
+      scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
+      dropout_(def.rate_Hz),
+      limiter_(def.ceiling, def.rate_Hz, channels_),
+      level_limiter_(hearing_of(def), def.rate_Hz, channels_),
+      ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
+              static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
+
+void Renderer::take_orders() {
+  Orders orders;
+  while (crossing_.orders.pop(orders)) {
+    dropout_.set(orders.dropout);
+    pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
+  }
+  Listener listener;
+  bool moved = false;
+  while (crossing_.listeners.pop(listener)) moved = true;
+  if (moved) voices_.hear_from(listener), recorded_.hear_from(listener);
+}
+
+// The ladder is told what a second of sound would take, since blocks may differ in length.
+void Renderer::adapt(int frames, sync::Nanoseconds used) {
+  if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
+  last_frames_ = frames;
+  if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
+    ladder_.add(sync::from_seconds(sync::to_seconds(used_) * rate_Hz_ / frames_));
+    frames_ = 0, used_ = {};
+  }
+  const int step = pinned_ < 0 ? ladder_.step() : pinned_;
+  voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
+  crossing_.quality.store(step, std::memory_order_relaxed);
+}
+
+sync::Nanoseconds Renderer::samples(int count) const {
+  return sync::Nanoseconds(std::llround(count * 1e9 / rate_Hz_));
+}
+
+void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns,
+                      sync::Nanoseconds uncertainty) {
+  presentation_t r{};
+  r.event_id = strike.event_id;
+  r.part = presentation_t::WHOLE;
+  r.scheduled_ns = sync::to_ns(strike.scheduled);
+  r.presented_ns = presented_ns;
+  r.uncertainty_ns = uncertainty.count();
+  r.outcome = outcome;
+  if (!crossing_.reports.push(r)) crossing_.reports_lost.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Renderer::render(float* out, int frames, const BlockTime& time) {
+  const FlushToZero guard;
+  take_orders();
+  recorded_.take_databases();
+  adapt(frames, time.used);
+  Strike strike;
+  while (crossing_.strikes.pop(strike))
+    if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
+  for (int done = 0; done < frames;) {
+    const int some = next_block(frames - done);
+    render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
+    done += some;
+  }
+  let_go_of_scrapes();
+  recorded_.let_go(scheduler_);
+}
+
+void Renderer::abandon() {
+  const auto drop = [&](const Strike& s) { report(s, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0)); };
+  for (Strike strike; crossing_.strikes.pop(strike);) drop(strike);
+  while (const Strike* strike = scheduler_.pop_before(sync::HostTime::max())) drop(*strike);
+  for (Scrape s; crossing_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
+  next_scrape_.reset();
+  scrapes_.clear();
+  let_go_of_scrapes();
+  recorded_.abandon(scheduler_);
+}
+
+// The block's frames are rendered now, reach the ears a little later and leave the limiter kDelay frames after
+// that.
+void Renderer::render_some(float* out, int frames, const BlockTime& time) {
+  const BlockTime leaving{time.first_sample + samples(delay_), time.uncertainty, {}};
+  const sync::HostTime end =
+      leaving.first_sample + sync::Nanoseconds(std::llround((frames - 0.5) * 1e9 / rate_Hz_));
+  dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
+  while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
+  std::fill(out, out + channels_ * frames, 0.f);
+  if (!silent_) sound_some(out, frames, leaving.first_sample);
+}
+
+void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
+  const std::int64_t begun = clock();
+  const int scraping = scrapes_.active();
+  take_scrapes(leaving);
+  crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
+  scrapes_.drive(voices_, frames, leaving);
+  voices_.render(out, frames);
+  const std::int64_t computed = clock();
+  const int rubs = recorded_.render(out, frames, leaving);
+  crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
+  // A block in which nothing sounds is no contact's.
+  if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
+  if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
+  for (int n = 0; n < frames; ++n)
+    for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
+  limit(out, frames);
+}
+
+// The level last: so it is that of what is played.
+void Renderer::limit(float* out, int frames) {
+  limiter_.process(out, frames);
+  level_limiter_.process(out, frames);
+  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);  // nobody else writes it
+  crossing_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
+  crossing_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
+}
+
+// They cross in the order in which they are to be heard; one that is early waits.
+void Renderer::take_scrapes(sync::HostTime until) {
+  for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
+    if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
+    scrapes_taken_ = s.number + 1;
+    if (s.at > until) {
+      next_scrape_ = s;
+      return;
+    }
+    scrapes_.take(s);
+  }
+}
+
+// What is still in the queue has larger numbers than all that were taken out of it.
+void Renderer::let_go_of_scrapes() {
+  std::int64_t held = scrapes_taken_;
+  if (next_scrape_) held = std::min(held, next_scrape_->number);
+  if (const auto oldest = scrapes_.oldest()) held = std::min(held, *oldest);
+  crossing_.scrapes_let_go.store(held, std::memory_order_release);
+}
+
+void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {
+  const sync::Nanoseconds lateness = leaving.first_sample - strike.scheduled;
+  const std::int8_t outcome = late_.outcome(lateness);
+  if (outcome == presentation_t::DROPPED_LATE) return report(strike, outcome, -1, sync::Nanoseconds(0));
+  const auto gain = static_cast<float>(late_.gain(lateness));
+  const auto nearest = static_cast<long>(std::floor(-sync::to_seconds(lateness) * rate_Hz_ + 0.5));
+  const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
+  if (!silent_) {
+    for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
+    recorded_.begin(strike, gain, offset);
+  }
+  const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
+  crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
+  crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
+  // The bodies ring on below the silence.
+  if (open_[static_cast<std::size_t>(offset)] < kSilenced)
+    return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
+  const sync::Nanoseconds half_sample = samples(1) / 2;
+  const bool heard = gain >= strike.heard_from;
+  report(strike, heard ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
+         leaving.uncertainty + half_sample);
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,44 @@
+// Keeps strikes until their sample comes. Pure.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "audio_node/excitation/strike.h"
+
+namespace tactus::audio {
+
+// A heap of fixed capacity, ordered by the time of presentation; equal times leave in the order in which they
+// came. Time becomes a sample only when a block is rendered, since the map between the two is corrected all along.
+// Realtime-safe: yes, all but the constructor.
+class Scheduler {
+ public:
+  explicit Scheduler(int capacity);
+
+  // False when it is full.
+  bool push(const Strike& strike);
+  // The earliest strike that is scheduled before `end`, or null. It stays valid until the next call.
+  const Strike* pop_before(sync::HostTime end);
+  // Those that wait, in no order.
+  template <class F>
+  void for_each(F f) const {
+    for (const Entry& e : heap_) f(slots_[static_cast<std::size_t>(e.slot)]);
+  }
+  int size() const { return static_cast<int>(heap_.size()); }
+
+ private:
+  struct Entry {
+    sync::HostTime scheduled;
+    std::int64_t order;
+    int slot;
+  };
+  static bool later(const Entry& a, const Entry& b) {
+    return a.scheduled != b.scheduled ? a.scheduled > b.scheduled : a.order > b.order;
+  }
+  std::vector<Strike> slots_;
+  std::vector<int> free_;
+  std::vector<Entry> heap_;
+  std::int64_t pushed_ = 0;
+};
+
+}  // namespace tactus::audio

@@ -1,0 +1,57 @@
+#include "audio_node/mixer/scrape_line.h"
+
+#include <utility>
+
+namespace tactus::audio {
+namespace {
+
+// Ends that are still to be told. Design: four times what is heard at a time; what is older has faded by itself.
+constexpr std::size_t kMostOwed = 4 * Scrapes::kMost;
+
+}  // namespace
+
+void ScrapeLine::change(Surfaces next) {
+  // Into which none points nobody reads, whatever the callback does.
+  if (now_) kept_.push_back({submitted_ > first_ ? submitted_ : 0, std::move(now_)});
+  now_ = std::move(next);
+  first_ = submitted_;
+}
+
+bool ScrapeLine::submit(Scrape scrape) {
+  std::erase(owed_, scrape.id);
+  tell_ends();
+  if (push(scrape)) return true;
+  if (!scrape.ends) return ++lost_, false;
+  owed_.push_back(scrape.id);
+  if (owed_.size() > kMostOwed) owed_.pop_front(), ++lost_;
+  return false;
+}
+
+void ScrapeLine::tell_ends() {
+  for (; !owed_.empty(); owed_.pop_front()) {
+    Scrape end;
+    end.id = owed_.front(), end.ends = true;
+    if (!push(end)) return;
+  }
+}
+
+bool ScrapeLine::push(Scrape& scrape) {
+  scrape.number = submitted_;
+  if (!crossing_.scrapes.push(scrape)) return false;
+  ++submitted_;
+  return true;
+}
+
+std::vector<ScrapeLine::Surfaces> ScrapeLine::take_unread() {
+  std::vector<Surfaces> unread;
+  if (kept_.empty()) return unread;
+  const std::int64_t let_go = crossing_.scrapes_let_go.load(std::memory_order_acquire);
+  std::erase_if(kept_, [&](Kept& k) {
+    if (k.end > let_go) return false;
+    unread.push_back(std::move(k.surfaces));
+    return true;
+  });
+  return unread;
+}
+
+}  // namespace tactus::audio

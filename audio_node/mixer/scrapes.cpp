@@ -1,0 +1,219 @@
+#include "audio_node/mixer/scrapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::audio {
+namespace {
+
+// A place that is told differs from where the last one has led: it is taken in within so long. Design: the hand
+// and the world have ticks of 1 ms each and now and then slip by one.
+constexpr double kFollow_s = 0.01;
+// What is further off was put there.
+constexpr double kLeap_m = 0.005;  // design
+// A strength begins, changes and ends within so long at the least. Design: shorter is heard as a click.
+constexpr double kStrength_s = 0.002;
+// One that is not told of any more, nor that it ends, fades.
+constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are no gap
+constexpr double kMostOver_s =
+    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
+
+// Of this world. Design: far beyond what any scene has, so that no number overflows.
+constexpr double kMostPlace_m = 1e5, kMostSpeed_m_s = 1e3, kMostWay = 10, kMostStrength = 10;
+
+// Neither is no number.
+bool within(const Eigen::Vector3d& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
+
+bool sane(const Scrape& s) {
+  bool all = std::abs(s.slide) <= kMostStrength && std::abs(s.roll) <= kMostStrength && std::isfinite(s.cutoff_Hz);
+  for (const ScrapeSide& side : s.sides)
+    all = all && within(side.place_m, kMostPlace_m) && within(side.velocity_m_s, kMostSpeed_m_s) &&
+          within(side.slides.cast<double>(), kMostWay) && within(side.rolls.cast<double>(), kMostWay) &&
+          std::isfinite(side.beyond) && std::isfinite(side.beyond_Hz) &&
+          std::all_of(side.gains.begin(), side.gains.end(), [](float g) { return std::isfinite(g); });
+  return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
+}
+
+// Of a step of a map that is none: as steep as 76 degrees (design).
+constexpr float kSteepest = 4;
+
+bool passes(const ScrapeSide& side) { return !side.slides.isZero(0) || !side.rolls.isZero(0); }
+
+Eigen::Vector2d on_map(const ScrapeSide& side, const Eigen::Vector3d& v) {
+  const Relief& r = side.relief->finest();
+  return {v[side.axes.u] / static_cast<double>(r.size_m.x()), v[side.axes.v] / static_cast<double>(r.size_m.y())};
+}
+
+// Adds the slope of the relief along the way of the sliding and that of the rolling.
+void add_relief(const ScrapeSide& side, const Track& track, int frames, float* slope, float* slope_rolling) {
+  const auto along = [&](const Eigen::Vector3f& way) -> Eigen::Vector2d {
+    return way.cast<double>()({side.axes.u, side.axes.v});
+  };
+  const Eigen::Vector2d slides = along(side.slides), rolls = along(side.rolls);
+  const Eigen::Vector2d step =
+      on_map(side, track.step).cwiseAbs().cwiseMax(on_map(side, track.step + 2 * frames * track.bend).cwiseAbs());
+  for (int n = 0; n < frames; ++n) {
+    const Eigen::Vector2d s = side.relief->slope(on_map(side, track.at(n)), step);
+    slope[n] += static_cast<float>(s.dot(slides));
+    slope_rolling[n] += static_cast<float>(s.dot(rolls));
+  }
+}
+
+}  // namespace
+
+float Scrapes::Ramp::next() {
+  if (left <= 0) return value;
+  value = left == 1 ? target : value + (target - value) / static_cast<float>(left);
+  --left;
+  return value;
+}
+
+void Scrapes::begin(Contact& c, const Scrape& scrape) const {
+  c.now = scrape;
+  c.on = c.fresh = true;
+  c.slide = c.roll = {};
+  c.patch = {};
+  c.force.fill(0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    c.sides[i].place_m = scrape.sides[i].place_m;
+    c.sides[i].in_use = 0;
+    c.sides[i].gains[0] = scrape.sides[i].gains;
+    c.sides[i].changed = false;
+    c.sides[i].beyond = {};
+    c.sides[i].beyond.set(scrape.sides[i].beyond_Hz, rate_Hz_);
+  }
+}
+
+void Scrapes::take(const Scrape& scrape) {
+  if (!sane(scrape)) return;
+  const bool silent = scrape.slide == 0 && scrape.roll == 0;
+  Contact* known = nullptr;
+  Contact* free = nullptr;
+  for (Contact& c : contacts_) {
+    if (c.on && c.now.id == scrape.id) known = &c;
+    if (!c.on && !free) free = &c;
+  }
+  const int within = std::max(1, static_cast<int>(std::max(kStrength_s, scrape.over_s) * rate_Hz_));
+  if (scrape.ends) {
+    if (known) known->slide.go(0, within), known->roll.go(0, within);
+    return;
+  }
+  if (known) {
+    for (std::size_t i = 0; i < 2; ++i)
+      known->sides[i].changed |= known->now.sides[i].gains != scrape.sides[i].gains;
+    known->now = scrape;
+  } else if (free && !silent) {
+    begin(*(known = free), scrape);
+  } else {
+    return;
+  }
+  known->heard = scrape.at;
+  known->slide.go(scrape.slide, within), known->roll.go(scrape.roll, within);
+}
+
+// Where what was told would be at the first of these samples; what is missing is made up on the way.
+Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool fresh, int frames) const {
+  const double dt = 1 / rate_Hz_;
+  Eigen::Vector3d lag = told.place_m + since_s * told.velocity_m_s - side.place_m;
+  if (fresh || lag.norm() > kLeap_m) side.place_m += lag, lag.setZero();
+  const Eigen::Vector3d step = (told.velocity_m_s + lag / kFollow_s) * dt;
+  if (fresh) side.step_m = step;
+  const Track track{side.place_m, side.step_m, (step - side.step_m) / (2 * frames)};
+  side.place_m = track.at(frames);
+  side.step_m = step;
+  return track;
+}
+
+void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
+  const Scrape& s = c.now;
+  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMostOver_s))) &&
+      (c.slide.target != 0 || c.roll.target != 0))
+    c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
+        c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));
+  const double since_s = sync::to_seconds(first - s.at);
+  Block slope{}, rolling{}, friction, steep;
+  friction.fill(1);
+  std::array<Track, 2> tracks;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ScrapeSide& side = s.sides[i];
+    if (!side.known) continue;
+    tracks[i] = follow(side, c.sides[i], since_s, c.fresh, frames);
+    if (side.relief && passes(side)) add_relief(side, tracks[i], frames, slope.data(), rolling.data());
+    for (int n = 0; side.friction && n < frames; ++n)
+      friction[static_cast<std::size_t>(n)] *=
+          static_cast<float>(side.friction->factor(side.outward, tracks[i].at(n)));
+  }
+  // On a slope both the way and the force across it are longer than as told by sqrt(1 + slope^2), the root of
+  // their product as well.
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kSteepest * kSteepest));
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const ScrapeSide& side = s.sides[i]; side.known && passes(side))
+      add_slopes(side.roughness, tracks[i], side.slides, side.rolls, frames, slope.data(), rolling.data());
+  const bool mapped = s.sides[0].friction || s.sides[1].friction;
+  c.patch.set(s.cutoff_Hz, rate_Hz_);
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    // Of a pair the root of the factors counts, and of power the root again.
+    const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
+    c.force[k] = c.slide.next() * rubs * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
+  }
+  c.fresh = false;
+  if (c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0) c.on = false;
+}
+
+void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
+  const ScrapeSide& told = c.now.sides[i];
+  Side& side = c.sides[i];
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    side.direct[k] = told.beyond * side.beyond.next(c.force[k]).high;
+  }
+  const auto with = [&](const PerMode& gains, const Block& force, const float* direct) {
+    voices.drive({told.voice, &told.resonators, &gains, c.now.place, force.data(), direct});
+  };
+  if (!side.changed) return with(side.gains[side.in_use], c.force, side.direct.data());
+  // Linearly from one set of gains to the next. Both bodies share the shares.
+  for (int n = 0; n < frames; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    c.in[k] = c.force[k] * static_cast<float>(n) / static_cast<float>(frames);
+    c.out[k] = c.force[k] - c.in[k];
+  }
+  with(side.gains[side.in_use], c.out, side.direct.data());
+  side.in_use = 1 - side.in_use;
+  side.gains[side.in_use] = told.gains;
+  with(side.gains[side.in_use], c.in, nullptr);
+  side.changed = false;
+}
+
+void Scrapes::drive(Voices& voices, int frames, sync::HostTime first) {
+  for (Contact& c : contacts_) {
+    if (!c.on) continue;
+    render(c, frames, first);
+    const auto silent = [](float x) { return x == 0; };
+    if (std::all_of(c.force.begin(), c.force.begin() + frames, silent)) continue;
+    for (std::size_t i = 0; i < 2; ++i) drive(c, i, voices, frames);
+  }
+}
+
+std::optional<std::int64_t> Scrapes::oldest() const {
+  std::optional<std::int64_t> oldest;
+  for (const Contact& c : contacts_)
+    if (c.on && (!oldest || c.now.number < *oldest)) oldest = c.now.number;
+  return oldest;
+}
+
+int Scrapes::active() const {
+  return static_cast<int>(
+      std::count_if(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.on; }));
+}
+
+const float* Scrapes::force(std::int64_t id) const {
+  for (const Contact& c : contacts_)
+    if (c.now.id == id) return c.force.data();
+  return nullptr;
+}
+
+}  // namespace tactus::audio

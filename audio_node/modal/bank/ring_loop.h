@@ -1,0 +1,78 @@
+// The loop of ring.h in vectors of kWidth numbers. Included by one file per set of instructions, which names the
+// namespace, so that no linker takes one's code for another's; for that reason nothing of the standard library is
+// used here.
+#pragma once
+
+#include "audio_node/modal/bank/ring.h"
+
+namespace tactus::audio::TACTUS_RING {
+namespace {
+
+typedef float Lanes __attribute__((vector_size(4 * TACTUS_RING_WIDTH)));
+constexpr int kWidth = TACTUS_RING_WIDTH;
+// In flight at once, so that no one waits for its own last result.
+constexpr int kAtOnce = 4;
+
+inline Lanes all(float x) { return x - Lanes{}; }
+inline Lanes load(const float* from) { return *reinterpret_cast<const Lanes*>(from); }
+inline void store(float* to, Lanes x) { *reinterpret_cast<Lanes*>(to) = x; }
+
+// kVectors * kWidth modes from `at` on, under `count` pushes; kPushes: their number where it is known, else -1.
+template <int kVectors, int kPushes>
+void some(const Ringing& m, int at, const Push* pushes, int count, int frames, Lanes* sum) {
+  Lanes c[kVectors], k[kVectors], v[kVectors], u[kVectors], g[kVectors];
+  for (int j = 0; j < kVectors; ++j) {
+    const int i = at + j * kWidth;
+    c[j] = load(m.damping + i), k[j] = load(m.stiffness + i);
+    v[j] = load(m.velocity + i), u[j] = load(m.displacement + i);
+    if (kPushes == 1) g[j] = load(pushes[0].gains + i);
+  }
+  for (int n = 0; n < frames; ++n) {
+    Lanes force;
+    if (kPushes == 1) force = all(pushes[0].force[n]);
+    for (int j = 0; j < kVectors; ++j) {
+      v[j] = c[j] * v[j] - k[j] * u[j];
+      if (kPushes == 1) v[j] += g[j] * force;
+      if (kPushes < 0)
+        for (int p = 0; p < count; ++p) v[j] += load(pushes[p].gains + at + j * kWidth) * all(pushes[p].force[n]);
+      u[j] += v[j];
+    }
+    Lanes total = v[0];
+    for (int j = 1; j < kVectors; ++j) total += v[j];
+    sum[n] += total;
+  }
+  for (int j = 0; j < kVectors; ++j) {
+    const int i = at + j * kWidth;
+    store(m.velocity + i, v[j]), store(m.displacement + i, u[j]);
+  }
+}
+
+template <int kPushes>
+void each(const Ringing& m, const Push* pushes, int count, int frames, Lanes* sum) {
+  int at = 0;
+  for (; at + kAtOnce * kWidth <= m.modes; at += kAtOnce * kWidth)
+    some<kAtOnce, kPushes>(m, at, pushes, count, frames, sum);
+  // A group is a vector of 16, two of 8 or four of 4.
+  constexpr int kOfGroup = kModeGroup / kWidth;
+  for (; at < m.modes; at += kModeGroup) some<kOfGroup, kPushes>(m, at, pushes, count, frames, sum);
+}
+
+}  // namespace
+
+void ring(const Ringing& m, const Push* pushes, int count, int frames, float* out) {
+  Lanes sum[kMaxBlock];
+  for (int n = 0; n < frames; ++n) sum[n] = Lanes{};
+  if (count == 0)
+    each<0>(m, pushes, count, frames, sum);
+  else if (count == 1)
+    each<1>(m, pushes, count, frames, sum);
+  else
+    each<-1>(m, pushes, count, frames, sum);
+  for (int n = 0; n < frames; ++n) {
+    float total = 0;
+    for (int i = 0; i < kWidth; ++i) total += sum[n][i];
+    out[n] += total;
+  }
+}
+
+}  // namespace tactus::audio::TACTUS_RING

@@ -1,0 +1,149 @@
+#include "audio_node/modal/mode_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "audio_node/modal/modal.h"
+
+namespace tactus::audio {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+using std::numbers::sqrt2;
+
+// Where a coordinate that is 0 in the middle lies along a length, 0 .. 1.
+double along(double coordinate_m, double length_m) { return std::clamp(coordinate_m / length_m + 0.5, 0.0, 1.0); }
+
+// A function along one direction of a plate, mean square 1, and its slope per metre.
+using Profile = std::function<BeamValue(double coordinate_m)>;
+
+// The displacement of a plate's point off its middle: w upwards, -z grad w in the plane.
+ModeShape plate_shape(Profile x, Profile y) {
+  return [x = std::move(x), y = std::move(y)](const Vector3d& p, const Vector3d& n) {
+    const BeamValue u = x(p.x()), v = y(p.y());
+    return n.z() * u.value * v.value - p.z() * (n.x() * u.slope * v.value + n.y() * u.value * v.slope);
+  };
+}
+
+// n nodal lines of a free plate: rigid motions first, then those of a beam.
+BeamValue free_profile(int n, double coordinate_m, double length_m) {
+  const double x = along(coordinate_m, length_m);
+  if (n == 0) return {1, 0};
+  if (n == 1) return {std::sqrt(3) * (2 * x - 1), 2 * std::sqrt(3) / length_m};
+  const BeamValue beam = free_beam(n - 2, x);
+  return {beam.value, beam.slope / length_m};
+}
+
+// Sine of i half waves, or what counts of it where the place is as likely as any.
+BeamValue supported_profile(int i, double coordinate_m, double length_m, bool patch) {
+  if (patch) return {1, 0};
+  const double k = i * pi / length_m, x = along(coordinate_m, length_m) * length_m;
+  return {sqrt2 * std::sin(k * x), sqrt2 * k * std::cos(k * x)};
+}
+
+// What a mode of n nodal diameters of a free disc does along its radius: J_n(kr) + c I_n(kr), without bending
+// moment at the edge (Leissa, Vibration of Plates, NASA SP-160, 1969, eq. 1.18 and section 2.1.3).
+class DiscProfile {
+ public:
+  DiscProfile(int n, double lambda) : n_(n), lambda_(lambda) {
+    c_ = -moment(lambda, false) / moment(lambda, true);
+    // Mean square over the disc, of the two degenerate modes together: 2 integral R^2 x dx, and a half of it for
+    // each where it has diameters.
+    constexpr int kSteps = 400;  // Simpson's rule: errs by less than 1e-6 for the modes that are listed
+    double sum = 0;
+    for (int s = 0; s <= kSteps; ++s) {
+      const double x = static_cast<double>(s) / kSteps, weight = s == 0 || s == kSteps ? 1 : s % 2 ? 4 : 2;
+      sum += weight * raw(x) * raw(x) * x;
+    }
+    const double mean_square = 2 * sum / (3 * kSteps) / (n > 0 ? 2 : 1);
+    scale_ = 1 / std::sqrt(mean_square);
+  }
+  // x: distance from the centre, 0 .. 1 of the radius. The slope is per radius.
+  double value(double x) const { return scale_ * raw(x); }
+  double slope(double x) const {
+    return scale_ * lambda_ * (derivative(lambda_ * x, false) + c_ * derivative(lambda_ * x, true));
+  }
+
+ private:
+  static double bessel(int n, double y, bool modified) {
+    const double m = std::abs(n);
+    return modified ? std::cyl_bessel_i(m, y) : (n < 0 && n % 2 ? -1 : 1) * std::cyl_bessel_j(m, y);
+  }
+  double derivative(double y, bool modified) const {
+    return (bessel(n_ - 1, y, modified) + (modified ? 1 : -1) * bessel(n_ + 1, y, modified)) / 2;
+  }
+  // w'' + nu (w' - n^2 w) at the edge, by Bessel's equation: w'' = -w'/y -+ (1 -+ n^2/y^2) w.
+  double moment(double y, bool modified) const {
+    constexpr double kPoisson = 0.33;
+    const double w = bessel(n_, y, modified), d = derivative(y, modified), n2 = n_ * n_;
+    const double dd = -d / y + (n2 / (y * y) + (modified ? 1 : -1)) * w;
+    return y * y * dd + kPoisson * (y * d - n2 * w);
+  }
+  double raw(double x) const { return bessel(n_, lambda_ * x, false) + c_ * bessel(n_, lambda_ * x, true); }
+
+  int n_;
+  double lambda_, c_ = 0, scale_ = 1;
+};
+
+}  // namespace
+
+BeamValue free_beam(int n, double x) {
+  const double b = free_bar_root(n), s = std::sin(b), e = std::exp(-b);
+  // cosh bx + cos bx - q (sinh bx + sin bx), q = (cosh b - cos b) / (sinh b - sin b), with its growing part
+  // written so that nothing large is subtracted from its like.
+  const double c = std::cos(b), below = 1 - e * e - 2 * s * e;
+  const double q = (1 + e * e - 2 * c * e) / below;
+  const double grows = (c - s - e) / below * std::exp(-b * (1 - x)), falls = (1 + q) / 2 * std::exp(-b * x);
+  return {grows + falls + std::cos(b * x) - q * std::sin(b * x),
+          b * (grows - falls - std::sin(b * x) - q * std::cos(b * x))};
+}
+
+ModeShape bar_bending_shape(int n, double length_m, int across) {
+  return [=](const Vector3d& p, const Vector3d& direction) {
+    const BeamValue w = free_beam(n, along(p.x(), length_m));
+    return direction[across] * w.value - direction.x() * p[across] * w.slope / length_m;
+  };
+}
+
+ModeShape round_bending_shape(int n, double length_m) {
+  return [=](const Vector3d& p, const Vector3d& direction) {
+    const BeamValue w = free_beam(n, along(p.z(), length_m));
+    const Eigen::Vector2d drive = w.value * direction.head<2>() - direction.z() * w.slope / length_m * p.head<2>();
+    return std::copysign(drive.norm(), w.value);
+  };
+}
+
+ModeShape stretching_shape(int n, double length_m, int axis) {
+  return [=](const Vector3d& p, const Vector3d& direction) {
+    return direction[axis] * sqrt2 * std::cos(n * pi * along(p[axis], length_m));
+  };
+}
+
+ModeShape torsion_shape(int n, double length_m, int axis, double gyration_m) {
+  return [=](const Vector3d& p, const Vector3d& direction) {
+    return p.cross(direction)[axis] / gyration_m * sqrt2 * std::cos(n * pi * along(p[axis], length_m));
+  };
+}
+
+ModeShape supported_plate_shape(int i, int k, double a_m, double b_m, const Patch& patch) {
+  return plate_shape([=](double x) { return supported_profile(i, x, a_m, patch.x); },
+                     [=](double y) { return supported_profile(k, y, b_m, patch.y); });
+}
+
+ModeShape free_plate_shape(int i, int k, double a_m, double b_m) {
+  return plate_shape([=](double x) { return free_profile(i, x, a_m); },
+                     [=](double y) { return free_profile(k, y, b_m); });
+}
+
+ModeShape free_disc_shape(int diameters, int circles, double radius_m) {
+  return [profile = DiscProfile(diameters, std::sqrt(free_disc_lambda2(diameters, circles))), radius_m](
+             const Vector3d& p, const Vector3d& n) {
+    const double r = p.head<2>().norm(), x = std::min(r / radius_m, 1.0);
+    const double outward = r > 1e-9 ? p.head<2>().dot(n.head<2>()) / r : 0;
+    return n.z() * profile.value(x) - p.z() * outward * profile.slope(x) / radius_m;
+  };
+}
+
+}  // namespace tactus::audio

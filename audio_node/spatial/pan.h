@@ -1,0 +1,23 @@
+// A source between two loudspeakers, by the direction that it comes from. Pure.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "audio_node/spatial/place.h"
+
+namespace tactus::audio {
+
+struct StereoGain {
+  float left, right;
+};
+
+// 1/r, and equal power by the azimuth.
+inline StereoGain pan(const Place& place) {
+  const float level = std::hypot(place.direction.x(), place.direction.y());
+  const float to_left = level > 1e-6f ? place.direction.y() / level : 0;  // sine of the azimuth
+  const float angle = (1 - to_left) * std::numbers::pi_v<float> / 4;
+  return {std::cos(angle) / place.distance_m, std::sin(angle) / place.distance_m};
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,36 @@
+#include "haptic_node/contact/direct.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "haptic_node/contact/rigid_proxy.h"
+
+namespace tactus::haptic {
+
+void press_directly(std::span<Surface> surfaces, const DevicePose& placed, const DevicePose& device,
+                    double lever_m, double tool_radius_m) {
+  const std::size_t n = std::min(surfaces.size(), kMaxHalfSpaces);
+  std::array<double, kMaxHalfSpaces> depth{};
+  std::array<Vector6, kMaxHalfSpaces> way;
+  for (std::size_t i = 0; i < n; ++i) {
+    Surface& s = surfaces[i];
+    const Eigen::Vector3d arm = device.orientation * s.tool_point;
+    depth[i] = std::max(
+        0.0, s.offset_m + s.normal.dot(placed.orientation * s.tool_point) - s.normal.dot(device.position + arm));
+    way[i] << s.normal, (arm - tool_radius_m * s.normal).cross(s.normal) / lever_m;
+    s.grip.setZero();
+    s.owed.setZero();
+    s.slips = true;
+  }
+  // d_i d_i / (sum over j of d_j |way_i way_j|): alone its own depth; as many equal ones share one depth; and one
+  // that begins to press begins with nothing, so no force jumps.
+  for (std::size_t i = 0; i < n; ++i) {
+    double with = 0;
+    for (std::size_t j = 0; j < n; ++j)
+      if (depth[j] > 0) with += depth[j] * std::abs(way[i].dot(way[j]));
+    surfaces[i].depth_m = depth[i] > 0 ? depth[i] * depth[i] / with : 0;
+  }
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,39 @@
+#include "haptic_node/contact/owed_begins.h"
+
+namespace tactus::haptic {
+namespace {
+
+presentation_t report_of(std::int64_t event_id, sync::HostTime scheduled, std::int64_t presented_ns,
+                         sync::Nanoseconds uncertainty) {
+  presentation_t r{};
+  r.event_id = event_id;
+  r.part = presentation_t::CONSTRAINT;
+  r.scheduled_ns = sync::to_ns(scheduled);
+  r.presented_ns = presented_ns;
+  r.uncertainty_ns = uncertainty.count();
+  r.outcome = presented_ns < 0 ? presentation_t::DROPPED_LATE : presentation_t::PRESENTED;
+  return r;
+}
+
+}  // namespace
+
+void OwedBegins::add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
+                     bool surface_known, std::vector<presentation_t>& reports) {
+  if (waiting_.size() < kMaxWaiting)
+    waiting_.push_back({event_id, contact_id, scheduled, now, surface_known});
+  else
+    reports.push_back(report_of(event_id, scheduled, -1, sync::Nanoseconds(0)));
+}
+
+void OwedBegins::step(sync::HostTime now, const ContactBook& book, sync::Nanoseconds uncertainty,
+                      std::vector<presentation_t>& reports) {
+  std::erase_if(waiting_, [&](const Waiting& w) {
+    const auto felt = book.first_felt(w.contact_id);
+    if (!felt && now - w.taken < kPatience) return false;
+    const std::int64_t presented = felt ? sync::to_ns(*felt) : w.surface_known ? sync::to_ns(w.taken) : -1;
+    reports.push_back(report_of(w.event_id, w.scheduled, presented, uncertainty));
+    return true;
+  });
+}
+
+}  // namespace tactus::haptic

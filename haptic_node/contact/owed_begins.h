@@ -1,0 +1,39 @@
+// The begin events whose constraint force is owed a report: when force on that contact was first felt, which may
+// be before the event was known.
+#pragma once
+
+#include <cstdint>
+#include <tactus/presentation_t.hpp>
+#include <vector>
+
+#include "haptic_node/contact/contact_book.h"
+#include "sync/time/time.h"
+
+namespace tactus::haptic {
+
+class OwedBegins {
+ public:
+  static constexpr std::size_t kMaxWaiting = 64;
+  // So long a contact may stay without force, a graze, before it is reported all the same.
+  static constexpr sync::Nanoseconds kPatience{100'000'000};
+
+  OwedBegins() { waiting_.reserve(kMaxWaiting); }
+
+  // surface_known: the touch model holds the surface of that contact, so the proxy already respects it.
+  void add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
+           bool surface_known, std::vector<presentation_t>& reports);
+  // Each begin gets exactly one report: PRESENTED at the first force; after the patience PRESENTED at the tick
+  // that took it, if its surface was known then, else DROPPED_LATE.
+  void step(sync::HostTime now, const ContactBook& book, sync::Nanoseconds uncertainty,
+            std::vector<presentation_t>& reports);
+
+ private:
+  struct Waiting {
+    std::int64_t event_id, contact_id;
+    sync::HostTime scheduled, taken;
+    bool surface_known;
+  };
+  std::vector<Waiting> waiting_;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,244 @@
+#include "haptic_node/contact/pose_programme.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+
+namespace tactus::haptic {
+namespace {
+
+// As for points (closest_point.cpp): far below what a hand resolves, far above rounding in a room.
+constexpr double kTolerance_m = 1e-9;
+// So much of a violation is left where only dependent sets are: 1 mN at 1 N/mm (design).
+constexpr double kNegligible_m = 1e-6;
+// A unit normal whose part outside the others' span is shorter counts as dependent.
+constexpr double kIndependent = 1e-6;
+
+// In coordinates around the goal, normals of length 1.
+struct Problem {
+  std::array<Vector6, kMaxHalfSpaces> normal;
+  std::array<double, kMaxHalfSpaces> deficit;
+  std::size_t size = 0;
+
+  std::size_t most_violated(const Vector6& x) const {
+    std::size_t worst = size;
+    double violation = kTolerance_m;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double by = deficit[i] - normal[i].dot(x);
+      if (by > violation) violation = by, worst = i;
+    }
+    return worst;
+  }
+};
+
+struct State {
+  Vector6 x = Vector6::Zero();
+  BindingSet set;
+  std::array<double, 6> u{};
+
+  void drop(std::size_t k) {
+    for (std::size_t j = k; j + 1 < set.size(); ++j) u[j] = u[j + 1];
+    set.drop(k);
+  }
+};
+
+// Takes half space p in, letting go what must be; false: it and those that bind have no pose in common.
+bool take_in(const Problem& problem, std::size_t p, State& s) {
+  double own = 0;  // its multiplier
+  for (int turn = 0; turn <= 6; ++turn) {
+    const Vector6& n = problem.normal[p];
+    const std::array<double, 6> r = s.set.coefficients(n);
+    const Vector6 z = s.set.free_part(n);
+    std::size_t blocking = s.set.size();
+    double dual = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < s.set.size(); ++k)
+      if (r[k] > 0 && s.u[k] / r[k] < dual) dual = s.u[k] / r[k], blocking = k;
+    const bool moves = s.set.size() < 6 && z.norm() > kIndependent;
+    const double primal =
+        moves ? (problem.deficit[p] - n.dot(s.x)) / z.squaredNorm() : std::numeric_limits<double>::infinity();
+    const double step = std::min(dual, primal);
+    if (step == std::numeric_limits<double>::infinity()) return false;
+    if (moves) s.x += step * z;
+    for (std::size_t k = 0; k < s.set.size(); ++k) s.u[k] = std::max(0.0, s.u[k] - step * r[k]);
+    own += step;
+    if (primal <= dual) {
+      const std::size_t at = s.set.size();
+      if (!s.set.add(p, n)) return false;
+      s.u[at] = own;
+      return true;
+    }
+    s.drop(blocking);
+  }
+  return false;
+}
+
+bool solve(const Problem& problem, State& s) {
+  // More than this many are a circle of rounding.
+  constexpr std::size_t kMostTurns = 3 * kMaxHalfSpaces;
+  for (std::size_t turn = 0; turn < kMostTurns; ++turn) {
+    const std::size_t worst = problem.most_violated(s.x);
+    if (worst == problem.size) return true;
+    if (!take_in(problem, worst, s)) break;
+  }
+  const std::size_t worst = problem.most_violated(s.x);
+  return worst == problem.size || problem.deficit[worst] - problem.normal[worst].dot(s.x) <= kNegligible_m;
+}
+
+// No common pose: every half space yields as a spring does (closest_point.cpp).
+Vector6 compromise(const Problem& problem) {
+  constexpr double kSoftness = 0.02;
+  constexpr int kTurns = 30, kHalvings = 20;
+  const auto value = [&](const Vector6& x) {
+    double sum = x.squaredNorm();
+    for (std::size_t i = 0; i < problem.size; ++i) {
+      const double by = std::max(0.0, problem.deficit[i] - problem.normal[i].dot(x));
+      sum += by * by / kSoftness;
+    }
+    return sum;
+  };
+  Vector6 x = Vector6::Zero();
+  double cost = value(x);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Eigen::Matrix<double, 6, 6> slope = kSoftness * Eigen::Matrix<double, 6, 6>::Identity();
+    Vector6 pull = Vector6::Zero();
+    for (std::size_t i = 0; i < problem.size; ++i) {
+      if (problem.normal[i].dot(x) >= problem.deficit[i]) continue;
+      slope += problem.normal[i] * problem.normal[i].transpose();
+      pull += problem.deficit[i] * problem.normal[i];
+    }
+    Vector6 step = slope.llt().solve(pull) - x;
+    if (step.norm() < kTolerance_m) break;
+    double next = value(x + step);
+    for (int k = 0; k < kHalvings && next > cost; ++k) {
+      step *= 0.5;
+      next = value(x + step);
+    }
+    if (next > cost) break;
+    x += step;
+    cost = next;
+  }
+  return x;
+}
+
+}  // namespace
+
+Vector6 BindingSet::free_part(const Vector6& v) const {
+  Vector6 z = v;
+  // Twice: rounding of the first pass is taken out by the second.
+  for (int pass = 0; pass < 2; ++pass)
+    for (std::size_t k = 0; k < size_; ++k) z -= basis_[k].dot(z) * basis_[k];
+  return z;
+}
+
+std::array<double, 6> BindingSet::coefficients(const Vector6& v) const {
+  std::array<double, 6> c{};
+  for (std::size_t k = size_; k-- > 0;) {
+    double sum = basis_[k].dot(v);
+    for (std::size_t j = k + 1; j < size_; ++j) sum -= triangle_[k][j] * c[j];
+    c[k] = sum / triangle_[k][k];
+  }
+  return c;
+}
+
+std::array<double, 6> BindingSet::shares(const std::array<double, 6>& rates) const {
+  Vector6 v = Vector6::Zero();  // the least motion that has these rates
+  std::array<double, 6> y{};
+  for (std::size_t k = 0; k < size_; ++k) {
+    y[k] = rates[k];
+    for (std::size_t j = 0; j < k; ++j) y[k] -= triangle_[j][k] * y[j];
+    y[k] /= triangle_[k][k];
+    v += y[k] * basis_[k];
+  }
+  return coefficients(v);
+}
+
+bool BindingSet::add(std::size_t index, const Vector6& normal) {
+  if (size_ >= 6) return false;
+  const Vector6 z = free_part(normal);
+  const double length = z.norm();
+  if (!(length > kIndependent * normal.norm())) return false;
+  for (std::size_t k = 0; k < size_; ++k) triangle_[k][size_] = basis_[k].dot(normal);
+  triangle_[size_][size_] = length;
+  basis_[size_] = z / length;
+  normal_[size_] = normal;
+  member_[size_] = index;
+  ++size_;
+  return true;
+}
+
+void BindingSet::drop(std::size_t k) {
+  const std::size_t old = size_;
+  size_ = k;
+  for (std::size_t j = k + 1; j < old; ++j) {
+    const Vector6 normal = normal_[j];
+    add(member_[j], normal);
+  }
+}
+
+bool spread(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
+            std::span<double> shares) {
+  constexpr int kTurns = 8;
+  constexpr double kRounding = 1e-11, kExact = 1e-6;
+  const std::size_t n = std::min({region.size(), weights.size(), shares.size(), kMaxHalfSpaces});
+  std::array<double, kMaxHalfSpaces> weight{}, found{};
+  std::copy_n(weights.begin(), n, weight.begin());
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+    for (std::size_t i = 0; i < n; ++i)
+      if (weight[i] > 0) gram += weight[i] * region[i].normal * region[i].normal.transpose();
+    const double size = gram.trace();
+    if (!(size > 0)) return false;
+    gram.diagonal().array() += kRounding * size;
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> solver(gram);
+    Vector6 lambda = solver.solve(sum);
+    double worst = 0;
+    std::size_t negative = n;
+    Vector6 rest = sum;
+    for (std::size_t i = 0; i < n; ++i) {
+      found[i] = weight[i] > 0 ? weight[i] * region[i].normal.dot(lambda) : 0;
+      rest -= found[i] * region[i].normal;
+      if (found[i] < worst) worst = found[i], negative = i;
+    }
+    if (negative < n) {
+      weight[negative] = 0;
+      continue;
+    }
+    if (!(rest.norm() <= kExact * sum.norm())) return false;
+    std::copy_n(found.begin(), n, shares.begin());
+    return true;
+  }
+  return false;
+}
+
+ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& goal) {
+  Problem p;
+  p.size = std::min(region.size(), kMaxHalfSpaces);
+  std::array<double, kMaxHalfSpaces> length;
+  for (std::size_t i = 0; i < p.size; ++i) {
+    length[i] = region[i].normal.norm();
+    p.normal[i] = region[i].normal / length[i];
+    p.deficit[i] = (region[i].offset - region[i].normal.dot(goal)) / length[i];
+  }
+  ClosestPose out;
+  State s;
+  if (!solve(p, s)) {
+    out.feasible = false;
+    out.pose = goal + compromise(p);
+    return out;
+  }
+  // What binds is known: once more from scratch, without the rounding of the way there.
+  std::array<double, 6> rates{};
+  for (std::size_t k = 0; k < s.set.size(); ++k) rates[k] = p.deficit[s.set.member(k)];
+  const std::array<double, 6> u = s.set.shares(rates);
+  out.pose = goal;
+  for (std::size_t k = 0; k < s.set.size(); ++k) {
+    const std::size_t i = s.set.member(k);
+    const double size = std::max(0.0, u[k]);
+    out.pose += size * p.normal[i];
+    out.multiplier[i] = size / length[i];
+    out.binding.add(i, region[i].normal);
+  }
+  return out;
+}
+
+}  // namespace tactus::haptic

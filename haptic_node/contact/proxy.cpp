@@ -1,0 +1,91 @@
+#include "haptic_node/contact/proxy.h"
+
+#include <algorithm>
+
+namespace tactus::haptic {
+namespace {
+
+// Longer than any arm: no coupling is stretched so far by a scene that makes sense.
+constexpr double kLongestStretch_m = 2;
+
+// v without its component along the normal force of all surfaces together. Not: without those along every normal
+// that binds. Of two facets that meet in a shallow groove that would take the friction across it at once, in the
+// tick in which the second joins, though its share of the force begins at zero.
+Eigen::Vector3d tangential(const Eigen::Vector3d& v, std::span<const Surface> surfaces) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const Surface& s : surfaces) normal += s.depth_m * s.normal;
+  const double square = normal.squaredNorm();
+  return square > 0 ? Eigen::Vector3d(v - normal * (v.dot(normal) / square)) : v;
+}
+
+// Widest shift that the cones of the binding surfaces allow, m.
+double cone_width(std::span<const Surface> surfaces, bool slipping) {
+  double width = 0;
+  for (const Surface& s : surfaces) width += s.depth_m * (slipping ? s.friction_dynamic : s.friction_static);
+  return width;
+}
+
+ClosestPoint solve(std::span<Surface> surfaces, const Eigen::Vector3d& goal) {
+  std::array<HalfSpace, kMaxHalfSpaces> region;
+  const std::size_t n = std::min(surfaces.size(), kMaxHalfSpaces);
+  for (std::size_t i = 0; i < n; ++i) region[i] = {surfaces[i].normal, surfaces[i].offset_m};
+  const ClosestPoint closest = closest_point({region.data(), n}, goal);
+  for (std::size_t i = 0; i < n; ++i) surfaces[i].depth_m = closest.multiplier[i];
+  return closest;
+}
+
+}  // namespace
+
+// Where the surfaces carry the place of the proxy within a tick: weighted by how hard each is pressed.
+Eigen::Vector3d Proxy::carried(std::span<const Surface> surfaces, double dt) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weight = 0;
+  for (const Surface& s : surfaces) {
+    sum += s.depth_m * s.velocity_at(position_);
+    weight += s.depth_m;
+  }
+  return weight > 0 ? Eigen::Vector3d(position_ + sum * (dt / weight)) : position_;
+}
+
+void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, double dt) {
+  const Eigen::Vector3d pull = carried(surfaces, dt) - device;
+  Eigen::Vector3d shift = touching_ ? tangential(pull, surfaces) : Eigen::Vector3d::Zero();
+  ClosestPoint closest = solve(surfaces, device + shift);
+  // The normal force and the width of the cone depend on the shift and it on them: a few rounds settle it.
+  constexpr int kRounds = 4, kNarrowings = 8;
+  constexpr double kSettled_m = 1e-9;
+  bool slips = slipping_;
+  for (int round = 0; round < kRounds && shift.norm() > 0; ++round) {
+    const Eigen::Vector3d wanted = tangential(pull, surfaces);
+    const double width = cone_width(surfaces, slipping_);
+    slips = wanted.norm() > width;
+    const double allowed = slips ? cone_width(surfaces, true) : wanted.norm();
+    const Eigen::Vector3d next = slips ? Eigen::Vector3d(wanted * (allowed / wanted.norm())) : wanted;
+    const bool settled = (next - shift).norm() < kSettled_m;
+    if (settled) break;
+    shift = next;
+    closest = solve(surfaces, device + shift);
+  }
+  // Where they have not settled it may be wider than the cone that it has led to; without a shift it never is.
+  for (int k = 0; k <= kNarrowings && shift.norm() > cone_width(surfaces, slipping_) + kSettled_m; ++k) {
+    slips = true;
+    shift *= k < kNarrowings ? cone_width(surfaces, true) / shift.norm() : 0.0;
+    closest = solve(surfaces, device + shift);
+  }
+  slipping_ = slips && shift.norm() > 0;
+  if (!closest.feasible) {
+    shift.setZero();
+    closest = solve(surfaces, device);
+  }
+  feasible_ = closest.feasible;
+  touching_ = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.depth_m > 0; });
+  if (!touching_) slipping_ = false;
+  // Garbage in, for example two nearly parallel planes far away, must not send the tool out of the world.
+  const Eigen::Vector3d stretch = closest.point - device;
+  if (stretch.norm() > kLongestStretch_m) closest.point = device + stretch * (kLongestStretch_m / stretch.norm());
+  velocity_ = dt > 0 ? Eigen::Vector3d((closest.point - position_) / dt) : Eigen::Vector3d::Zero();
+  position_ = closest.point;
+  shift_ = shift;
+}
+
+}  // namespace tactus::haptic

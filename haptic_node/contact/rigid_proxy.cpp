@@ -1,0 +1,218 @@
+#include "haptic_node/contact/rigid_proxy.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "haptic_node/contact/direct.h"
+#include "haptic_node/contact/turns.h"
+
+namespace tactus::haptic {
+namespace {
+
+// Rounds in which the linear condition follows the turn, and friction the pressure: each squares what is left of
+// the turn's error, and what friction has not reached is owed to the next tick.
+constexpr int kRounds = 4;
+constexpr int kSweeps = 6;
+constexpr double kSettled_m = 1e-9;
+// A point this near to its surface may carry too, m: the four feet of a table do, of which three are enough. The
+// less the further, so that a share comes and goes with no step. Design: a fiftieth of the thickness of a hair.
+constexpr double kCarries_m = 1e-6;
+// What a contact that holds may owe, m: beyond, it has been carried off and holds where it is (design).
+constexpr double kMostOwed_m = 0.001;
+
+Vector6 reach(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm, double lever_m) {
+  Vector6 v;
+  v << direction, arm.cross(direction) / lever_m;
+  return v;
+}
+
+Eigen::Vector3d flat(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+  return v - v.dot(normal) * normal;
+}
+
+}  // namespace
+
+struct RigidProxy::Rows {
+  std::array<PoseHalfSpace, kMaxHalfSpaces> region;
+  std::array<Eigen::Vector3d, kMaxHalfSpaces> arm;  // where friction acts
+  std::size_t size = 0;
+};
+
+void RigidProxy::reset(const DevicePose& at) {
+  pose_ = at;
+  velocity_.setZero();
+  spin_.setZero();
+  moved_m_ = 0;
+  binding_.clear();
+  feasible_ = true;
+}
+
+// About where the proxy is now. start: as it was turned when the surfaces were placed.
+void RigidProxy::linearise(std::span<const Surface> surfaces, const DevicePose& start, Rows& rows) const {
+  rows.size = std::min(surfaces.size(), kMaxHalfSpaces);
+  for (std::size_t i = 0; i < rows.size; ++i) {
+    const Surface& s = surfaces[i];
+    rows.arm[i] = arm(s);
+    rows.region[i].normal = reach(s.normal, rows.arm[i], lever_m_);
+    rows.region[i].offset = s.offset_m + s.normal.dot(start.orientation * s.tool_point) -
+                            s.normal.dot(pose_.position + pose_.orientation * s.tool_point);
+  }
+}
+
+// Sets depths: the pressure, which is one sum, spread over all that carry; and which bind, of which there may be
+// more than the programme needed.
+void RigidProxy::press(std::span<Surface> surfaces, const Rows& rows, const Vector6& goal, ClosestPose& closest) {
+  const std::span region(rows.region.data(), rows.size);
+  std::array<double, kMaxHalfSpaces> weights{};
+  std::size_t carry = 0;
+  for (std::size_t i = 0; i < rows.size && closest.feasible; ++i) {
+    const double height = rows.region[i].normal.dot(closest.pose) - rows.region[i].offset;
+    const double share = std::clamp(1 - height / kCarries_m, 0.0, 1.0);
+    weights[i] = share * share;
+    carry += weights[i] > 0;
+  }
+  if (carry > closest.binding.size() || carry > 1)
+    if (spread(region, weights, closest.pose - goal, closest.multiplier)) {
+      closest.binding = {};
+      for (std::size_t i = 0; i < rows.size; ++i)
+        if (closest.multiplier[i] > 0) closest.binding.add(i, region[i].normal);
+    }
+  for (std::size_t i = 0; i < rows.size; ++i) surfaces[i].depth_m = closest.multiplier[i];
+}
+
+// As depths are shared in direct rendering: contacts that press the same way share, so that together they damp as one;
+// one that begins to press begins with nothing. Not by the binding set: of contacts that are nearly dependent that would
+// make large rates of both signs, and a surface does not pull.
+void RigidProxy::depth_rates(std::span<const Surface> surfaces, const Eigen::Vector3d& velocity,
+                             const Eigen::Vector3d& spin, std::span<double> rates) const {
+  std::array<Vector6, kMaxHalfSpaces> way;
+  const std::size_t n = std::min({surfaces.size(), rates.size(), kMaxHalfSpaces});
+  for (std::size_t i = 0; i < n; ++i)
+    if (surfaces[i].depth_m > 0) way[i] = reach(surfaces[i].normal, arm(surfaces[i]), lever_m_);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Surface& s = surfaces[i];
+    rates[i] = 0;
+    if (s.depth_m <= 0) continue;
+    double with = 0;
+    for (std::size_t j = 0; j < n; ++j)
+      if (surfaces[j].depth_m > 0) with += surfaces[j].depth_m * std::abs(way[i].dot(way[j]));
+    rates[i] = s.depth_m / with * (s.velocity_at(s.point) - velocity - spin.cross(arm(s))).dot(s.normal);
+  }
+}
+
+// Friction of each contact that is pressed, towards where it held, as far as its cone is wide: contact by contact,
+// each seeing what the others did and what the binding surfaces leave free (Gauss and Seidel).
+void RigidProxy::hold(std::span<Surface> surfaces, const DevicePose& start, const Rows& rows,
+                      const ClosestPose& closest, double dt) {
+  Vector6 motion = closest.pose;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    double changed = 0;
+    for (std::size_t i = 0; i < rows.size; ++i) {
+      Surface& s = surfaces[i];
+      if (s.depth_m <= 0) {
+        s.grip.setZero();
+        s.slips = false;
+        continue;
+      }
+      const Eigen::Vector3d u = s.normal.unitOrthogonal(), v = s.normal.cross(u);
+      const Vector6 along_u = reach(u, rows.arm[i], lever_m_), along_v = reach(v, rows.arm[i], lever_m_);
+      const Vector6 free_u = closest.binding.free_part(along_u), free_v = closest.binding.free_part(along_v);
+      // Where the point of the tool is now, against where it was and its surface has gone since.
+      const Eigen::Vector3d on_tool = pose_.orientation * s.tool_point - start.orientation * s.tool_point;
+      const Eigen::Vector3d base = pose_.position - start.position + on_tool + s.owed -
+                                   dt * s.velocity_at(start.position + start.orientation * s.tool_point);
+      const Eigen::Vector2d slid(base.dot(u) + along_u.dot(motion), base.dot(v) + along_v.dot(motion));
+      Eigen::Matrix2d answer;
+      answer << along_u.dot(free_u), along_u.dot(free_v), along_v.dot(free_u), along_v.dot(free_v);
+      // Where other contacts leave this one no way it has nothing to hold.
+      constexpr double kStiff = 1e-3;
+      answer.diagonal().array() += kStiff;
+      const Eigen::Vector2d had(s.grip.dot(u), s.grip.dot(v));
+      Eigen::Vector2d wanted = had - answer.inverse() * slid;
+      const double widest = s.depth_m * (s.slips ? s.friction_dynamic : s.friction_static);
+      s.slips = wanted.norm() > widest;
+      if (s.slips) wanted *= s.depth_m * s.friction_dynamic / wanted.norm();
+      const Eigen::Vector2d by = wanted - had;
+      s.grip = wanted.x() * u + wanted.y() * v;
+      motion += by.x() * free_u + by.y() * free_v;
+      changed = std::max(changed, by.norm());
+    }
+    if (changed < kSettled_m) break;
+  }
+}
+
+// Carries out a motion as far as it may go; returns how far a point of the tool is from where it began, at most,
+// m.
+double RigidProxy::move(const DevicePose& start, const Vector6& motion, double may_move_m) {
+  const DevicePose from = pose_;
+  const auto moved_by = [&](double share) {
+    pose_.position = from.position + share * motion.head<3>();
+    pose_.orientation = turned_by(share / lever_m_ * motion.tail<3>(), from.orientation);
+    return (pose_.position - start.position).norm() +
+           bound_m_ * turn_between(start.orientation, pose_.orientation).norm();
+  };
+  double moved = moved_by(1);
+  constexpr int kHalvings = 12;
+  double low = 0, high = 1;
+  if (moved <= may_move_m) return moved;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (moved_by(middle) <= may_move_m ? low : high) = middle;
+  }
+  return moved_by(low);
+}
+
+void RigidProxy::step(std::span<Surface> surfaces, const DevicePose& device, double dt, double may_move_m) {
+  const DevicePose start = pose_;
+  Rows rows;
+  ClosestPose closest;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) surfaces[i].grip = flat(surfaces[i].grip, surfaces[i].normal);
+  for (int round = 0; round < kRounds; ++round) {
+    linearise(surfaces, start, rows);
+    Vector6 goal;
+    goal << device.position - pose_.position, lever_m_ * turn_between(pose_.orientation, device.orientation);
+    const auto solve = [&] {
+      Vector6 held = goal;
+      for (std::size_t i = 0; i < rows.size; ++i)
+        if (!surfaces[i].grip.isZero(0)) held += reach(surfaces[i].grip, rows.arm[i], lever_m_);
+      closest = closest_pose({rows.region.data(), rows.size}, held);
+      press(surfaces, rows, held, closest);
+    };
+    solve();
+    if (!closest.feasible) break;
+    hold(surfaces, start, rows, closest, dt);
+    solve();
+    if (!closest.feasible) break;
+    moved_m_ = move(start, closest.pose, may_move_m);
+    if (closest.pose.norm() < kSettled_m || moved_m_ >= 0.999 * may_move_m) break;
+  }
+  feasible_ = closest.feasible;
+  binding_ = closest.binding;
+  if (!feasible_) {
+    // Between walls that leave no room each yields, and the hand feels how deep it is itself under each.
+    moved_m_ = move(start, closest.pose, may_move_m);
+    const DevicePose here = pose_;
+    press_directly(surfaces, start, device, lever_m_, tool_radius_m_);
+    pose_ = here;
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    Surface& s = surfaces[i];
+    const bool holds = feasible_ && s.depth_m > 0 && !s.slips;
+    if (!holds) {
+      s.owed.setZero();
+      if (s.depth_m <= 0 || !feasible_) s.grip.setZero();
+      continue;
+    }
+    const Eigen::Vector3d before = start.position + start.orientation * s.tool_point;
+    s.owed += pose_.position + pose_.orientation * s.tool_point - before - dt * s.velocity_at(before);
+    s.owed = flat(s.owed, s.normal);
+    if (s.owed.norm() > kMostOwed_m) s.owed.setZero();
+  }
+  velocity_ = dt > 0 ? Eigen::Vector3d((pose_.position - start.position) / dt) : Eigen::Vector3d::Zero();
+  spin_ =
+      dt > 0 ? Eigen::Vector3d(turn_between(start.orientation, pose_.orientation) / dt) : Eigen::Vector3d::Zero();
+}
+
+}  // namespace tactus::haptic

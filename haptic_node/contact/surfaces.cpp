@@ -1,0 +1,197 @@
+#include "haptic_node/contact/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::haptic {
+namespace {
+
+Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
+  const double norm = v.norm();
+  return norm > limit ? Eigen::Vector3d(v * (limit / norm)) : v;
+}
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a == b ? 0.0 : std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// Whether the angle between them is surely no larger, by the chord: its square is 2 - 2 cos x >= x^2 - x^4 / 12.
+// Nearly all surfaces turn so little, and need no arc tangent.
+bool within(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_rad) {
+  const double square = angle_rad * angle_rad;
+  return (a - b).squaredNorm() <= square - square * square / 12;
+}
+
+// `from` turned towards `to` by at most so much.
+Eigen::Vector3d turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at_most_rad) {
+  if (within(from, to, at_most_rad) || angle_between(from, to) <= at_most_rad) return to;
+  Eigen::Vector3d axis = from.cross(to);
+  if (axis.norm() < 1e-9) axis = from.unitOrthogonal();  // opposite: any way round is as short
+  return (Eigen::AngleAxisd(at_most_rad, axis.normalized()) * from).normalized();
+}
+
+// The border lets no other in; should one come by another way, it is left out.
+bool makes_sense(const touch_plane_t& p) {
+  const double square = to_eigen(p.normal).squaredNorm();
+  return square > 0 && std::isfinite(square) && to_eigen(p.point_m).allFinite() &&
+         to_eigen(p.velocity_m_s).allFinite() && to_eigen(p.angular_velocity_rad_s).allFinite() &&
+         p.effective_mass_kg > 0 && std::isfinite(p.stiffness_N_m) && std::isfinite(p.damping_N_s_m) &&
+         std::isfinite(p.friction_static) && std::isfinite(p.friction_dynamic);
+}
+
+// Faster than a body can seem to turn to a hand: one radian in 10 ms.
+constexpr double kLargestSpin_rad_s = 100;
+
+}  // namespace
+
+const Surface* Surfaces::find(std::int64_t contact_id, std::size_t expected) const {
+  const std::size_t n = list_.size();
+  for (std::size_t k = 0, i = expected < n ? expected : 0; k < n; ++k, i = i + 1 < n ? i + 1 : 0)
+    if (list_[i].contact_id == contact_id) return &list_[i];
+  return nullptr;
+}
+
+Surfaces::Told Surfaces::predict(const Surface& s) const {
+  if (!now_) return {s.told_point_, s.told_normal_, Eigen::Quaterniond::Identity()};
+  const double age = std::clamp(sync::to_seconds(*now_ - s.at_), 0.0, limits_.extrapolate_at_most_s);
+  const double spin = s.angular_velocity.norm();
+  Told told{s.told_point_ + age * s.velocity, s.told_normal_, Eigen::Quaterniond::Identity()};
+  if (spin == 0 || age == 0) return told;
+  // Rodrigues' formula; the whole turn only for who wears a map.
+  const Eigen::Vector3d axis = s.angular_velocity / spin, across = axis.cross(told.normal);
+  const double sine = std::sin(spin * age), cosine = std::cos(spin * age);
+  told.normal = (told.normal + sine * across + (1 - cosine) * axis.cross(across)).normalized();
+  if (s.mapped.material >= 0) told.turned = Eigen::AngleAxisd(spin * age, axis);
+  return told;
+}
+
+double Surfaces::true_height(const Told& told, const Eigen::Vector3d& place) const {
+  return told.normal.dot(place - told.point) - radius_m_;
+}
+
+void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy,
+                    std::size_t expected) {
+  Surface* const known = const_cast<Surface*>(find(plane.contact_id, expected));
+  const bool is_new = known == nullptr;
+  Surface& s = is_new ? list_.emplace_back() : *known;
+  // Where the proxy is above the plane as rendered so far, had it only moved as predicted.
+  const double rendered = is_new ? 0 : true_height(predict(s), place_of(s.tool_point, proxy)) + s.lag_m_;
+  s.contact_id = plane.contact_id;
+  s.body = plane.body;
+  s.effective_mass_kg = plane.effective_mass_kg;
+  s.stiffness_N_m = plane.stiffness_N_m;
+  s.damping_N_s_m = plane.damping_N_s_m;
+  s.friction_static = plane.friction_static;
+  s.friction_dynamic = std::min(plane.friction_dynamic, plane.friction_static);
+  s.velocity = clamped(to_eigen(plane.velocity_m_s), limits_.surface_speed_limit_m_s);
+  s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kLargestSpin_rad_s);
+  s.tool_point = to_eigen(plane.tool_point_m);
+  s.told_point_ = to_eigen(plane.point_m);
+  s.told_normal_ = to_eigen(plane.normal).normalized();
+  s.mapped.take(plane, s.told_normal_);
+  s.at_ = at;
+  s.leaves_in_s_ = -1;
+  s.taken_ = true;
+  const Told told = predict(s);
+  if (is_new) s.normal = told.normal;
+  // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
+  const double height = true_height(told, place_of(s.tool_point, proxy));
+  // What yields already goes on yielding, also in front of the hand, between walls that leave it no room.
+  const double pushes = std::max(0.0, -height);
+  s.lag_m_ = s.depth_m > 0 ? rendered - height : is_new ? pushes : std::clamp(rendered - height, 0.0, pushes);
+  s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
+  if (s.depth_m <= 0) s.normal = told.normal;
+  s.turn_rad_s_ = limits_.recovery_turn_rad_s;
+  if (!within(s.normal, told.normal, limits_.recovery_turn_rad_s * limits_.recovery_time_s))
+    s.turn_rad_s_ = std::max(s.turn_rad_s_, angle_between(s.normal, told.normal) / limits_.recovery_time_s);
+}
+
+void Surfaces::leave(Surface& s) {
+  if (s.leaves_in_s_ < 0) s.leaves_in_s_ = limits_.recovery_time_s;
+}
+
+std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
+                                                    std::size_t at_most) const {
+  const std::size_t offered = std::min(model.planes.size(), kMaxOffered);
+  std::bitset<kMaxOffered> chosen;
+  if (offered <= std::min(at_most, kMaxPresent)) {  // as nearly always: no choice
+    for (std::size_t i = 0; i < offered; ++i) chosen.set(i);
+    return chosen;
+  }
+  // One that is pressed goes before all others, so that where too many press none takes turns.
+  struct Rank {
+    bool free;
+    double height_m;  // of the device under a surface that is pressed, else of the proxy over it
+    std::size_t index;
+    auto operator<=>(const Rank&) const = default;
+  };
+  std::array<Rank, kMaxOffered> ranks;
+  for (std::size_t i = 0; i < offered; ++i) {
+    const touch_plane_t& p = model.planes[i];
+    const Surface* known = find(p.contact_id, i);
+    const bool pressed = known && known->depth_m > 0;
+    ranks[i] = {!pressed,
+                pressed ? -known->depth_m
+                        : true_height({to_eigen(p.point_m), to_eigen(p.normal).normalized()},
+                                      place_of(to_eigen(p.tool_point_m), proxy)),
+                i};
+  }
+  const std::size_t count = std::min({offered, at_most, kMaxPresent});
+  std::partial_sort(ranks.begin(), ranks.begin() + count, ranks.begin() + offered);
+  for (std::size_t i = 0; i < count; ++i) chosen.set(ranks[i].index);
+  return chosen;
+}
+
+void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
+  const auto chosen = choose(model, proxy, at_most);
+  for (Surface& s : list_) s.taken_ = false;
+  // The list is in the order of the planes where no message changed it: each is looked for at its own place first.
+  for (std::size_t i = 0; i < kMaxOffered; ++i)
+    if (chosen[i] && makes_sense(model.planes[i]))
+      take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy, i);
+  for (Surface& s : list_)
+    if (!s.taken_) leave(s);
+}
+
+void Surfaces::forget_the_gone() {
+  std::erase_if(list_,
+                [](const Surface& s) { return s.leaves_in_s_ == 0 || (s.leaves_in_s_ > 0 && s.depth_m <= 0); });
+  // Those that leave have the last places; the one nearest its end goes first. Nearly always they have them.
+  // By insertion: std::stable_sort would ask for memory, and the list is nearly in order.
+  const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
+  const auto before = [&](const Surface& x, const Surface& y) { return rank(x) > rank(y); };
+  if (!std::is_sorted(list_.begin(), list_.end(), before))
+    for (auto next = list_.begin(); next != list_.end(); ++next)
+      std::rotate(std::upper_bound(list_.begin(), next, *next, before), next, next + 1);
+  if (list_.size() > kMaxHalfSpaces) list_.erase(list_.begin() + kMaxHalfSpaces, list_.end());
+}
+
+void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
+  const Told told = predict(s);
+  if (s.leaves_in_s_ > 0) {
+    // Draws back so that the depth is gone when the time is.
+    s.lag_m_ += s.depth_m * std::min(1.0, dt / s.leaves_in_s_);
+    s.leaves_in_s_ = std::max(0.0, s.leaves_in_s_ - dt);
+  } else {
+    const double step = s.lag_speed_m_s_ * dt;
+    s.lag_m_ = s.lag_m_ > 0 ? std::max(0.0, s.lag_m_ - step) : std::min(0.0, s.lag_m_ + step);
+  }
+  s.normal = turned(s.normal, told.normal, s.turn_rad_s_ * dt);
+  // While it turns it pivots about the place under the proxy, whose height is what it should be.
+  s.offset_m = s.normal.dot(proxy) - (true_height(told, place_of(s.tool_point, proxy)) + s.lag_m_);
+  s.point = told.point;
+  if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());
+}
+
+void Surfaces::step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
+                    double dt, std::size_t at_most) {
+  now_ = now;
+  forget_the_gone();
+  if (fresh) take(*fresh, proxy, at_most);
+  forget_the_gone();
+  for (Surface& s : list_) render(s, proxy, dt);
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,31 @@
+#include "haptic_node/contact/touch_input.h"
+
+namespace tactus::haptic {
+
+void TouchInput::push(const touch_model_t& page, sync::HostTime arrival) {
+  if (page.tool != tool_) return;
+  const sync::Follow verdict = simulation_.follow(page.header, page.clock, arrival);
+  if (verdict == sync::Follow::kIgnore) return;
+  if (verdict == sync::Follow::kRestart) {
+    pages_.clear();
+    began_anew_ = true;
+  }
+  const std::int64_t latest_ns = sync::to_ns(simulation_.latest_credible());
+  if (page.header.sim_time_ns > latest_ns) return;
+  // A false first one may lie so far ahead that nothing would ever replace it.
+  const bool overtaken =
+      newest_ && page.header.sim_time_ns < newest_->header.sim_time_ns && newest_->header.sim_time_ns <= latest_ns;
+  if (!began_anew_ && overtaken) return;
+  const touch_model_t* whole = pages_.add(page);
+  if (!whole) {
+    if (!unfinished_since_ && !pages_.repeated()) unfinished_since_ = arrival;
+    return;
+  }
+  newest_ = *whole;
+  arrival_ = arrival;
+  unfinished_since_.reset();
+  fresh_ = true;
+  began_anew_ = false;
+}
+
+}  // namespace tactus::haptic

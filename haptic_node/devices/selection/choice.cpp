@@ -1,0 +1,29 @@
+#include "haptic_node/devices/selection/choice.h"
+
+#include <sstream>
+
+namespace tactus::haptic {
+
+Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+  Choice c;
+  c.refused = sync::apply_settings(c.settings, setting_fields(), "haptic_node", scene.settings, set);
+  for (std::size_t i = 0; i < scene.tools.size() && c.tool < 0; ++i)
+    if (tool_name.empty() || scene.tools[i].name == tool_name) c.tool = static_cast<int>(i);
+  if (c.tool < 0)
+    c.problem = tool_name.empty() ? "the scene has no tool; add a <tactus:tool> to be touched by"
+                                  : "the scene has no tool \"" + tool_name + "\"; give --tool another name";
+  return c;
+}
+
+std::string limits_sentence(const Settings& s) {
+  std::ostringstream out;
+  out << "force at most " << s.force_limit_N << " N, changing by at most " << s.slew_limit_N_s / 1000
+      << " N/ms, torque at most " << s.torque_limit_Nm << " N m, changing by at most "
+      << s.torque_slew_limit_Nm_s / 1000 << " N m/ms, giving the hand at most " << s.energy_limit_J
+      << " J at once and " << s.power_limit_W << " W lastingly, within " << s.workspace_m
+      << " m of where the device began; zero within "
+      << (s.stale_after_s + s.fade_s) * 1000 << " ms without a touch model";
+  return out.str();
+}
+
+}  // namespace tactus::haptic

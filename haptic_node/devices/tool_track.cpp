@@ -1,0 +1,70 @@
+#include "haptic_node/devices/tool_track.h"
+
+#include <tactus/touch_model_t.hpp>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/vectors.h"
+#include "sync/bus/decode.h"
+
+namespace tactus::haptic {
+namespace {
+
+DeviceState device_of(const tool_state_t& m) {
+  DeviceState d;
+  d.position = to_eigen(m.device.position_m);
+  d.orientation = to_eigen(m.device.orientation).normalized();
+  d.velocity = to_eigen(m.device_velocity_m_s);
+  d.spin = to_eigen(m.device_spin_rad_s);
+  d.buttons = m.buttons;
+  return d;
+}
+
+}  // namespace
+
+void ToolTrack::follow(int tool) {
+  tool_ = tool;
+  events_.emplace(feed_.from_begin());
+  simulation_ = sync::SimFollower(own());
+  incarnation_ = 0;
+}
+
+std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
+  sync::LogEvent e;
+  for (sync::HostTime arrival{}; events_ && events_->next(e, arrival);) {
+    if (e.channel == channels::kTouchModel) {
+      const auto m = sync::decode<touch_model_t>(e.data.data(), e.data.size());
+      if (m && m->tool == tool_) simulation_.follow(m->header, m->clock, arrival);
+    }
+    if (e.channel != channels::kToolState) continue;
+    const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());
+    if (!m || m->tool != tool_) continue;
+    if (const auto tick = tick_of(*m, arrival); tick && tick->at > after) return tick;
+  }
+  return std::nullopt;
+}
+
+std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::HostTime arrival) {
+  RecordedTick tick;
+  tick.published_ns = m.header.publish_time_ns;
+  tick.seq = m.header.seq;
+  tick.at = m.header.clock == feed_.clock() ? began(m.header) : arrival;
+  if (tick.at < arrival - kMostUnderWay || tick.at > arrival + kMostUnderWay) return std::nullopt;
+  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
+    return std::nullopt;
+  incarnation_ = m.header.incarnation;
+  heard_ = arrival;
+  tick.device = device_of(m);
+  return tick;
+}
+
+// A tick says at its end which instant of the world it is of: that of its beginning, by the clock of the touch
+// models. What arrived in between was not felt in it.
+sync::HostTime ToolTrack::began(const header_t& header) const {
+  const sync::HostTime told = sync::host_time(header.publish_time_ns);
+  const auto map = simulation_.map(told);
+  if (!map || header.sim_time_ns <= 0) return told;
+  const sync::HostTime at = map->to_host(sync::sim_time(header.sim_time_ns));
+  return at <= told && told - at <= kLongestTick ? at : told;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,101 @@
+#include "haptic_node/rendering/coupling.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace tactus::haptic {
+namespace {
+
+constexpr double kFixed_kg = 1e9;
+// Of K tau, which is what a delay takes from the damping of slow motion: half as much again is left for the
+// faster.
+constexpr double kLead = 1.5;
+// The damper itself is late: B tau / m stays so many times below the bound on K tau^2 / m.
+constexpr double kMostLead = 3;
+// Delays up to here are those of a bus that is not disturbed, for which the other rules suffice. Design: a step, a
+// tick and a touch model one or two milliseconds old.
+constexpr double kUndisturbed_s = 0.004;
+// From here on the delay is a large part of a period of what a hand presses on (10 Hz), and more of the coupling
+// is given up for it. Design.
+constexpr double kLate_s = 0.1;
+// The damper grows with the depth up to here: 0.1 N a tick at 0.1 m/s, 5 N s/m and 1 kHz. Design.
+constexpr double kSoftDepth_m = 0.0005;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m, double body_mass_kg,
+                     double loop_delay_s, double period_s, const CouplingLimits& limits) {
+  const bool fixed = body_mass_kg >= kFixed_kg;
+  const double rho = fixed ? 1 : body_mass_kg / (body_mass_kg + limits.device_mass_kg);
+  const double reduced_kg = rho * limits.device_mass_kg;
+  const double b = limits.device_damping_N_s_m, most_damping = b / 2;
+  const double of_device = b * rho * rho;
+
+  Gains g;
+  g.stiffness_N_m =
+      std::min({surface_stiffness_N_m, limits.stiffness_limit_N_m, 2 * (b - most_damping) / period_s});
+  // A light body with much damping would be dragged faster than the loop can tell.
+  double most = most_damping;
+  if (!fixed) {
+    most = std::min(most, kMostLead * limits.mass_factor * body_mass_kg / loop_delay_s);
+    g.stiffness_N_m =
+        std::min(g.stiffness_N_m, limits.mass_factor * body_mass_kg /
+                                      (squared(loop_delay_s) * (1 + squared(loop_delay_s / kLate_s))));
+    const double disturbed_s = loop_delay_s - kUndisturbed_s;
+    if (disturbed_s > 0) g.stiffness_N_m = std::min(g.stiffness_N_m, most / (2 * kLead * disturbed_s));
+  }
+  const double critical = (most_damping + of_device) / (2 * limits.damping_ratio);
+  g.stiffness_N_m = std::min(g.stiffness_N_m, critical * critical / reduced_kg);
+  const double needed = 2 * limits.damping_ratio * std::sqrt(g.stiffness_N_m * reduced_kg) - of_device;
+  most = std::max(most, std::min(most_damping, needed));
+  const double lead = fixed ? 0.0 : kLead * g.stiffness_N_m * loop_delay_s;
+  g.damping_N_s_m = std::clamp(std::max({needed, lead, surface_damping_N_s_m}), 0.0, most);
+  return g;
+}
+
+void LoopDelay::pass(double age_s, double dt) {
+  peak_s_ *= std::exp(-dt / kForget_s);
+  const double counted_s = std::clamp(age_s, 0.0, std::min(kLongest_s, 2 * mean_s_ + kShortGap_s));
+  mean_s_ += (1 - std::exp(-dt / kMean_s)) * (counted_s - mean_s_);
+  held_s_ = std::max(mean_s_, held_s_ * std::exp(-dt / kHold_s));
+}
+
+void LoopDelay::relieve(double by_s) {
+  for (double* s : {&peak_s_, &mean_s_, &held_s_}) *s = std::max(0.0, *s - by_s);
+}
+
+Gains felt_gains(const Surface& s, double factor, double pressed_m) {
+  // The damping ratio stays as it is when the stiffness is lowered.
+  const double share = s.moves() ? factor : 1;
+  return {share * s.coupling_stiffness_N_m,
+          std::sqrt(share) * std::min(1.0, pressed_m / kSoftDepth_m) * s.coupling_damping_N_s_m};
+}
+
+void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& shift_m,
+                     const Eigen::Vector3d& device_velocity, bool slipping, std::span<Eigen::Vector3d> forces,
+                     double factor) {
+  double cone_m = 0;
+  const auto friction = [&](const Surface& s) { return slipping ? s.friction_dynamic : s.friction_static; };
+  for (const Surface& s : surfaces) cone_m += s.depth_m * friction(s);
+  for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
+    const Surface& s = surfaces[i];
+    const auto [K, B] = felt_gains(s, factor, s.depth_m);
+    forces[i].setZero();
+    if (s.depth_m <= 0) continue;
+    const Eigen::Vector3d relative = device_velocity - s.velocity_at(s.point);
+    const double normal_speed = relative.dot(s.normal);
+    const double normal_force = std::max(0.0, K * s.depth_m - B * normal_speed);
+    forces[i] = normal_force * s.normal;
+    if (cone_m <= 0) continue;
+    const double share = s.depth_m * friction(s) / cone_m;
+    Eigen::Vector3d tangential = share * K * shift_m;
+    if (!slipping) tangential -= share * B * (relative - normal_speed * s.normal);
+    const double most = friction(s) * normal_force, size = tangential.norm();
+    if (size > most) tangential *= most / size;
+    forces[i] += tangential;
+  }
+}
+
+}  // namespace tactus::haptic

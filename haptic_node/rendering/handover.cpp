@@ -1,0 +1,46 @@
+#include "haptic_node/rendering/handover.h"
+
+#include <algorithm>
+
+namespace tactus::haptic {
+
+// Whether others bind than in the last tick; notes those that do.
+bool Handover::changed(std::span<const Surface> surfaces) {
+  std::size_t bound = 0;
+  bool same = true;
+  for (const Surface& s : surfaces) {
+    if (s.depth_m <= 0) continue;
+    same = same && std::find(last_set_.begin(), last_set_.end(), s.contact_id) != last_set_.end();
+    ++bound;
+  }
+  same = same && bound == last_set_.size();
+  last_set_.clear();
+  for (const Surface& s : surfaces)
+    if (s.depth_m > 0 && last_set_.size() < kMaxHalfSpaces) last_set_.push_back(s.contact_id);
+  return !same;
+}
+
+Eigen::Vector3d Handover::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
+  const bool was_pressed = !last_set_.empty() && !last_.isZero(0);
+  const bool other = changed(surfaces) || renewed_;
+  renewed_ = false;
+  if (last_set_.empty() || !was_pressed || force_N.isZero(0)) {
+    remainder_.setZero();
+  } else {
+    const double gone = left_s_ > dt ? dt / left_s_ : 1;
+    remainder_ -= gone * remainder_;
+    left_s_ = std::max(0.0, left_s_ - dt);
+    if (other) {
+      const Eigen::Vector3d jump = force_N + remainder_ - last_;
+      const double size = jump.norm(), at_once = step_N_s_ * dt;
+      if (size > at_once) {
+        remainder_ -= jump * (1 - at_once / size);
+        left_s_ = time_s_;
+      }
+    }
+  }
+  last_ = force_N + remainder_;
+  return last_;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,150 @@
+#include "haptic_node/rendering/rendering.h"
+
+#include "haptic_node/rendering/coupling.h"
+#include "haptic_node/contact/direct.h"
+#include "haptic_node/rendering/rigid_coupling.h"
+#include "haptic_node/contact/turns.h"
+
+namespace tactus::haptic {
+namespace {
+
+// As tool_touch.h of the simulation: it looks no further around a tool that says it is faster. Design: faster than
+// a hand that feels (a reach is 1 to 2 m/s).
+constexpr double kFastestHand_m_s = 5;
+
+Rendering::Kind kind_of(const std::string& name, bool shaped) {
+  if (name == "direct") return Rendering::Kind::kDirect;
+  if (name == "proxy") return Rendering::Kind::kProxy;
+  if (name == "rigid") return Rendering::Kind::kRigid;
+  return shaped ? Rendering::Kind::kRigid : Rendering::Kind::kProxy;
+}
+
+DevicePose pose_of(const DeviceState& device) { return {device.position, device.orientation}; }
+
+}  // namespace
+
+Rendering::Rendering(const tool_def_t& tool, const Settings& settings)
+    : shaped_(tool.shape != tool_def_t::BALL),
+      radius_m_(skin_m(tool)),
+      bound_m_(tool.radius_m),
+      kind_(kind_of(settings.rendering, shaped_)),
+      reach_m_(settings.proxy_reach_m),
+      reach_time_s_(settings.proxy_reach_time_s),
+      force_limit_N_(settings.force_limit_N),
+      rigid_(coupling_lever_m(settings), bound_m_, radius_m_) {
+  arms_.reserve(kMaxHalfSpaces);
+}
+
+bool Rendering::change(const Settings& settings) {
+  const Kind wanted = kind_of(settings.rendering, shaped_);
+  if (wanted == kind_) return false;
+  kind_ = wanted;
+  proxy_.reset(pose_.position);
+  rigid_.reset(pose_);
+  return true;
+}
+
+void Rendering::reset(const DeviceState& device) {
+  pose_ = pose_of(device);
+  proxy_.reset(device.position);
+  rigid_.reset(pose_);
+  renew(device);
+}
+
+void Rendering::renew(const DeviceState& device) {
+  const double speed_m_s = device.velocity.norm() + bound_m_ * device.spin.norm();
+  left_m_ = reach_m_ + reach_time_s_ * std::min(speed_m_s, kFastestHand_m_s);
+}
+
+void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {
+  const DevicePose placed{pose_.position, turned(device)};
+  switch (kind_) {
+    case Kind::kProxy:
+      proxy_.step(surfaces, device.position, dt);
+      pose_ = {proxy_.position(), device.orientation};
+      velocity_ = proxy_.velocity();
+      spin_ = device.spin;
+      break;
+    case Kind::kRigid:
+      rigid_.step(surfaces, pose_of(device), dt, left_m_);
+      left_m_ = std::max(0.0, left_m_ - rigid_.moved_m());
+      pose_ = {rigid_.position(), rigid_.orientation()};
+      velocity_ = rigid_.velocity();
+      spin_ = rigid_.spin();
+      break;
+    case Kind::kDirect:
+      press_directly(surfaces, placed, pose_of(device), rigid_.lever_m(), radius_m_);
+      pose_ = pose_of(device);
+      velocity_ = device.velocity;
+      spin_ = device.spin;
+      break;
+  }
+}
+
+void Rendering::press(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+                      std::span<Eigen::Vector3d> forces) const {
+  switch (kind_) {
+    case Kind::kProxy:
+      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factor);
+      break;
+    case Kind::kRigid: rigid_forces(surfaces, rigid_, device, factor, forces); break;
+    case Kind::kDirect: direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, factor, forces); break;
+  }
+}
+
+Stored Rendering::stored(std::span<const Surface> surfaces) const {
+  Stored all;
+  Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d twist_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
+  double stiffest_N_m = 0, grips_J = 0, each_J = 0;
+  for (const Surface& s : surfaces) {
+    if (s.depth_m <= 0 || !s.moves()) continue;
+    all.pressed = true;
+    const double K = s.coupling_stiffness_N_m;
+    push_N += K * s.depth_m * s.normal;
+    depth_m += s.depth_m * s.normal;
+    stiffest_N_m = std::max(stiffest_N_m, K);
+    each_J += 0.5 * K * s.depth_m * s.depth_m;
+    if (!turns()) continue;
+    const Eigen::Vector3d moment = arm(s).cross(s.normal) / lever_m();
+    twist_N += K * s.depth_m * moment;
+    turn_m += s.depth_m * moment;
+    grips_J += 0.5 * K * s.grip.squaredNorm();
+  }
+  if (kind_ == Kind::kProxy) grips_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
+  // Where surfaces leave no room, or each is a spring at the device, what they push does not add up to one
+  // stretch.
+  const bool one = kind_ == Kind::kProxy ? proxy_.feasible() : kind_ == Kind::kRigid && rigid_.feasible();
+  all.energy_J = grips_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) : each_J);
+  return all;
+}
+
+Wrench Rendering::sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const {
+  Wrench w;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    w.force_N += forces[i];
+    if (turns()) w.torque_N_m += arm(surfaces[i]).cross(forces[i]);
+  }
+  return w;
+}
+
+void Rendering::share(const Wrench& felt, std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sizes = 0;
+  for (const Eigen::Vector3d& f : forces) {
+    sum += f;
+    sizes += f.norm();
+  }
+  if (sizes <= 0) return;
+  // Each keeps its direction as far as the sum does, the rest goes by size.
+  const double square = sum.squaredNorm();
+  const double kept = square > 0 ? std::clamp(felt.force_N.dot(sum) / square, 0.0, 1.0) : 0.0;
+  const Eigen::Vector3d rest = felt.force_N - kept * sum;
+  for (Eigen::Vector3d& f : forces) f = kept * f + f.norm() / sizes * rest;
+  if (!turns()) return;
+  arms_.clear();
+  for (const Surface& s : surfaces) arms_.push_back(arm(s));
+  share_wrench(felt, arms_, forces, force_limit_N_);
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,125 @@
+#include "haptic_node/rendering/rigid_coupling.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::haptic {
+namespace {
+
+constexpr double kAnyStiffness = 1e12, kFixed_kg = 1e10;
+
+Eigen::Vector3d flat(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+  return v - v.dot(normal) * normal;
+}
+
+Eigen::Vector3d within(const Eigen::Vector3d& v, double most) {
+  const double size = v.norm();
+  return size > most ? Eigen::Vector3d(v * (most / size)) : v;
+}
+
+// Speed of the device's tool over a surface where they meet, m/s.
+Eigen::Vector3d past(const Surface& s, const DeviceState& device, const Eigen::Vector3d& arm) {
+  return device.velocity + device.spin.cross(arm) - s.velocity_at(s.point);
+}
+
+// |normal, moment / lever|^2: what a contact off the centre takes of a stiffness, it gives back in turning.
+double off_centre(const Surface& s, const Eigen::Vector3d& arm, double lever_m) {
+  return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
+}
+
+}  // namespace
+
+double coupling_lever_m(const Settings& s) {
+  const double period_s = 1 / s.rate_Hz;
+  const CouplingLimits moving{s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg,
+                              s.device_damping_Ns_m};
+  const CouplingLimits turning{s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio,
+                               s.device_inertia_kgm2, s.device_turn_damping_Nms_rad};
+  const auto stiffest = [&](const CouplingLimits& limits) {
+    return coupling_gains(kAnyStiffness, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
+  };
+  return std::sqrt(stiffest(turning) / stiffest(moving));
+}
+
+void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
+                  double factor, std::span<Eigen::Vector3d> forces) {
+  const std::size_t n = std::min({surfaces.size(), forces.size(), kMaxHalfSpaces});
+  std::array<double, kMaxHalfSpaces> rate{};  // of each depth, m/s
+  proxy.depth_rates(surfaces, device.velocity, device.spin, {rate.data(), n});
+  double pressed = 0;
+  for (const Surface& s : surfaces) pressed += s.depth_m;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Surface& s = surfaces[i];
+    forces[i].setZero();
+    if (s.depth_m <= 0) continue;
+    const Eigen::Vector3d arm = proxy.arm(s);
+    const Eigen::Vector3d over = flat(past(s, device, arm), s.normal);
+    const double share = s.depth_m / pressed;
+    if (!proxy.feasible())
+      rate[i] = -share * past(s, device, arm).dot(s.normal) / off_centre(s, arm, proxy.lever_m());
+    const auto [K, B] = felt_gains(s, factor, pressed);
+    const double normal = std::max(0.0, K * s.depth_m + B * rate[i]);
+    Eigen::Vector3d along = K * s.grip;
+    if (!s.slips) along -= share * B / off_centre(s, arm, proxy.lever_m()) * over;
+    forces[i] = normal * s.normal + within(along, normal * (s.slips ? s.friction_dynamic : s.friction_static));
+  }
+}
+
+void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
+                   double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces) {
+  double pressed = 0;
+  for (const Surface& s : surfaces) pressed += s.depth_m;
+  for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
+    const Surface& s = surfaces[i];
+    forces[i].setZero();
+    if (s.depth_m <= 0) continue;
+    const Eigen::Vector3d arm = device.orientation * s.tool_point - tool_radius_m * s.normal;
+    const Eigen::Vector3d speed = past(s, device, arm);
+    const auto [K, B] = felt_gains(s, factor, pressed);
+    const double damping = s.depth_m / pressed * B / off_centre(s, arm, lever_m);
+    const double normal = std::max(0.0, K * s.depth_m - damping * speed.dot(s.normal));
+    forces[i] = normal * s.normal + within(-damping * flat(speed, s.normal), normal * s.friction_dynamic);
+  }
+}
+
+void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
+                  double most_N) {
+  double sizes = 0, lever_m = 0;
+  for (const Eigen::Vector3d& f : forces) sizes += f.norm();
+  if (!(sizes > 0)) return;
+  for (std::size_t i = 0; i < forces.size(); ++i) lever_m = std::max(lever_m, arms[i].norm());
+  lever_m = std::max(lever_m, 1e-3);
+  // In two passes: the force exactly, the torque by what is left of the freedom, force couples: about the middle
+  // of the places, weighted by size, the two do not mix.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(), force = felt.force_N, torque = felt.torque_N_m;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    middle += forces[i].norm() / sizes * arms[i];
+    force -= forces[i];
+    torque -= arms[i].cross(forces[i]);
+  }
+  torque -= middle.cross(force);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Eigen::Vector3d r = arms[i] - middle;
+    spread += forces[i].norm() / sizes * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+  }
+  // About an axis that all places lie on there is no torque to be had.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+    if (axes.eigenvalues()[k] > 1e-6 * lever_m * lever_m)
+      turn += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
+  }
+  double largest_N = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    largest_N = std::max(largest_N, forces[i].norm() / sizes * turn.cross(arms[i] - middle).norm());
+  if (largest_N > most_N) turn *= most_N / largest_N;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double weight = forces[i].norm() / sizes;
+    forces[i] += weight * (force + turn.cross(arms[i] - middle));
+  }
+}
+
+}  // namespace tactus::haptic

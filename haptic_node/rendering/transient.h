@@ -1,0 +1,73 @@
+// The hit transient: a short decaying vibration at each hit, which a coupling of finite stiffness cannot give
+// (Kuchenbecker, Fiene and Niemeyer 2006). F(t) = A exp(-decay t) sin(2 pi f t), as tapped materials ring
+// (Okamura, Cutkosky and Dennerlein 2001). Its first half wave carries the momentum of the hit: A = gain pi f m v.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <tactus/presentation_t.hpp>
+#include <vector>
+
+#include "sync/presentation/late.h"
+#include "sync/time/time.h"
+
+namespace tactus::haptic {
+
+// A tap is felt as it should be, or not at all: a weaker one would be a hit of another material.
+inline constexpr sync::Late kLate = sync::Late::kDrop;
+
+struct TransientShape {
+  double gain = 1;
+  double limit_N = 3;  // of one and of all together
+  double soft_frequency_Hz = 30;
+  double hard_frequency_Hz = 300;
+  double decay_1_s = 80;
+  sync::LatePolicy late{kLate, sync::Nanoseconds(7'500'000), sync::Nanoseconds(15'000'000)};
+};
+
+struct Hit {
+  std::int64_t event_id = 0;
+  sync::HostTime scheduled{};
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // of the force on the hand, unit
+  double approach_speed_m_s = 0;
+  double effective_mass_kg = 0;
+  double youngs_modulus_Pa = 0;  // of what is hit; 0: not known, taken as hard
+};
+
+// Between rubber and aluminium, even on logarithmic scales of both.
+double transient_frequency_Hz(double youngs_modulus_Pa, const TransientShape& shape);
+double transient_amplitude_N(const Hit& hit, const TransientShape& shape);
+
+class Transients {
+ public:
+  static constexpr std::size_t kMaxWaiting = 64, kMaxSounding = 16;
+
+  explicit Transients(const TransientShape& shape) : shape_(shape) {
+    waiting_.reserve(kMaxWaiting);
+    sounding_.reserve(kMaxSounding);
+  }
+
+  // What begins from now on has this shape.
+  void change(const TransientShape& shape) { shape_ = shape; }
+
+  // Every hit gets exactly one report, here (no place left) or in a later step.
+  void schedule(const Hit& hit, std::vector<presentation_t>& reports);
+  // Force on the hand over the tick that begins now, N (its value at mid tick). felt: false when no force reaches
+  // the hand, then what is due is dropped. Realtime-safe: yes.
+  Eigen::Vector3d step(sync::HostTime now, double dt, bool felt, sync::Nanoseconds uncertainty,
+                       std::vector<presentation_t>& reports);
+
+ private:
+  struct Ringing {
+    Eigen::Vector3d direction;
+    double amplitude_N, frequency_Hz;
+    sync::HostTime start;
+  };
+  void begin(const Hit& hit, sync::HostTime now);
+
+  TransientShape shape_;
+  std::vector<Hit> waiting_;
+  std::vector<Ringing> sounding_;
+};
+
+}  // namespace tactus::haptic

@@ -1,0 +1,95 @@
+#include "haptic_node/safety/safety.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "haptic_node/devices/device.h"
+
+namespace tactus::haptic {
+namespace {
+
+// Faster than a hand can be (a pitcher's reaches 40 m/s): the device jumped, as a replayed motion may; no work is
+// done.
+constexpr double kFastest_m_s = 40;
+// The same of turning: a turn a tenth of a second (design: twice what a wrist can).
+constexpr double kFastest_rad_s = 63;
+
+// A late tick is not paid back by a jump of the force: it counts as two ticks of 1 kHz at most.
+constexpr double kLongestSlew_s = 0.002;
+
+// Of the radius of the workspace, over which the force goes to zero. Design: 0.2 m of 2 m are 0.2 s at a hand's 1
+// m/s.
+constexpr double kWorkspaceEdge = 0.1;
+
+Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
+  const double size = v.norm();
+  return size > limit ? Eigen::Vector3d(v * (limit / size)) : v;
+}
+
+}  // namespace
+
+SafetyLimits safety_limits(const Settings& s) {
+  return {s.force_limit_N, s.slew_limit_N_s,  s.energy_limit_J,
+          s.power_limit_W, s.torque_limit_Nm, s.torque_slew_limit_Nm_s, s.workspace_m};
+}
+
+void Safety::begin_tick(sync::HostTime now) {
+  if (now - renewed_ > Device::kWatchdog) {
+    last_.setZero();
+    last_torque_.setZero();
+  }
+  renewed_ = now;
+}
+
+void Safety::at(const Eigen::Vector3d& device_m) {
+  if (!device_m.allFinite()) {
+    inside_ = 0;
+    return;
+  }
+  if (!centre_m_) centre_m_ = device_m;
+  const double left = 1 - (device_m - *centre_m_).norm() / limits_.workspace_m;
+  inside_ = std::clamp(left / kWorkspaceEdge, 0.0, 1.0);
+}
+
+Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
+  const bool leaps = !moved_m.allFinite() || moved_m.norm() > kFastest_m_s * dt;
+  const double work_J = (leaps ? 0 : last_.dot(moved_m)) + std::exchange(turn_work_J_, 0.0);
+  energy_J_ += work_J;
+  // A debt is paid off within a second at most: one bad instant does not silence touch for long.
+  tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
+  const Eigen::Vector3d wanted = wanted_N.allFinite() ? wanted_N : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  // Full force until half of the allowance is spent: the change is too slow to be felt as a step.
+  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = inside_ * left * clamped(wanted, limits_.force_N);
+  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));
+  return last_;
+}
+
+Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
+                     double dt) {
+  const bool leaps = !turned_rad.allFinite() || turned_rad.norm() > kFastest_rad_s * dt;
+  turn_work_J_ = leaps ? 0 : last_torque_.dot(turned_rad);
+  Wrench w = wanted;
+  if (!w.torque_N_m.allFinite()) w.torque_N_m.setZero();
+  if (!w.force_N.allFinite()) w = {};
+  const double force = w.force_N.norm(), torque = w.torque_N_m.norm();
+  if (force > limits_.force_N) w.torque_N_m *= limits_.force_N / force;
+  if (torque > limits_.torque_N_m) w.force_N *= limits_.torque_N_m / torque;
+  w.force_N = limit(w.force_N, moved_m, dt);
+  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = inside_ * left * clamped(w.torque_N_m, limits_.torque_N_m);
+  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kLongestSlew_s));
+  w.torque_N_m = last_torque_;
+  return w;
+}
+
+double Fade::step(sync::HostTime now, std::optional<sync::HostTime> newest, double dt) {
+  const double age_s = newest ? sync::to_seconds(now - *newest) : stale_after_s_ + fade_s_;
+  lost_ = age_s > stale_after_s_;
+  const double ceiling = std::clamp(1 - (age_s - stale_after_s_) / fade_s_, 0.0, 1.0);
+  value_ = std::min(value_ + dt / fade_s_, ceiling);
+  return value_;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,104 @@
+#include "haptic_node/safety/unseen_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::haptic {
+namespace {
+
+// Of one entry of the history at least: a tick of 1 kHz, less rounding.
+constexpr double kPush_s = 0.00099;
+// How fast the estimate of what holds a body follows; a few models of 30 Hz are not averaged, nor is the noise of
+// one step believed.
+constexpr double kHeld_s = 0.02;
+// For so long it is believed that what held a body still does; then it counts as free. Longer than a period of 30
+// Hz, shorter than the 50 ms after which a touch model is lost.
+constexpr double kTrust_s = 0.04;
+
+}  // namespace
+
+void UnseenWork::tell(const Told& told, double most_N) {
+  if (told_.sim_ns >= 0 && told.sim_ns > told_.sim_ns) {
+    // Newton: what the body's motion changed by, less the push, is what others did.
+    const double dt = 1e-9 * static_cast<double>(told.sim_ns - told_.sim_ns);
+    const double others_N_s =
+        told.normal.dot(told.mass_kg * (told.velocity - told_.velocity) - (told.impulse_N_s - told_.impulse_N_s));
+    held_N_ += (1 - std::exp(-dt / kHeld_s)) * (std::clamp(others_N_s / dt, -most_N, most_N) - held_N_);
+  }
+  told_ = told;
+  fresh_ = true;
+}
+
+void UnseenWork::tell(const Eigen::Vector3d& impulse_N_s) {
+  told_.impulse_N_s = impulse_N_s;
+  fresh_ = true;
+}
+
+void UnseenWork::settle(const Eigen::Vector3d& impulse_N_s) {
+  given_N_s_ = told_.impulse_N_s = impulse_N_s;
+  count_ = 0;
+  work_J_ = 0;
+}
+
+void UnseenWork::give(const Eigen::Vector3d& force_N, double dt) {
+  given_N_s_ += dt * force_N;
+  const double push_N = std::max(0.0, -force_N.dot(told_.normal));
+  if (count_ == 0 || pushes_[newest_].dt >= kPush_s) {
+    newest_ = (newest_ + 1) % pushes_.size();
+    count_ = std::min(count_ + 1, pushes_.size());
+    pushes_[newest_] = {};
+  }
+  pushes_[newest_].impulse_N_s += push_N * dt;
+  pushes_[newest_].dt += dt;
+  if (told_.sim_ns >= 0) advance(push_N, dt);
+}
+
+void UnseenWork::advance(double push_N, double dt) {
+  const bool trusted = since_s_ < kTrust_s;
+  double held_N = trusted ? held_N_ : std::min(held_N_, 0.0);
+  since_s_ += dt;
+  if (trusted && since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
+  if (speed_m_s_ < 0) held_N = std::min(held_N, 0.0);
+  double next = speed_m_s_ + (push_N - held_N) / told_.mass_kg * dt;
+  if (speed_m_s_ >= 0) next = std::max(0.0, next);
+  work_J_ += push_N * dt * 0.5 * (speed_m_s_ + next);
+  speed_m_s_ = next;
+}
+
+// One that came may swing: so much faster it then goes along with the push.
+double UnseenWork::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
+
+// Those of the last window_s, as far back as they add up to what is unseen; what is missing came before them.
+void UnseenWork::play(double window_s, double unseen_N_s) {
+  const auto push = [&](std::size_t back) { return pushes_[(newest_ + pushes_.size() - back) % pushes_.size()]; };
+  std::size_t first = 0;
+  double time_s = 0, missing_N_s = unseen_N_s, share = 1;  // of the first of them, which may be unseen in part
+  while (first < count_ && time_s < window_s && share == 1) {
+    const Push p = push(first++);
+    if (p.impulse_N_s > missing_N_s) share = missing_N_s / p.impulse_N_s;
+    time_s += share * p.dt;
+    missing_N_s = share < 1 ? 0 : missing_N_s - p.impulse_N_s;
+  }
+  since_s_ = std::max(0.0, window_s - time_s);
+  speed_m_s_ = -told_.normal.dot(told_.velocity);
+  if (since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
+  work_J_ = missing_N_s * (speed_m_s_ + 0.5 * missing_N_s / told_.mass_kg);
+  speed_m_s_ += missing_N_s / told_.mass_kg;
+  for (std::size_t back = first; back-- > 0;) {
+    const Push p = push(back);
+    if (p.dt > 0) advance(p.impulse_N_s / p.dt, (back + 1 == first ? share : 1) * p.dt);
+  }
+}
+
+double UnseenWork::energy_J(double window_s, double most_N) {
+  if (told_.sim_ns < 0) return 0;
+  Eigen::Vector3d unseen_N_s = given_N_s_ - told_.impulse_N_s;
+  const double size = unseen_N_s.norm(), most_N_s = most_N * window_s;
+  if (size > most_N_s) unseen_N_s *= most_N_s / size;  // a part was never applied
+  const double along_normal = unseen_N_s.dot(told_.normal);
+  if (fresh_) play(window_s, std::max(0.0, -along_normal));
+  fresh_ = false;
+  return work_J_ + (unseen_N_s - along_normal * told_.normal).dot(told_.velocity);
+}
+
+}  // namespace tactus::haptic

@@ -1,3 +1,0 @@
-#include "scripts/conductor/run.h"
-
-int main(int argc, char** argv) { return tactus::conductor::run(argc, argv); }

@@ -1,0 +1,123 @@
+// participant: a hand that plays a scene's game with what its senses deliver, in place of a person.
+//
+//   in   WORLD_STATE, CONTACT_EVENTS   as visual_node and audio_node present them, whatever a profile does to them
+//        DEVICE_FORCE                  what the hand feels
+//        PLAYOUT, DEGRADATION          when and how well those present
+//   out  DEVICE_STATE                  where the hand is, a thousand times a second
+//
+// Losing any of them it plays on without. Beside it: haptic_node --device external:player.
+#include "scripts/simulated_player/run.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <optional>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+
+#include "scripts/simulated_player/arm.h"
+#include "scripts/simulated_player/senses.h"
+#include "scripts/simulated_player/setup.h"
+#include "sync/node/node.h"
+#include "sync/assets/scene_exchange.h"
+
+using namespace tactus;
+
+namespace {
+
+const sync::Declaration kParticipant{.node = "participant",
+                                     .modality = "",
+                                     .rate_Hz = 1000,
+                                     .fifo_priority = 55,
+                                     .about = "Plays a scene's game in place of a person."};
+// Where the hand rests before the world begins: over the near edge of the dark room.
+constexpr double kRest_m[]{-0.2, 0, 0.13};
+
+// The newest force on the hand, as long as it holds.
+Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::HostTime now) {
+  if (now - arrival > sync::Nanoseconds(m.valid_for_ns)) return Eigen::Vector3d::Zero();
+  return {m.force_N.x, m.force_N.y, m.force_N.z};
+}
+
+}  // namespace
+
+int tactus::participant::run(int argc, char** argv, const Rules* read_before) try {
+  CLI::App app;
+  sync::NodeOptions options;
+  std::string scene_file, device = "player";
+  double frame_rate_Hz = 60;
+  Scatter scatter;
+  ArmDef arm_def;
+  PlayerDef player_def;
+  options.add_to(app, kParticipant);
+  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--device", device, "name of the device that it moves: haptic_node --device external:NAME")
+      ->capture_default_str();
+  app.add_option("--degrade", options.degrade,
+                 "degradation profile (XML): as the senses have it, which are listened in on");
+  app.add_option("--frame-rate", frame_rate_Hz, "of the pictures that it looks at, Hz")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option(
+         "--scatter-along", scatter.along_m,
+         "before it plays it puts each ball elsewhere, as the seed says: so far towards its hole or away, m")
+      ->check(CLI::Range(0.0, 0.2));
+  app.add_option("--scatter-aside", scatter.aside_m, "and so far to the side, m")->check(CLI::Range(0.0, 0.2));
+  app.add_option("--reaction", player_def.reaction_s, "from what is seen or heard to what is done, s")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  sync::parse_or_exit(app, kParticipant.node, argc, argv);
+  const Rules rules = read_before ? *read_before : read_rules(scene_file);
+
+  sync::Node node(kParticipant, options);
+  sync::SceneReceiver scenes(node.bus());
+  auto& forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
+  auto& replies = node.bus().queue<sim_reply_t>(channels::kSimReply, 64);
+  std::optional<Setup> setup;
+  Senses senses(node, rules, frame_rate_Hz);
+  Player player(rules, player_def);
+  Arm arm(arm_def, Eigen::Vector3d(kRest_m[0], kRest_m[1], kRest_m[2]), options.seed);
+  device_state_t state{};
+  state.device = device;
+  device_force_t force{};
+  sync::HostTime felt_at{};
+  sync::HostTime before{};
+  node.tags().add("goal", "1", [&] { return player.goal(); });
+  node.tags().add("doing", "1", [&] { return static_cast<double>(player.doing()); });
+  node.set_state(node_health_t::WAITING, "waits for the scene");
+
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    while (const auto m = forces.pop())
+      if (m->message.device == device && m->message.header.run_id == options.run_id)
+        force = m->message, felt_at = m->arrival;
+    if (scenes.poll(now)) {
+      senses.set_scene(*scenes.scene());
+      setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed),
+                    options.seed);
+      node.set_state(node_health_t::RUNNING);
+    }
+    Percept percept = senses.perceive(now);
+    percept.force_N = force_of(force, felt_at, now);
+    percept.hand_m = arm.position_m();
+    // A turn that came late moves no further than one on time.
+    const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(before, now)));
+    if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
+      setup->step(now, replies);
+      percept.balls_m.assign(rules.goals.size(), std::nullopt);  // nothing is looked at before the game begins
+    } else if (scenes.scene()) {
+      arm.step(player.step(percept), percept.force_N, dt_s);
+    }
+    state.header.sim_time_ns = -1;
+    state.pose.position_m = {arm.position_m().x(), arm.position_m().y(), arm.position_m().z()};
+    state.pose.orientation.w = 1;
+    state.velocity_m_s = {static_cast<float>(arm.velocity_m_s().x()), static_cast<float>(arm.velocity_m_s().y()),
+                          static_cast<float>(arm.velocity_m_s().z())};
+    state.state = device_state_t::ANSWERS;
+    node.bus().publish(channels::kDeviceState, state);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail(kParticipant.node, e);
+}

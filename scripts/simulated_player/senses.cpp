@@ -1,0 +1,109 @@
+#include "scripts/simulated_player/senses.h"
+
+#include <utility>
+
+#include "sync/random/chance.h"
+
+namespace tactus::participant {
+namespace {
+
+// Those whose senses these are: visual_node and audio_node.
+sync::Declaration of(const char* node, const char* modality, int owes) {
+  return {.node = node, .modality = modality, .owes = owes, .about = ""};
+}
+
+// Below the rim by so much, a ball that hits something lies in the hole (design: a third of the shallowest ball).
+constexpr double kBelowRim_m = 0.02;
+constexpr sync::Nanoseconds kGone{
+    300'000'000};  // after so long without a word a node stands still, as sync_node counts it
+// How well it is heard where a sound comes from, standard deviation. A still head tells 3.6 degrees to the side
+// (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor; a little less, and the
+// same for distance, is design: a ball that is heard lies on the floor, and the head moves.
+constexpr double kBlur_m = 0.05;
+constexpr std::uint64_t kOfEars = 13;            // stream of random numbers of the seed
+constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, as audio_node takes them
+
+}  // namespace
+
+Senses::Senses(sync::Node& node, Rules rules, double frame_rate_Hz)
+    : rules_(std::move(rules)),
+      eyes_(node, of("visual_node", "visual", int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT)),
+      ears_(node, of("audio_node", "audio", node_health_t::OWES_HIT)),
+      healths_(node.bus().queue<node_health_t>(channels::kNodeHealth, 256)),
+      world_(eyes_.snapshots<world_state_t>(channels::kWorldState, 4096)),
+      events_(ears_.events()),
+      bodies_(node.bus().clocks()),
+      contacts_(node.bus().clocks()),
+      frame_rate_Hz_(frame_rate_Hz),
+      seed_(sync::mixed(node.options().seed, kOfEars)),
+      shown_(rules_.goals.size()) {}
+
+void Senses::set_scene(const scene_t& scene) {
+  eyes_.set_scene(scene);
+  ears_.set_scene(scene);
+}
+
+Percept Senses::perceive(sync::HostTime now) {
+  eyes_.step(now), ears_.step(now);
+  bodies_.keep(eyes_.delay()), contacts_.keep(ears_.delay());
+  while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
+  while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
+  eyes_.publish(now), ears_.publish(now);
+  while (const auto m = healths_.pop())
+    if (!m->message.modality.empty()) heard_of_[m->message.modality] = m->arrival;
+  if (now >= next_look_) look(now);
+  Percept percept;
+  percept.time_s = sync::to_seconds(now.time_since_epoch());
+  percept.balls_m = shown_;
+  listen(now, percept);
+  return percept;
+}
+
+bool Senses::rendered(const std::string& modality, sync::HostTime now) const {
+  const auto at = heard_of_.find(modality);
+  return at != heard_of_.end() && now - at->second < kGone;
+}
+
+// A picture shows the world as it was when what it presents now happened, and stays until the next.
+void Senses::look(sync::HostTime now) {
+  const double slow_Hz = eyes_.output().frame_rate_Hz;
+  next_look_ = now + sync::from_seconds(1 / (slow_Hz > 0 ? slow_Hz : frame_rate_Hz_));
+  const auto map = bodies_.map(now);
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    shown_[i].reset();
+    if (!map || !rendered("visual", now)) continue;
+    const auto pose = bodies_.pose(rules_.goals[i].body, map->to_sim(now - eyes_.delay()));
+    // A picture of what is too old says so itself.
+    if (pose.how != sync::How::kNone && pose.how != sync::How::kStale) shown_[i] = pose.value.position;
+  }
+}
+
+void Senses::listen(sync::HostTime now, Percept& percept) {
+  if (const auto map = contacts_.map(now))
+    for (const contact_event_t& e : contacts_.take_events(map->to_sim(now + kEarly)))
+      for (std::size_t i = 0; i < rules_.goals.size(); ++i) {
+        const Goal& goal = rules_.goals[i];
+        if (e.kind != contact_event_t::HIT || e.tool >= 0 || (e.body_a != goal.body && e.body_b != goal.body))
+          continue;
+        const bool falls = e.point_m.z < goal.hole_m.z() - kBelowRim_m - goal.ball_radius_m;
+        const auto off = [&](std::uint64_t axis) {
+          return kBlur_m *
+                 sync::normal_quantile(sync::uniform(seed_, 2 * static_cast<std::uint64_t>(e.event_id) + axis));
+        };
+        const Eigen::Vector3d from(e.point_m.x + off(0), e.point_m.y + off(1), e.point_m.z);
+        sounds_.push_back({ears_.schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), i, falls, from});
+      }
+  if (!rendered("audio", now)) sounds_.clear();
+  percept.fell.assign(rules_.goals.size(), false);
+  percept.heard_m.assign(rules_.goals.size(), std::nullopt);
+  std::erase_if(sounds_, [&](const Sound& sound) {
+    if (sound.at > now) return false;
+    if (sound.falls)
+      percept.fell[sound.goal] = true;
+    else
+      percept.heard_m[sound.goal] = sound.from_m;
+    return true;
+  });
+}
+
+}  // namespace tactus::participant

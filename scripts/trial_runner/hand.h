@@ -1,0 +1,42 @@
+// The hand that strikes or presses in place of a person, so that each trial has its stimulus when it is wanted.
+// Pure.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "scripts/trial_runner/orders.h"
+
+namespace tactus::conductor {
+
+class Hand {
+ public:
+  // Design: as the hand of sim_node/scenes/metronome.sdf.
+  static constexpr double kDown_m_s = 0.49, kDwell_s = 0.04, kUp_s = 0.12;
+
+  // Rests at `rest_m`, world; the surface that it strikes is `above_m` below.
+  Hand(const Eigen::Vector3d& rest_m, double above_m) : rest_m_(rest_m), above_m_(above_m), position_m_(rest_m) {}
+
+  // Begins at the next step; false: it is busy.
+  bool tap(const TapOrder& order);
+  bool press(const PressOrder& order);
+  bool busy() const { return tap_ || press_; }
+  // One step of dt_s.
+  void step(double dt_s);
+  const Eigen::Vector3d& position_m() const { return position_m_; }
+  const Eigen::Vector3d& velocity_m_s() const { return velocity_m_s_; }
+  bool presses() const { return press_.has_value(); }
+
+ private:
+  // How far below its rest it is after so long; nothing: it is over.
+  std::optional<double> below_m() const;
+
+  Eigen::Vector3d rest_m_;
+  double above_m_;
+  Eigen::Vector3d position_m_, velocity_m_s_ = Eigen::Vector3d::Zero();
+  std::optional<TapOrder> tap_;
+  std::optional<PressOrder> press_;
+  double since_s_ = 0;
+};
+
+}  // namespace tactus::conductor

@@ -1,0 +1,39 @@
+// The question that is asked now: repeated until it is answered. Pure.
+#pragma once
+
+#include <optional>
+#include <tactus/answer_t.hpp>
+#include <tactus/question_t.hpp>
+
+#include "sync/time/time.h"
+
+namespace tactus::conductor {
+
+class Interview {
+ public:
+  static constexpr sync::Nanoseconds kRepeat{200'000'000};  // lcmtypes/types/control/question_t.lcm
+
+  explicit Interview(std::uint64_t seed) : seed_(seed) { ask({}); }
+
+  // Asked from now on in place of the one before. Throws std::invalid_argument with one sentence when nobody could
+  // answer it.
+  void ask(question_t question);
+  // True when something is asked that is not answered.
+  bool waits() const { return waits_; }
+  const question_t& asked() const { return question_; }
+  // The answer, when this is the first to the question that is asked and fits it.
+  std::optional<answer_t> take(const answer_t& answer);
+  // The answer to the question asked, from a button of the device or a simulated participant; nothing: it asks for
+  // something else.
+  std::optional<answer_t> answer(int choice, double number, const char* by, sync::HostTime now) const;
+  // The question, when it is time to say it (again).
+  std::optional<question_t> step(sync::HostTime now);
+
+ private:
+  std::uint64_t seed_, count_ = 0;
+  question_t question_{};
+  bool waits_ = false;
+  std::optional<sync::HostTime> first_, next_;
+};
+
+}  // namespace tactus::conductor

@@ -1,0 +1,334 @@
+// conductor: leads the trials of a study: puts their profiles in force, asks the participant, moves a hand where
+// the study has one, and says what was presented when. Orders come on standard input, observations go to standard
+// output, a line of JSON each.
+//
+//   in   NODE_HEALTH, DEGRADATION      which sense has which profile
+//        CONTACTS                      the time of the world
+//        CONTACT_EVENTS, PRESENTED     what happened and what each sense made of it
+//        MEDIA_CLOCK, PICTURE_CHUNK    which sample was heard when; the pictures, when told to look
+//        GAME_STATE, SIM_REPLY         how the game stands; what became of a command
+//        TOOL_STATE                    buttons of the device, which answer; in which tick a hit vibrates
+//        DEVICE_FORCE                  what its hand feels
+//        ANSWER                        of a window or a page
+//   out  DEGRADATION, QUESTION, ANSWER (of buttons and of simulated participants), SIM_COMMAND
+//        DEVICE_STATE                  where its hand is, with --hand
+//
+// Losing any of them it goes on. When whoever gives the orders has gone, it ends.
+#include "scripts/trial_runner/run.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/tool_state_t.hpp>
+
+#include "scripts/trial_runner/enforcement.h"
+#include "scripts/trial_runner/hand.h"
+#include "scripts/trial_runner/interview.h"
+#include "scripts/trial_runner/lines.h"
+#include "scripts/trial_runner/observations.h"
+#include "scripts/trial_runner/orders.h"
+#include "sync/random/chance.h"
+#include "sync/bus/identity.h"
+#include "sync/node/node.h"
+#include "sync/clocks/sim_follower.h"
+
+using namespace tactus;
+using nlohmann::json;
+
+namespace tactus::conductor {
+namespace {
+
+const sync::Declaration kConductor{.node = "conductor",
+                                   .modality = "",
+                                   .rate_Hz = 1000,
+                                   .fifo_priority = 55,
+                                   .about = "Leads the trials of a study."};
+constexpr sync::Nanoseconds kSensesEvery{500'000'000}, kRepeat{50'000'000};
+constexpr int kForceEvery = 5;  // ticks between two lines on the force of a press
+constexpr int kMostOrdersATick = 16;
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+class Conductor {
+ public:
+  Conductor(sync::Node& node, const std::optional<std::pair<Eigen::Vector3d, double>>& hand, bool looks,
+            Lines& lines)
+      : node_(node),
+        lines_(lines),
+        observations_(node.bus().clocks()),
+        interview_(static_cast<std::uint64_t>(node.bus().identity().incarnation)),
+        simulation_(node.bus().clocks()),
+        healths_(node.bus().queue<node_health_t>(channels::kNodeHealth, 1024)),
+        frames_(node.bus().queue<contact_frame_t>(channels::kContacts, 4096)),
+        events_(node.bus().queue<contact_events_t>(channels::kContactEvents, 4096)),
+        presented_(node.bus().queue<presented_t>(channels::kPresented, 4096)),
+        media_(node.bus().queue<media_clock_t>(channels::kMediaClock, 1024)),
+        games_(node.bus().queue<game_state_t>(channels::kGameState, 64)),
+        replies_(node.bus().queue<sim_reply_t>(channels::kSimReply, 64)),
+        answers_(node.bus().queue<answer_t>(channels::kAnswer, 64)),
+        tools_(node.bus().queue<tool_state_t>(channels::kToolState, 256)),
+        forces_(node.bus().queue<device_force_t>(channels::kDeviceForce, 64)) {
+    if (hand) hand_.emplace(hand->first, hand->second);
+    if (looks) pictures_ = &node.bus().queue<picture_chunk_t>(channels::kPictureChunk, 4096, sync::Port::kBulk);
+    state_.device = kConductor.node;
+    state_.pose.orientation.w = 1;
+    state_.header.sim_time_ns = -1;
+  }
+
+  // One turn. False: it was told to end, or nobody is there to tell it anything.
+  bool step(sync::HostTime now) {
+    if (!heed_orders(now)) return false;
+    listen(now);
+    if (const auto* profile = enforcement_.to_send(now)) sync::send_profile(node_.bus(), *profile);
+    if (const auto senses = enforcement_.take_in_force(now))
+      say({{"in_force", enforcement_.profile()->hash},
+           {"at_ns", sync::to_ns(now)},
+           {"since_sim_ns", sync::to_ns(enforcement_.profile()->start)},
+           {"senses", *senses}});
+    if (auto question = interview_.step(now)) {
+      node_.bus().publish(channels::kQuestion, *question);
+      if (question->kind != question_t::NOTHING && question->id != asked_)
+        say({{"asked", std::to_string(question->id)}, {"at_ns", sync::to_ns(now)}}), asked_ = question->id;
+    }
+    if (command_ && now >= next_command_)
+      node_.bus().publish(channels::kSimCommand, *command_), next_command_ = now + kRepeat;
+    if (now >= next_senses_) say_senses(now), next_senses_ = now + kSensesEvery;
+    move(now);
+    lines_.flush();
+    return true;
+  }
+
+ private:
+  // What was quoted and is no UTF-8, as a text that was cut, is no reason to leave.
+  void say(const json& line) { lines_.say(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
+
+  bool heed_orders(sync::HostTime now) {
+    for (int i = 0; i < kMostOrdersATick; ++i) {
+      const auto line = lines_.next();
+      if (!line) return !lines_.ended();
+      try {
+        const Order order = parse_order(*line);
+        if (std::holds_alternative<EndOrder>(order)) return false;
+        std::visit([&](const auto& o) { obey(o, now); }, order);
+      } catch (const std::invalid_argument& e) {
+        say({{"refused", e.what()}});
+      }
+    }
+    return true;
+  }
+
+  void obey(const ProfileOrder& o, sync::HostTime now) {
+    if (o.text.size() > sync::kMaxProfileBytes) throw std::invalid_argument("the profile is longer than 64 KiB");
+    sync::parse_profile(o.text, "profile");
+    sync::ProfileInForce profile;
+    profile.text = o.text;
+    profile.hash = sync::fnv1a_64(o.text.data(), o.text.size());
+    profile.generation = realtime_ns();
+    if (const auto map = simulation_.map(now)) profile.start = std::max(sync::SimTime{}, map->to_sim(now));
+    enforcement_.begin(std::move(profile));
+  }
+  void obey(const QuestionOrder& o, sync::HostTime) { interview_.ask(o.question); }
+  void obey(const AnswerOrder& o, sync::HostTime now) {
+    if (auto a = interview_.answer(o.choice, o.number, "simulated", now))
+      give(*a);
+    else
+      throw std::invalid_argument("nothing is asked that this answers");
+  }
+  void obey(const TapOrder& o, sync::HostTime) {
+    if (!hand_) throw std::invalid_argument("there is no hand to tap with; start the conductor with --hand");
+    if (!hand_->tap(o)) throw std::invalid_argument("the hand is still moving");
+  }
+  void obey(const PressOrder& o, sync::HostTime) {
+    if (!hand_) throw std::invalid_argument("there is no hand to press with; start the conductor with --hand");
+    if (!hand_->press(o)) throw std::invalid_argument("the hand is still moving");
+  }
+  void obey(const CommandOrder& o, sync::HostTime now) {
+    if (command_) throw std::invalid_argument("the command before is not answered yet");
+    command_.emplace();
+    command_->header.sim_time_ns = -1;
+    command_->id =
+        static_cast<std::int64_t>(
+            sync::mixed(static_cast<std::uint64_t>(node_.bus().identity().incarnation), ++commands_) >> 2) +
+        1;
+    command_->kind = o.kind, command_->name = o.name;
+    next_command_ = now;
+  }
+  void obey(const EndOrder&, sync::HostTime) {}
+
+  // An answer that was given here is heard by all, as one of a window is.
+  void give(answer_t answer) {
+    node_.bus().publish(channels::kAnswer, answer);
+    heed(answer);
+  }
+  void heed(const answer_t& answer) {
+    if (const auto a = interview_.take(answer))
+      say({{"answer", std::to_string(a->id)},
+           {"choice", a->choice},
+           {"number", a->number},
+           {"after_s", static_cast<double>(a->after_ns) * 1e-9},
+           {"by", a->by}});
+  }
+
+  bool ours(const header_t& header) const { return header.run_id == node_.options().run_id; }
+
+  void listen(sync::HostTime now) {
+    while (const auto m = healths_.pop())
+      if (ours(m->message.header)) enforcement_.push(m->message, m->arrival), remember(m->message, m->arrival);
+    while (const auto m = frames_.pop())
+      if (ours(m->message.header)) simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    while (const auto m = events_.pop())
+      if (ours(m->message.header))
+        for (const json& line : observations_.push(m->message)) say(line);
+    while (const auto m = presented_.pop())
+      if (ours(m->message.header))
+        for (const json& line : observations_.push(m->message, m->arrival)) say(line);
+    while (const auto m = media_.pop())
+      if (ours(m->message.header) && m->message.medium.starts_with("audio"))
+        if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+    while (const auto m = games_.pop())
+      if (ours(m->message.header))
+        if (const auto line = observations_.push(m->message)) say(*line);
+    while (const auto m = replies_.pop())
+      if (command_ && ours(m->message.header) && m->message.id == command_->id) {
+        say({{"reply", {{"done", m->message.done == 1}, {"text", m->message.text}}}});
+        command_.reset();
+      }
+    while (const auto m = answers_.pop())
+      if (ours(m->message.header)) heed(m->message);
+    while (const auto m = tools_.pop())
+      if (ours(m->message.header)) {
+        push_button(m->message, now);
+        if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+      }
+    while (const auto m = forces_.pop())
+      if (ours(m->message.header) && m->message.device == state_.device) force_N_ = m->message.force_N.z;
+    while (pictures_) {
+      const auto m = pictures_->pop();
+      if (!m) break;
+      if (!ours(m->message.header)) continue;
+      if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+    }
+  }
+
+  // Button 1 is the first choice; any button goes on after a text.
+  void push_button(const tool_state_t& m, sync::HostTime now) {
+    int& before = buttons_[m.header.source];
+    const int pressed = m.buttons & ~std::exchange(before, m.buttons);
+    for (int i = 0; i < 9; ++i)
+      if (pressed >> i & 1 && interview_.asked().kind != question_t::NUMBER)
+        if (auto a = interview_.answer(i, 0, "button", now)) give(*a);
+  }
+
+  void remember(const node_health_t& m, sync::HostTime arrival) {
+    if (m.modality.empty() || (senses_.size() >= Enforcement::kMostSenses && !senses_.contains(m.node))) return;
+    senses_[m.node] = {m.modality, m.state, m.rate_Hz, m.nominal_rate_Hz, m.missed_ticks, m.profile, arrival};
+  }
+  void say_senses(sync::HostTime now) {
+    json all = json::object();
+    for (const auto& [name, s] : senses_)
+      all[name] = {{"modality", s.modality},
+                   {"state", s.state},
+                   {"rate_Hz", s.rate_Hz},
+                   {"nominal_rate_Hz", s.nominal_rate_Hz},
+                   {"missed_ticks", s.missed_ticks},
+                   {"age_s", sync::to_seconds(now - s.heard)},
+                   {"in_force", enforcement_.profile() && s.profile == enforcement_.profile()->hash}};
+    json line{{"senses", all}, {"at_ns", sync::to_ns(now)}};
+    if (const auto map = simulation_.map(now)) line["sim_ns"] = sync::to_ns(map->to_sim(now));
+    say(line);
+  }
+
+  void move(sync::HostTime now) {
+    if (!hand_) return;
+    const bool moved = hand_->busy();
+    // A turn that came late moves no further than one on time.
+    hand_->step(std::clamp(sync::to_seconds(now - std::exchange(before_, now)), 1e-4, 2e-3));
+    const auto& at = hand_->position_m();
+    const auto& v = hand_->velocity_m_s();
+    if (hand_->presses() && ++ticks_ % kForceEvery == 0)
+      say({{"felt", {{"at_ns", sync::to_ns(now)}, {"z_m", at.z()}, {"force_N", force_N_}}}});
+    if (moved && !hand_->busy()) say({{"moved", true}, {"at_ns", sync::to_ns(now)}});
+    state_.pose.position_m = {at.x(), at.y(), at.z()};
+    state_.velocity_m_s = {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+    state_.state = device_state_t::ANSWERS;
+    node_.bus().publish(channels::kDeviceState, state_);
+  }
+
+  struct Sense {
+    std::string modality;
+    int state = 0;
+    double rate_Hz = 0, nominal_rate_Hz = 0;
+    std::int64_t missed_ticks = 0, profile = 0;
+    sync::HostTime heard{};
+  };
+
+  sync::Node& node_;
+  Lines& lines_;
+  Observations observations_;
+  Enforcement enforcement_;
+  Interview interview_;
+  std::optional<Hand> hand_;
+  sync::SimFollower simulation_;
+  sync::Queue<node_health_t>& healths_;
+  sync::Queue<contact_frame_t>& frames_;
+  sync::Queue<contact_events_t>& events_;
+  sync::Queue<presented_t>& presented_;
+  sync::Queue<media_clock_t>& media_;
+  sync::Queue<game_state_t>& games_;
+  sync::Queue<sim_reply_t>& replies_;
+  sync::Queue<answer_t>& answers_;
+  sync::Queue<tool_state_t>& tools_;
+  sync::Queue<device_force_t>& forces_;
+  sync::Queue<picture_chunk_t>* pictures_ = nullptr;
+  std::map<std::string, Sense> senses_;
+  std::map<std::int32_t, int> buttons_;  // by source
+  std::optional<sim_command_t> command_;
+  sync::HostTime next_command_{}, next_senses_{}, before_{};
+  std::uint64_t commands_ = 0;
+  std::int64_t asked_ = 0;
+  int ticks_ = 0;
+  float force_N_ = 0;
+  device_state_t state_{};
+};
+
+}  // namespace
+
+int run(int argc, char** argv) try {
+  CLI::App app;
+  sync::NodeOptions options;
+  std::vector<double> rest_m;
+  double above_m = 0;
+  bool looks = false;
+  options.add_to(app, kConductor);
+  auto* hand =
+      app.add_option("--hand", rest_m, "the conductor holds device external:conductor, and rests here: X Y Z, m")
+          ->expected(3);
+  app.add_option("--above", above_m, "so far above the surface that it strikes, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->needs(hand);
+  app.add_flag("--look", looks, "says the pictures, too, that visual_node streams");
+  sync::parse_or_exit(app, kConductor.node, argc, argv);
+  std::optional<std::pair<Eigen::Vector3d, double>> held;
+  if (!rest_m.empty()) held.emplace(Eigen::Vector3d(rest_m[0], rest_m[1], rest_m[2]), above_m);
+
+  Lines lines(STDIN_FILENO, STDOUT_FILENO);
+  sync::Node node(kConductor, options);
+  Conductor conductor(node, held, looks, lines);
+  node.set_state(node_health_t::RUNNING);
+  while (node.running())
+    if (!conductor.step(node.wait())) break;
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail(kConductor.node, e);
+}
+
+}  // namespace tactus::conductor

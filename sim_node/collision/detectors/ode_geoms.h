@@ -1,0 +1,35 @@
+// A shape as ODE's geometry. Only files named ode_*.cpp include this.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "sim_node/collision/detectors/ode_handles.h"
+#include "sim_node/model/world_def.h"
+
+namespace tactus::sim::ode {
+
+// Makes geometries, all of one world, and keeps what they point to: it must outlive them. Shapes of one mesh share its
+// tree.
+class Geoms {
+ public:
+  // is_static: a plane is infinite then, at `pose` in the world; else it is a plate.
+  dGeomID make(const WorldDef& world, const ShapeDef& shape, bool is_static, const Eigen::Isometry3d& pose);
+  // Where ODE wants a geometry for a shape that is at `pose`: its heightfields have y up, and a plate lies below
+  // its plane.
+  static Eigen::Isometry3d placed(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);
+
+ private:
+  struct Triangles {  // ODE keeps pointers to them
+    std::vector<double> vertices;
+    std::vector<dTriIndex> indices;
+    Owned<dTriMeshDataID> data;
+  };
+  dGeomID make_mesh(const WorldDef& world, int mesh);
+  dGeomID make_heightfield(const Heightfield& field);
+
+  std::map<int, Triangles> triangles_;  // by the number of the mesh
+  std::vector<Owned<dHeightfieldDataID>> heightfields_;
+};
+
+}  // namespace tactus::sim::ode

@@ -1,0 +1,47 @@
+// The shapes of a world as ODE's geometries, and the contacts between them as manifolds.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "sim_node/collision/detectors/ode_handles.h"
+#include "sim_node/collision/detectors/chosen_detector.h"
+#include "sim_node/model/manifold.h"
+#include "sim_node/collision/detectors/ode_geoms.h"
+#include "sim_node/model/world_def.h"
+
+namespace tactus::sim::ode {
+
+class Shapes {
+ public:
+  // bodies: ODE's body of each of the world's, null for those that never move. Tools get no shape: they are ghosts.
+  // Throws std::runtime_error with one sentence when the detector that the settings choose cannot take a shape.
+  Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const Settings& settings);
+
+  // All contacts of the present poses, ordered by (shape_a, shape_b), so that the same world gives the same order.
+  // Realtime-safe once the lists have grown.
+  void collide(std::vector<Manifold>& out);
+
+ private:
+  struct Box {
+    dGeomID geom;
+    dReal side[6];  // low and high, of x, y, z
+  };
+  static void near(void* self, dGeomID a, dGeomID b);
+  bool may_collide(int body_a, int body_b) const;
+  void sweep(double reach_m);
+  void collide_by_ode(std::size_t a, dGeomID geom_a, std::size_t b, dGeomID geom_b);
+
+  Geoms geoms_;
+  Owned<dSpaceID> space_;
+  std::vector<int> body_of_;                // per shape
+  std::vector<bool> is_mesh_;               // per shape
+  std::vector<std::pair<int, int>> apart_;  // sorted pairs of bodies that do not collide
+  std::vector<dContactGeom> raw_;
+  std::vector<ManifoldPoint> found_;
+  ChosenDetector chosen_;
+  std::vector<Box> boxes_;
+  std::vector<Manifold>* out_ = nullptr;
+};
+
+}  // namespace tactus::sim::ode

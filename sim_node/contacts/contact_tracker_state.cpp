@@ -1,0 +1,44 @@
+#include <algorithm>
+
+#include "sim_node/contacts/contact_tracker.h"
+#include "sim_node/model/archive_motion.h"
+
+namespace tactus::sim {
+namespace {
+
+// More contacts than a step can solve points.
+constexpr std::size_t kMostContacts = 1 << 16;
+
+}  // namespace
+
+void ContactTracker::archive(StateArchive& a, LiveContact& c, std::size_t bodies) {
+  a(c.id);
+  sim::archive(a, c.manifold, bodies, surfaces_.size());
+  a(c.a_body_m), a(c.b_body_m), a(c.touching), a(c.gap_m), a(c.normal_force_N), a(c.impulse_N_s);
+  a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.apart_since), a(c.place_m), a(c.rolling_m_s);
+}
+
+void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
+  a(now_);
+  a.list(live_, kMostContacts, [&](LiveContact& c) { archive(a, c, bodies); });
+}
+
+void ContactTracker::take(std::span<const char> marked, std::vector<LiveContact>& out) {
+  const auto goes = [&](const LiveContact& c) {
+    return marked[static_cast<std::size_t>(c.manifold.body_a)] || marked[static_cast<std::size_t>(c.manifold.body_b)];
+  };
+  std::copy_if(live_.begin(), live_.end(), std::back_inserter(out), goes);
+  std::erase_if(live_, goes);
+}
+
+void ContactTracker::put(std::span<const LiveContact> contacts) {
+  live_.insert(live_.end(), contacts.begin(), contacts.end());
+  std::sort(live_.begin(), live_.end(),
+            [](const LiveContact& x, const LiveContact& y) { return x.manifold.before(y.manifold); });
+}
+
+void ContactTracker::rename() {
+  for (LiveContact& c : live_) c.id = ids_.renamed(c.id);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,85 @@
+#include "sim_node/model/bounds_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace tactus::sim {
+namespace {
+
+constexpr long long kMostCells = 64;  // of one box, or of one query: beyond that a look at all is as cheap
+constexpr int kFurthest = (1 << 20) - 1;
+constexpr double kSmallestCell_m = 1e-3;
+
+template <class Visit>
+void each_cell(const Eigen::Array3i& least, const Eigen::Array3i& most, Visit&& visit) {
+  for (int x = least.x(); x <= most.x(); ++x)
+    for (int y = least.y(); y <= most.y(); ++y)
+      for (int z = least.z(); z <= most.z(); ++z) visit(x, y, z);
+}
+
+}  // namespace
+
+// Primes of Teschner et al. 2003, "Optimized spatial hashing for collision detection of deformable objects", 4.1.
+std::uint32_t BoundsGrid::bucket_of(int x, int y, int z) const {
+  const auto part = [](int v, std::uint32_t prime) { return static_cast<std::uint32_t>(v) * prime; };
+  return (part(x, 73856093) ^ part(y, 19349663) ^ part(z, 83492791)) & (buckets_ - 1);
+}
+
+BoundsGrid::Range BoundsGrid::range_of(const Bounds& b) const {
+  const auto cell = [&](const Eigen::Vector3d& p) -> Eigen::Array3i {
+    return (p / cell_m_).array().floor().max(-kFurthest).min(kFurthest).cast<int>();
+  };
+  return {cell(b.least_m), cell(b.most_m)};
+}
+
+void BoundsGrid::build(std::span<const Bounds> boxes) {
+  boxes_.assign(boxes.begin(), boxes.end());
+  sizes_.clear();
+  for (const Bounds& b : boxes_) sizes_.push_back((b.most_m - b.least_m).maxCoeff());
+  entries_.clear();
+  large_.clear();
+  buckets_ = std::bit_ceil(static_cast<std::uint32_t>(2 * boxes_.size() + 1));
+  if (boxes_.empty()) return;
+  const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+  std::nth_element(sizes_.begin(), middle, sizes_.end());
+  // design: most boxes lie in one or two cells, a query sees few besides
+  cell_m_ = std::max(4 * *middle, kSmallestCell_m);
+  for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
+    const Range r = range_of(boxes_[static_cast<std::size_t>(i)]);
+    if (r.cells() > kMostCells)
+      large_.push_back(i);
+    else
+      each_cell(r.least, r.most, [&](int x, int y, int z) { entries_.push_back({bucket_of(x, y, z), i}); });
+  }
+  // Counted, then put in place, from the last on so that each bucket is in order.
+  first_.assign(buckets_ + 1, 0);
+  for (const Entry& e : entries_) ++first_[e.bucket];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  in_.resize(entries_.size());
+  for (auto e = entries_.rbegin(); e != entries_.rend(); ++e)
+    in_[static_cast<std::size_t>(--first_[e->bucket])] = e->box;
+}
+
+void BoundsGrid::find(const Bounds& query, std::vector<int>& found) const {
+  const auto begin = static_cast<std::ptrdiff_t>(found.size());
+  const auto look = [&](int box) {
+    if (boxes_[static_cast<std::size_t>(box)].meets(query)) found.push_back(box);
+  };
+  if (boxes_.empty()) return;
+  const Range r = range_of(query);
+  if (r.cells() > kMostCells) {
+    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) look(i);
+    return;
+  }
+  for (const int box : large_) look(box);
+  each_cell(r.least, r.most, [&](int x, int y, int z) {
+    const std::uint32_t bucket = bucket_of(x, y, z);
+    for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) look(in_[static_cast<std::size_t>(k)]);
+  });
+  std::sort(found.begin() + begin, found.end());
+  found.erase(std::unique(found.begin() + begin, found.end()), found.end());
+}
+
+}  // namespace tactus::sim

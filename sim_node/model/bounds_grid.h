@@ -1,0 +1,41 @@
+// Finds the boxes that may meet a given one among many: cells of one size, hashed; what is larger than a few cells
+// is looked at each time. Pure, deterministic.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim_node/model/swept_sphere.h"
+
+namespace tactus::sim {
+
+class BoundsGrid {
+ public:
+  // Indexes these boxes anew. Realtime-safe once its lists have grown.
+  void build(std::span<const Bounds> boxes);
+  // Appends those that meet the query to `found`, in ascending order, each once.
+  void find(const Bounds& query, std::vector<int>& found) const;
+
+ private:
+  struct Entry {  // one box in one cell
+    std::uint32_t bucket;
+    int box;
+  };
+  struct Range {
+    Eigen::Array3i least, most;
+    long long cells() const { return (most - least + 1).cast<long long>().prod(); }
+  };
+  Range range_of(const Bounds& b) const;
+  std::uint32_t bucket_of(int x, int y, int z) const;
+
+  double cell_m_ = 1;
+  std::vector<Bounds> boxes_;
+  std::vector<Entry> entries_;
+  std::uint32_t buckets_ = 1;    // a power of two
+  std::vector<int> first_, in_;  // the boxes of each bucket: in_[first_[bucket]...]
+  std::vector<int> large_;       // in many cells
+  std::vector<double> sizes_;
+};
+
+}  // namespace tactus::sim

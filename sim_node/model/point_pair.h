@@ -1,0 +1,19 @@
+// Two points of two surfaces that are near to each other: what a collision query is about.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sim_node/model/contact_kind.h"
+
+namespace tactus::sim {
+
+struct PointPair {
+  Eigen::Vector3d on_a_m = Eigen::Vector3d::Zero(), on_b_m = Eigen::Vector3d::Zero();  // world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                                   // unit, world, from a to b
+  double gap_m = 0;                        // between the surfaces along the normal; negative: depth
+  int triangle_a = -1, triangle_b = -1;    // of a mesh; -1: none
+  ContactKind kind = ContactKind::kPoint;  // of the pair of surfaces (of triangles, where there are some)
+  bool pierced = false;                    // an edge goes through a face here
+};
+
+}  // namespace tactus::sim

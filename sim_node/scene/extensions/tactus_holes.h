@@ -1,0 +1,11 @@
+// <tactus:hole>: the holes of a game and the bodies that belong into them.
+#pragma once
+
+#include "sim_node/scene/sdf/load_context.h"
+
+namespace tactus::sim {
+
+// Call when the bodies are known.
+void read_holes(LoadContext& context, const sdf::ElementPtr& world);
+
+}  // namespace tactus::sim

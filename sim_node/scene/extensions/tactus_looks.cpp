@@ -1,0 +1,255 @@
+#include "sim_node/scene/extensions/tactus_looks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "sim_node/scene/sdf/attributes.h"
+#include "sim_node/scene/materials/pictures.h"
+#include "sim_node/scene/sdf/regular_file.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
+#include "sync/text/settings.h"
+
+namespace tactus::sim {
+namespace {
+
+// What comes with visual_node (visual_node/README.md): for surfaces, and for passes.
+const std::vector<std::string> kSurfaceShaders{"gouraud", "phong", "normal_mapped", "reflecting", "textured"};
+const std::vector<std::string> kPassShaders{"greyscale", "blur", "edges"};
+
+// Design: a thousand lines; more uniforms than shaders that people write have; as many passes as 60 Hz can hope
+// for.
+constexpr std::uintmax_t kMaxShaderBytes = 64 << 10;
+constexpr std::size_t kMaxUniforms = 32, kMaxShaders = 64, kMaxPasses = 16;
+constexpr std::size_t kMaxName = 64;  // as in uniform_t.lcm
+constexpr float kLargestUniform = 1e6f;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_identifier(const std::string& name) {
+  const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '_'; };
+  return !name.empty() && name.size() <= kMaxName && letter(static_cast<unsigned char>(name[0])) &&
+         !name.starts_with("gl_") &&
+         std::all_of(name.begin(), name.end(), [&](unsigned char c) { return letter(c) || std::isdigit(c); });
+}
+
+void check_shader(const LoadContext& context, const sdf::Element& element, const std::string& name,
+                  const std::vector<std::string>& ours) {
+  const auto& own = context.world.shaders;
+  if (!is_identifier(name))
+    context.refuse(element,
+                   "names shader \"" + name + "\": it must be letters, digits and _, 64 at most, no digit first");
+  if (contains(ours, name) ||
+      std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; }))
+    return;
+  std::string names;
+  for (const std::string& each : ours) names += (names.empty() ? "" : ", ") + each;
+  for (const shader_t& each : own) names += ", " + each.name;
+  context.warn(element, "names shader \"" + name +
+                            "\", which is neither the scene's nor visual_node's: there are " + names +
+                            "; a renderer of one's own may have it");
+}
+
+// "scale 2; tint 1 0.5 0"
+std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Element& element,
+                                     const std::string& text) {
+  std::vector<uniform_t> uniforms;
+  std::istringstream all(text);
+  for (std::string part; std::getline(all, part, ';');) {
+    std::istringstream words(part);
+    uniform_t uniform{};
+    if (!(words >> uniform.name)) continue;
+    const auto refuse = [&](const std::string& what) {
+      context.refuse(element,
+                     "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
+    };
+    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is no name of a uniform");
+    for (std::string word; words >> word; ++uniform.count) {
+      if (uniform.count == 4) refuse(uniform.name + " has more than 4 numbers");
+      try {
+        uniform.values[uniform.count] = static_cast<float>(sync::parse_quantity(word, ""));
+      } catch (const std::invalid_argument& e) {
+        refuse(uniform.name + ": " + e.what());
+      }
+      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " is beyond 1e6");
+    }
+    if (uniform.count == 0) refuse(uniform.name + " has no number");
+    for (const uniform_t& other : uniforms)
+      if (other.name == uniform.name) refuse(uniform.name + " stands there twice");
+    if (uniforms.size() == kMaxUniforms) refuse("more than " + std::to_string(kMaxUniforms) + " are given");
+    uniforms.push_back(uniform);
+  }
+  return uniforms;
+}
+
+// All but the name.
+LookWords read_words(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
+  LookWords words;
+  words.shader = attributes.text("shader");
+  if (words.shader && !words.shader->empty()) check_shader(context, element, *words.shader, kSurfaceShaders);
+  const auto picture = [&](const char* what, PictureUse use) -> std::optional<std::int64_t> {
+    const auto uri = attributes.text(what);
+    if (!uri) return std::nullopt;
+    return uri->empty() ? 0 : picture_of(context, element, what, *uri, use);
+  };
+  words.colour_map = picture("colour_map", PictureUse::kColour);
+  words.normal_map = picture("normal_map", PictureUse::kDirections);
+  words.reflectance = attributes.quantity("reflectance", "1", 0, 1);
+  if (const auto uniforms = attributes.text("uniforms"))
+    words.uniforms = read_uniforms(context, element, *uniforms);
+  return words;
+}
+
+const LookWords& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+  const auto known = context.look_of.find(name);
+  if (known != context.look_of.end()) return *known->second;
+  std::string names;
+  for (const auto& [each, words] : context.look_of) names += (names.empty() ? "" : ", ") + each;
+  context.refuse(
+      element, "names look \"" + name + "\": there " + (names.empty() ? "is none in this scene" : "are " + names));
+}
+
+void read_look(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  const std::string name = attributes.required_text("name");
+  const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+  if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
+    context.refuse(element, "has a name that is longer than 64 letters, or no printable ASCII");
+  const auto base = attributes.text("base");
+  auto words = std::make_shared<LookWords>(read_words(context, element, attributes));
+  attributes.done();
+  if (base) words->add(known_look(context, element, *base));
+  words->name = name;
+  if (!context.look_of.emplace(name, words).second)
+    context.refuse(element, "has a name that another look has: choose another");
+}
+
+std::int64_t read_text(LoadContext& context, const sdf::Element& element, const std::string& what,
+                       const std::string& uri) {
+  const std::filesystem::path file = context.asset_file(uri, element);
+  try {
+    sync::Asset text{asset_ref_t::SHADER, file.filename().string(), read_regular_file(file, kMaxShaderBytes)};
+    if (text.bytes.empty()) throw std::runtime_error("it is empty");
+    int line = 1;
+    for (const std::uint8_t c : text.bytes) {
+      // The characters of GLSL 3.30, 3.1, and all that is printable in ASCII for comments.
+      if ((c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c > 0x7e)
+        throw std::runtime_error("line " + std::to_string(line) + " holds a character that is no printable ASCII");
+      line += c == '\n';
+    }
+    const std::int64_t hash = sync::fnv1a_64(text.bytes.data(), text.bytes.size());
+    auto& texts = context.world.shader_texts;
+    if (std::none_of(texts.begin(), texts.end(),
+                     [&](const sync::Asset& other) { return other.bytes == text.bytes; }))
+      texts.push_back(std::move(text));
+    return hash;
+  } catch (const std::exception& e) {
+    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
+  }
+}
+
+void read_shader(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  shader_t shader{};
+  shader.name = attributes.required_text("name");
+  shader.fragment_file = attributes.required_text("fragment");
+  shader.vertex_file = attributes.text("vertex").value_or("");
+  attributes.done();
+  if (!is_identifier(shader.name))
+    context.refuse(
+        element, "has name=\"" + shader.name + "\": it must be letters, digits and _, 64 at most, no digit first");
+  if (contains(kSurfaceShaders, shader.name) || contains(kPassShaders, shader.name))
+    context.refuse(element, "has a name that a shader of visual_node has: choose another");
+  for (const shader_t& other : context.world.shaders)
+    if (other.name == shader.name) context.refuse(element, "has a name that another shader has: choose another");
+  if (context.world.shaders.size() == kMaxShaders)
+    context.refuse(element, "is one too many: a scene may have " + std::to_string(kMaxShaders));
+  shader.fragment_asset = read_text(context, element, "fragment", shader.fragment_file);
+  if (!shader.vertex_file.empty()) shader.vertex_asset = read_text(context, element, "vertex", shader.vertex_file);
+  context.world.shaders.push_back(shader);
+}
+
+void read_pass(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  pass_t pass{};
+  pass.shader = attributes.required_text("shader");
+  pass.uniforms = read_uniforms(context, element, attributes.text("uniforms").value_or(""));
+  pass.uniform_count = static_cast<std::int32_t>(pass.uniforms.size());
+  attributes.done();
+  check_shader(context, element, pass.shader, kPassShaders);
+  if (context.world.passes.size() == kMaxPasses)
+    context.refuse(element, "is one too many: a scene may have " + std::to_string(kMaxPasses));
+  context.world.passes.push_back(pass);
+}
+
+void read_environment(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  const std::string uri = attributes.required_text("picture");
+  attributes.done();
+  if (context.world.environment_asset != 0)
+    context.refuse(element, "stands there twice: one picture lies around a scene");
+  context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
+}
+
+}  // namespace
+
+void LookWords::add(const LookWords& others) {
+  if (name.empty()) name = others.name;
+  if (!shader) shader = others.shader;
+  if (!colour_map) colour_map = others.colour_map;
+  if (!normal_map) normal_map = others.normal_map;
+  if (!reflectance) reflectance = others.reflectance;
+  if (!uniforms) uniforms = others.uniforms;
+}
+
+void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
+  const auto each = [&](const char* name, void (*read)(LoadContext&, const sdf::Element&)) {
+    for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
+      if (element->GetName() == name) read(context, *element);
+  };
+  each("tactus:shader", read_shader);  // before those who name them
+  each("tactus:look", read_look);
+  each("tactus:pass", read_pass);
+  each("tactus:environment", read_environment);
+}
+
+LookWords read_look_words(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  const auto name = attributes.text("name");
+  LookWords words = read_words(context, element, attributes);
+  attributes.done();
+  if (name) words.add(known_look(context, element, *name));
+  return words;
+}
+
+int look_index(WorldDef& world, const LookWords& words) {
+  if (words.empty()) return -1;
+  look_t look{};
+  look.colour_map = words.colour_map.value_or(0), look.normal_map = words.normal_map.value_or(0);
+  look.reflectance = static_cast<float>(words.reflectance.value_or(0));
+  look.uniforms = words.uniforms.value_or(std::vector<uniform_t>{});
+  look.uniform_count = static_cast<std::int32_t>(look.uniforms.size());
+  // Nobody named a shader: the one that shows all that was said.
+  look.shader = words.shader.value_or(look.reflectance > 0 ? "reflecting"
+                                      : look.normal_map    ? "normal_mapped"
+                                      : look.colour_map    ? "textured"
+                                                           : "");
+  if (look.shader.empty() && !look.colour_map && !look.normal_map && look.reflectance == 0 &&
+      look.uniforms.empty())
+    return -1;
+  const auto bytes = sync::encode(look);
+  for (std::size_t i = 0; i < world.looks.size(); ++i) {
+    look_t other = world.looks[i];
+    other.name.clear();
+    if (sync::encode(other) == bytes) return static_cast<int>(i);
+  }
+  look.name = words.name.empty() ? "look " + std::to_string(world.looks.size()) : words.name;
+  world.looks.push_back(look);
+  return static_cast<int>(world.looks.size()) - 1;
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,138 @@
+#include "sim_node/scene/extensions/tactus_materials.h"
+
+#include <algorithm>
+
+#include "lcmtypes/bump.h"
+#include "lcmtypes/height_map.h"
+#include "sim_node/scene/sdf/attributes.h"
+#include "sim_node/scene/meshes/file_properties.h"
+#include "sim_node/scene/materials/height_image.h"
+#include "sim_node/scene/materials/materials.h"
+#include "sim_node/model/measured_modes.h"
+#include "sim_node/scene/materials/pictures.h"
+
+namespace tactus::sim {
+namespace {
+
+// Hash of the height map in a file, which becomes one of the world's images unless its bytes are among them already.
+std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const std::string& what, const std::string& uri) {
+  const std::filesystem::path file = context.asset_file(uri, element);
+  try {
+    sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
+    read_height_map(image.bytes);
+    return add_image(context.world, std::move(image));
+  } catch (const std::exception& e) {
+    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
+  }
+}
+
+// A picture, the extent of one repetition of it and its height: all three or none.
+void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("bump")) {
+    for (const char* lonely : {"bump_size", "bump_height"})
+      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without bump: name the picture too");
+    return;
+  }
+  const std::string uri = attributes.required_text("bump");
+  const std::vector<double> size_m = attributes.required_quantities("bump_size", 2, "m", kMinBumpSize_m, kMaxBumpSize_m);
+  material.bump_size_u_m = size_m[0], material.bump_size_v_m = size_m[1];
+  material.bump_height_m = attributes.required_quantity("bump_height", "m", kMinBumpHeight_m, kMaxBumpHeight_m);
+  material.bump_asset = image_hash(context, element, "bump", uri);
+}
+
+// A picture, the extent of one repetition of it and the factors of black and white: all three or none.
+void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("friction_map")) {
+    for (const char* lonely : {"friction_size", "friction_factors"})
+      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without friction_map: name the picture too");
+    return;
+  }
+  const std::string uri = attributes.required_text("friction_map");
+  const std::vector<double> size_m = attributes.required_quantities("friction_size", 2, "m", kMinBumpSize_m, kMaxBumpSize_m);
+  const std::vector<double> factors = attributes.required_quantities("friction_factors", 2, "1", 0, kMaxFrictionFactor);
+  material.friction_size_u_m = size_m[0], material.friction_size_v_m = size_m[1];
+  material.friction_black = factors[0], material.friction_white = factors[1];
+  material.friction_asset = image_hash(context, element, "friction_map", uri);
+}
+
+// The table of the modes that an object of this material was measured to have.
+void read_modes(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
+  if (!attributes.text("modes")) return;
+  const std::string uri = attributes.required_text("modes");
+  const std::filesystem::path file = context.asset_file(uri, element);
+  try {
+    const sync::Bytes bytes = read_image_file(file);
+    material.modes = parse_measured_modes({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    material.mode_count = static_cast<int>(material.modes.size());
+  } catch (const std::exception& e) {
+    context.refuse(element, "names modes \"" + uri + "\", which cannot be read: " + e.what());
+  }
+}
+
+void read_material(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  const std::string name = attributes.required_text("name");
+  const auto base = attributes.text("base");
+  const auto known = context.material_of.find(base.value_or(name));
+  if (base && known == context.material_of.end())
+    context.refuse(element, "has base=\"" + *base + "\": there is no such material before this line");
+  material_def_t material{};
+  if (known != context.material_of.end()) material = context.world.materials[static_cast<std::size_t>(known->second)];
+  material.name = name;
+  for (const MaterialFigure& figure : material_figures()) {
+    const auto value = attributes.quantity(figure.attribute, figure.unit, figure.min, figure.max);
+    if (value)
+      material.*figure.field = *value;
+    else if (known == context.material_of.end())
+      context.refuse(element, std::string("is new and lacks \"") + figure.attribute + "\": give it, or a base to take it from");
+  }
+  read_bump(context, element, attributes, material);
+  read_friction_map(context, element, attributes, material);
+  read_modes(context, element, attributes, material);
+  attributes.done();
+  const auto [at, is_new] = context.material_of.try_emplace(name, static_cast<int>(context.world.materials.size()));
+  if (is_new)
+    context.world.materials.push_back(material);
+  else
+    context.world.materials[static_cast<std::size_t>(at->second)] = material;
+}
+
+int known_material(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+  const auto known = context.material_of.find(name);
+  if (known != context.material_of.end()) return known->second;
+  std::string names;
+  for (const auto& [each, index] : context.material_of) names += (names.empty() ? "" : ", ") + each;
+  context.refuse(element, "names material \"" + name + "\": there are " + names);
+}
+
+}  // namespace
+
+int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file) {
+  const auto base = properties.find("base");
+  if (base != properties.end() && properties.size() == 1)
+    return known_material(context, *element_of("tactus:material", properties, file), base->second);
+  Properties named = properties;
+  named["name"] = file.filename().string();
+  if (context.material_of.contains(named["name"])) named["name"] = file.string();
+  read_material(context, *element_of("tactus:material", named, file));
+  return context.material_of.at(named["name"]);
+}
+
+void read_materials(LoadContext& context, const sdf::ElementPtr& world) {
+  context.world.materials = builtin_materials();
+  for (const material_def_t& material : context.world.materials)
+    context.material_of[material.name] = static_cast<int>(context.material_of.size());
+  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
+    if (element->GetName() == "tactus:material") read_material(context, *element);
+}
+
+int surface_material(const LoadContext& context, const sdf::ElementPtr& element, int inherited) {
+  const sdf::ElementPtr surface = written(element, "tactus:surface");
+  if (!surface) return inherited;
+  Attributes attributes(context, *surface);
+  const std::string name = attributes.required_text("material");
+  attributes.done();
+  return known_material(context, *surface, name);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,123 @@
+#include "sim_node/scene/extensions/tactus_profile.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim_node/scene/sdf/attributes.h"
+#include "sync/degradation/known_senses.h"
+#include "sync/degradation/profile.h"
+#include "sync/degradation/profile_exchange.h"
+
+namespace tactus::sim {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
+    }
+  return out;
+}
+
+// The start of the tag as a profile has it.
+std::string tag(const std::string& name, const sdf::Element& element) {
+  std::string text = "<" + name;
+  for (const auto& attribute : element.GetAttributes())
+    if (const std::string key = attribute->GetKey(); !key.starts_with("xmlns"))
+      text += " " + key + "=\"" + escaped(attribute->GetAsString()) + "\"";
+  return text;
+}
+
+// A hint for who named a model and left its link away; "": there is no such model.
+std::string body_meant(const WorldDef& world, const std::string& name) {
+  for (const BodyDef& body : world.bodies)
+    if (body.name.starts_with(name + "::")) return "; is \"" + body.name + "\" meant?";
+  return "";
+}
+
+// What a profile names must be in the scene that brings it. file: where its rules stand; "": in the element
+// itself.
+void check_names(const LoadContext& context, const sdf::Element& element, const sync::Profile& profile,
+                 const std::string& file) {
+  const WorldDef& world = context.world;
+  for (const sync::Rule& rule : profile.rules) {
+    const std::string at = file.empty() ? "" : file + ":" + std::to_string(rule.line) + ": ";
+    if (!sync::is_known_sense(rule.modality))
+      context.warn(element, at + "nobody here is called \"" + rule.modality + "\"; a sense of one's own may be");
+    if (!rule.material.empty() && !context.material_of.contains(rule.material))
+      context.refuse(element, "does not hold: " + at + "material=\"" + rule.material +
+                                  "\": there is no such material in this scene");
+    for (const std::string& name : {rule.body_a, rule.body_b})
+      if (!name.empty() && std::none_of(world.bodies.begin(), world.bodies.end(),
+                                        [&](const BodyDef& body) { return body.name == name; }))
+        context.refuse(element, "does not hold: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
+                                    "\": there is no body \"" + name + "\" in this scene" +
+                                    body_meant(world, name));
+  }
+}
+
+void refuse_text(const LoadContext& context, const sdf::Element& element) {
+  if (element.GetValue() && !element.GetValue()->GetAsString().empty())
+    context.refuse(element, "has text in it, which means nothing here: leave it away");
+}
+
+sync::Profile checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
+  try {
+    return sync::parse_profile(xml, "");
+  } catch (const std::invalid_argument& e) {
+    const std::string what = e.what();  // ":1: reason"
+    context.refuse(element, "does not hold: " + what.substr(what.find(": ") + 2));
+  }
+}
+
+std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
+  Attributes attributes(context, *element);
+  const auto file = context.asset_file(attributes.required_text("file"), *element);
+  attributes.done();
+  if (element->GetFirstElement())
+    context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
+  try {
+    const std::string text = sync::read_profile_file(file.string());
+    check_names(context, *element, sync::parse_profile(text, file.string()), file.filename().string());
+    return text;
+  } catch (const std::invalid_argument& e) {
+    context.refuse(*element, std::string("does not hold: ") + e.what());
+  }
+}
+
+}  // namespace
+
+void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
+  const sdf::ElementPtr element = written(world, "tactus:profile");
+  if (!element) return;
+  for (auto other = element->GetNextElement("tactus:profile"); other;
+       other = other->GetNextElement("tactus:profile"))
+    context.refuse(*other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
+  if (element->HasAttribute("file")) {
+    context.world.profile = from_file(context, element);
+    return;
+  }
+  refuse_text(context, *element);
+  checked(context, *element, tag("profile", *element) + "/>");
+  std::string rules;
+  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+    if (child->GetName() != "tactus:degrade")
+      context.refuse(*child, "is not known in a profile: it holds <tactus:degrade>");
+    const std::string rule = tag("degrade", *child) + "/>";
+    refuse_text(context, *child);
+    if (child->GetFirstElement())
+      context.refuse(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
+    check_names(context, *child, checked(context, *child, "<profile>" + rule + "</profile>"), "");
+    rules += "  " + rule + "\n";
+  }
+  context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
+  checked(context, *element, context.world.profile);
+  if (context.world.profile.size() > sync::kMaxProfileBytes)
+    context.refuse(*element, "is longer than 64 kB: leave out what it does not need");
+}
+
+}  // namespace tactus::sim

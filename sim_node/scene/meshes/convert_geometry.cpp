@@ -1,0 +1,111 @@
+#include "sim_node/scene/meshes/convert_geometry.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "lcmtypes/height_map.h"
+#include "sim_node/scene/meshes/gltf_writer.h"
+#include "sim_node/scene/materials/height_image.h"
+#include "sim_node/model/measured_modes.h"
+#include "sim_node/scene/meshes/mesh_reader.h"
+#include "sim_node/scene/materials/pictures.h"
+#include "sim_node/scene/meshes/tangents.h"
+
+namespace tactus::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kFilesOfMaterial[] = {"bump", "friction_map", "modes"};
+const char* const kFilesOfLook[] = {"colour_map", "normal_map"};
+
+std::string moved(const std::string& file, const fs::path& from, const fs::path& to) {
+  if (file.empty() || fs::path(file).is_absolute()) return file;
+  return fs::relative(from / file, to).generic_string();
+}
+
+fs::path folder_of(const fs::path& file) { return fs::absolute(file).parent_path(); }
+
+template <typename List>
+bool same_floats(const List& a, const List& b) {
+  if (a.size() != b.size()) return false;
+  return std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return x == y; });
+}
+
+bool same(const MeshPart& a, const MeshPart& b) {
+  return a.material == b.material && same_floats(a.positions_m, b.positions_m) &&
+         same_floats(a.normals, b.normals) && same_floats(a.texcoords, b.texcoords) &&
+         same_floats(a.tangents, b.tangents) && a.indices == b.indices;
+}
+
+}  // namespace
+
+MeshParts for_place(MeshParts mesh, const fs::path& in, const fs::path& out) {
+  const fs::path from = folder_of(in), to = folder_of(out);
+  std::erase_if(mesh.parts, [](const MeshPart& part) { return part.indices.empty(); });
+  for (MeshPart& part : mesh.parts) make_tangents(part);
+  for (MeshMaterial& m : mesh.materials)
+    for (MeshPicture* picture : {&m.colour_map, &m.normal_map}) picture->file = moved(picture->file, from, to);
+  for (const char* key : kFilesOfMaterial)
+    if (mesh.material.contains(key)) mesh.material[key] = moved(mesh.material[key], from, to);
+  for (const char* key : kFilesOfLook)
+    if (mesh.look.contains(key)) mesh.look[key] = moved(mesh.look[key], from, to);
+  return mesh;
+}
+
+bool same_to_the_bit(const MeshParts& a, const MeshParts& b) {
+  const auto same_material = [](const MeshMaterial& x, const MeshMaterial& y) {
+    return x.diffuse == y.diffuse && x.specular == y.specular && x.emissive == y.emissive &&
+           x.shininess == y.shininess && x.alpha == y.alpha && x.colour_map == y.colour_map &&
+           x.normal_map == y.normal_map;
+  };
+  return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same) &&
+         std::equal(a.materials.begin(), a.materials.end(), b.materials.begin(), b.materials.end(),
+                    same_material) &&
+         a.material == b.material && a.look == b.look;
+}
+
+void check_properties(const MeshParts& mesh, const fs::path& out) {
+  const auto check = [&](const Properties& properties, const char* key, auto read) {
+    const auto at = properties.find(key);
+    if (at == properties.end() || at->second.empty()) return;
+    try {
+      read(read_image_file(folder_of(out) / at->second));
+    } catch (const std::exception& e) {
+      throw std::runtime_error(std::string(key) + " \"" + at->second + "\" cannot be read: " + e.what());
+    }
+  };
+  for (const char* key : {"bump", "friction_map"})
+    check(mesh.material, key, [](const sync::Bytes& b) { read_height_map(b); });
+  check(mesh.material, "modes", [](const sync::Bytes& b) {
+    parse_measured_modes({reinterpret_cast<const char*>(b.data()), b.size()});
+  });
+  check(mesh.look, "colour_map", [](const sync::Bytes& b) { check_picture(b, PictureUse::kColour); });
+  check(mesh.look, "normal_map", [](const sync::Bytes& b) { check_picture(b, PictureUse::kDirections); });
+}
+
+void write_and_verify(const MeshParts& mesh, const fs::path& out) {
+  if (mesh.parts.empty()) throw std::runtime_error("there is no triangle to write");
+  const sync::Bytes bytes = write_gltf(mesh, out.extension() == ".glb");
+  // Of the same extension: it is read as what it will be. Nobody else has this name.
+  const fs::path fresh = out.parent_path() / ("." + std::to_string(getpid()) + out.filename().string());
+  std::error_code error;
+  try {
+    std::ofstream file(fresh, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) throw std::runtime_error("it cannot be written");
+    if (!same_to_the_bit(read_mesh_parts(fresh), mesh))
+      throw std::runtime_error("it reads back differently: it is not written");
+    fs::rename(fresh, out, error);
+    if (error) throw std::runtime_error("it cannot be written: " + error.message());
+  } catch (...) {
+    fs::remove(fresh, error);
+    throw;
+  }
+}
+
+}  // namespace tactus::sim

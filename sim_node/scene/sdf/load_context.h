@@ -1,0 +1,51 @@
+// What the parts of the scene loader share: the world that grows, and the two ways to speak of an element.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <sdf/Element.hh>
+#include <sdf/SemanticPose.hh>
+
+#include "sim_node/scene/sdf/sdf_files.h"
+#include "sim_node/model/world_def.h"
+
+namespace tactus::sim {
+
+struct MeshParts;
+struct LookWords;
+
+struct LoadContext {
+  const SdfFiles& files;
+  std::vector<std::string>& warnings;
+  WorldDef& world;
+  std::map<std::string, int> body_of;      // scoped name -> index
+  std::map<std::string, int> mesh_of;      // file, submesh and scale -> index
+  std::map<std::string, int> material_of;  // name -> index
+  sdf::ElementPtr camera_sensor;           // the first one met: the camera when the scene names none
+  Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
+  std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
+  std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
+  std::map<std::string, std::shared_ptr<const LookWords>> look_of = {};     // name -> what <world> says of it
+
+  // "FILE:LINE: sentence"
+  [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;
+  void warn(const sdf::Element& element, const std::string& sentence) const;
+
+  // The file of a mesh or a picture that an element names; refused when it is not there.
+  std::filesystem::path asset_file(const std::string& uri, const sdf::Element& element) const;
+
+  // The pose as libsdformat's frame graph resolves it; refused when it is not finite.
+  Eigen::Isometry3d resolve(const sdf::SemanticPose& pose, const sdf::Element& element,
+                            const std::string& resolve_to = "") const;
+};
+
+// XML path as libsdformat writes it, also of elements that it does not know.
+std::string xml_path(const sdf::Element& element);
+
+// The first child of that name that stands in the file, not one that a default made.
+sdf::ElementPtr written(const sdf::ElementPtr& element, const std::string& child);
+
+}  // namespace tactus::sim

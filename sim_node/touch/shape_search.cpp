@@ -1,0 +1,66 @@
+#include "sim_node/touch/shape_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/collision/detectors/layer_options.h"
+#include "sim_node/collision/nearest_first.h"
+#include "sim_node/model/tool_shape.h"
+
+namespace tactus::sim {
+namespace {
+
+// Of one surface, the nearest: more than a touch model holds of all.
+constexpr std::size_t kMostMeetings = 64;
+
+// Of each place and direction the nearest.
+class Meetings : public NearestFirst {
+ public:
+  Meetings(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolMeeting>& out)
+      : same_direction_(same_direction), to_tool_(to_tool), out_(out) {}
+
+  bool known(const PointPair& p) const override {
+    if (!p.normal.allFinite() || !p.on_a_m.allFinite() || !p.on_b_m.allFinite()) return true;
+    const Eigen::Vector3d normal = -p.normal, on_tool = to_tool_ * place(p);
+    return std::any_of(out_.begin(), out_.end(), [&](const ToolMeeting& m) {
+      return m.plane.normal.dot(normal) > same_direction_ &&
+             (m.tool_point_m - on_tool).norm() < ShapeSearch::kSamePlace_m;
+    });
+  }
+
+  bool take(const PointPair& p) override {
+    // Its height over the plane, whatever the detector calls the gap of two points that are not above each other.
+    const Eigen::Vector3d normal = -p.normal;
+    out_.push_back({{p.on_b_m, normal, normal.dot(place(p) - p.on_b_m), p.triangle_b}, to_tool_ * place(p)});
+    return out_.size() < kMostMeetings;
+  }
+
+ private:
+  static Eigen::Vector3d place(const PointPair& p) { return p.on_a_m + ShapeSearch::kSkin_m * p.normal; }
+
+  double same_direction_;
+  Eigen::Isometry3d to_tool_;
+  std::vector<ToolMeeting>& out_;
+};
+
+}  // namespace
+
+ShapeSearch::ShapeSearch(const WorldDef& world, int tool, const Settings& settings, MeshTrees& trees)
+    : same_direction_(std::cos(settings.touch_merge_angle_rad)),
+      detector_(make_gaps_detector(layer_options(settings),
+                                   std::shared_ptr<MeshTrees>(std::shared_ptr<void>(), &trees))),
+      tool_(detector_->add(tool_shape(world.tools[static_cast<std::size_t>(tool)]), world)) {}
+
+void ShapeSearch::add(const ShapeDef& shape, const WorldDef& world) {
+  numbers_.push_back(detector_->add(shape, world));
+  prepare_nearest_first(*detector_, tool_, numbers_.back());
+}
+
+void ShapeSearch::query(std::size_t shape, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& tool_pose,
+                        double reach_m, std::vector<ToolMeeting>& out) {
+  out.clear();
+  Meetings meetings(same_direction_, tool_pose.inverse(Eigen::Isometry), out);
+  nearest_first(*detector_, tool_, tool_pose, numbers_[shape], pose, reach_m + kSkin_m, meetings, pairs_);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,64 @@
+#include "sim_node/touch/tool_touch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lcmtypes/vectors.h"
+#include "sim_node/model/archive_motion.h"
+
+namespace tactus::sim {
+namespace {
+
+// Of surfaces near one tool.
+constexpr std::size_t kMostNear = 1 << 16;
+
+}  // namespace
+
+void ToolTouch::archive(StateArchive& a) {
+  a.list(near_, kMostNear, [&](Near& n) {
+    a(n.contact_id);
+    auto surface = static_cast<std::int64_t>(n.surface);
+    a(surface);
+    a.require(surface >= 0 && surface < static_cast<std::int64_t>(surfaces_.size()),
+              "the state is one of another scene");
+    n.surface = static_cast<std::size_t>(surface);
+    a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.seen), a(n.gap_m);
+    a(n.touching), a(n.apart), a(n.apart_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);
+    a(n.device_gap_m), a(n.device_gap_known), a(n.closing_m_s);
+    if (shape_) a(n.tool_point_m);
+  });
+  a.fixed(surfaces_, [&](Surface& s) { a(s.friction_static), a(s.friction_dynamic); });
+  a(known_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(heard_), a(last_stamp_);
+  if (shape_) a(spin_), a(proxy_turn_), a(device_turn_);
+  a.message(model_);
+}
+
+void ToolTouch::rename() {
+  for (Near& n : near_) n.contact_id = ids_.renamed(n.contact_id);
+  for (touch_plane_t& p : model_.planes) p.contact_id = ids_.renamed(p.contact_id);
+}
+
+void ToolTouch::set_friction(int body, double friction) {
+  for (Surface& s : surfaces_) {
+    if (s.traits.body != body) continue;
+    s.friction_static = std::sqrt(friction * own_static_);
+    s.friction_dynamic = std::sqrt(friction * own_dynamic_);
+  }
+}
+
+void ToolTouch::feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news) {
+  if (!news.empty()) {
+    hear(news.back());
+    velocity_ = to_eigen(news.back().device_velocity_m_s);
+    if (shape_) {
+      spin_ = to_eigen(news.back().device_spin_rad_s);
+      device_turn_ = to_eigen(news.back().device.orientation).normalized();
+    }
+  }
+  // What was seen at this instant before is looked for anew.
+  for (Near& n : near_) n.seen = std::min(n.seen, now - sync::Nanoseconds(1));
+  look_around(now, bodies);
+  write_model(now, bodies);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,76 @@
+// The state of the whole simulation as bytes, and back.
+#include "sim_node/world/simulation.h"
+#include "sim_node/model/archive_motion.h"
+#include "sim_node/model/envelope.h"
+
+namespace tactus::sim {
+namespace {
+
+constexpr std::size_t kMostEvents = 1 << 16;
+constexpr std::int64_t kMostSteps = 31'000'000'000;  // not quite a year
+
+}  // namespace
+
+void Simulation::archive(StateArchive& a) {
+  a(steps_);
+  a.require(steps_ >= 0 && steps_ <= kMostSteps, "the state holds a number out of range");
+  ids_.archive(a);
+  mechanics_->archive(a);
+  const std::size_t bodies = mechanics_->motions().size();
+  a.fixed(tools_, [&](Tool& tool) {
+    tool.touch.archive(a);
+    tool.push.archive(a, bodies);
+    a(tool.orientation);
+    if (a.reads()) tool.news.clear();
+  });
+  a.list(events_, kMostEvents, [&](contact_event_t& e) { a.message(e); });
+  a.list(tool_contacts_, kMostEvents, [&](contact_t& c) { a.message(c); });
+  a.fixed(models_, [&](touch_model_t& m) { a.message(m); });
+  a.list(wrenches_, kMostWrenches, [&](Wrench& w) {
+    a.index(w.body, bodies);
+    a.require(w.body >= 0, "the state holds a push of nothing");
+    a(w.force_N), a(w.torque_N_m), a(w.steps);
+    a.require(w.steps >= 0 && w.steps <= kMostSteps, "the state holds a number out of range");
+  });
+  a(held_);
+  shown_.resize(held_ ? bodies : 0);
+  a.fixed(shown_, [&](BodyMotion& m) { sim::archive(a, m); });
+  game_.archive(a, bodies);
+}
+
+std::vector<std::uint8_t> Simulation::save() {
+  StateArchive a;
+  archive(a);
+  return wrap_state(a.bytes(), fingerprint_);
+}
+
+std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
+  const std::vector<std::uint8_t> before = save();
+  try {
+    StateArchive a(unwrap_state(bytes, fingerprint_));
+    archive(a);
+    a.require(a.at_end(), "the state is longer than it should be");
+    return "";
+  } catch (const BadState& e) {
+    StateArchive back(unwrap_state(before, fingerprint_));
+    archive(back);
+    return e.what();
+  }
+}
+
+void Simulation::begin_life(std::int64_t incarnation) {
+  ids_.rename(incarnation);
+  mechanics_->rename(incarnation);
+  for (contact_event_t& e : events_) {
+    e.event_id = ids_.renamed(e.event_id);
+    e.contact_id = ids_.renamed(e.contact_id);
+  }
+  for (contact_t& c : tool_contacts_) c.contact_id = ids_.renamed(c.contact_id);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    tools_[i].touch.rename();
+    tools_[i].push.forget();
+    models_[i] = tools_[i].touch.model();
+  }
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "sync/assets/scene_exchange.h"
+
+namespace tactus::sync {
+namespace {
+
+// Chunks wait here between two ticks of the slowest receiver (20 ms at 4 a millisecond).
+constexpr std::size_t kChunkQueue = 4096;
+constexpr std::size_t kManifestQueue = 128;
+constexpr int kMostPages = 64;  // of twelve assets as our sender fills them
+constexpr Nanoseconds kAskAgainAfter{100'000'000};
+constexpr int kMostRequests = 16;  // per round of asking, and assets under way at a time
+constexpr int kLongestRun = 256;   // chunks per request: 64 ms of the sender's budget
+// Of each asset under way: what a sender sends in 250 ms.
+constexpr std::size_t kWindow = 1024;
+
+// One poll does so much at the most: some 0.5 ms.
+constexpr int kPagesPerPoll = 8;
+constexpr int kChunksPerPoll = 256;
+constexpr std::size_t kHashedPerPoll = 96 << 10;
+constexpr int kFreedPerPoll = 256;
+
+bool same(const std::vector<asset_ref_t>& a, const std::vector<asset_ref_t>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const asset_ref_t& x, const asset_ref_t& y) {
+    return x.hash == y.hash && x.size == y.size && x.kind == y.kind && x.name == y.name;
+  });
+}
+
+}  // namespace
+
+SceneReceiver::SceneReceiver(Bus& bus)
+    : bus_(bus),
+      manifests_(bus.queue<scene_manifest_t>(channels::kSceneManifest, kManifestQueue, Port::kBoth)),
+      chunks_(bus.queue<asset_chunk_t>(channels::kAssetChunk, kChunkQueue, Port::kBoth)) {}
+
+const Asset* SceneReceiver::asset(std::int64_t hash) const {
+  const auto it = assets_.find(hash);
+  if (it == assets_.end()) return nullptr;
+  auto& [chunks, asset] = it->second;
+  if (!chunks.empty()) asset.bytes.reserve(chunks.size() * kChunkBytes);
+  for (const Bytes& chunk : chunks) asset.bytes.insert(asset.bytes.end(), chunk.begin(), chunk.end());
+  chunks.clear();
+  return &asset;
+}
+
+bool SceneReceiver::poll(HostTime now) {
+  for (int left = kPagesPerPoll; left > 0; --left) {
+    const auto page = manifests_.pop();
+    if (!page) break;
+    if (follow(page->message.header, page->arrival)) take(page->message);
+  }
+  if (pages_new_) expect();
+  for (int left = kChunksPerPoll; left > 0; --left) {
+    auto chunk = chunks_.pop();
+    if (!chunk) break;
+    take(std::move(chunk->message), now);
+  }
+  hash_some();
+  free_some();
+  if (incoming_.empty()) {
+    progress_ = now;
+    return complete();
+  }
+  if (now - progress_ > kGiveUp)
+    give_up(now);
+  else if (now >= next_request_)
+    ask(now);
+  return false;
+}
+
+bool SceneReceiver::follow(const header_t& header, HostTime arrival) {
+  if (header.incarnation != followed_) {
+    if (followed_ != 0 && arrival - heard_ < kSilence) return false;
+    if (header.incarnation == given_up_ && arrival < given_up_until_) return false;
+    followed_ = header.incarnation;
+    progress_ = arrival;
+    pages_.clear();
+  }
+  heard_ = arrival;
+  return true;
+}
+
+// A manifest is the same for the whole life of its sender, so pages of different sendings complete each other.
+void SceneReceiver::take(const scene_manifest_t& page) {
+  if (page.pages > kMostPages) {
+    ++refused_;
+    return;
+  }
+  if (!pages_.empty() && pages_.rbegin()->first >= page.pages) pages_.clear();
+  auto& refs = pages_[page.page];
+  if (refs.empty() || !same(refs, page.assets)) pages_new_ = true;
+  refs = page.assets;
+  if (static_cast<int>(pages_.size()) != page.pages) pages_new_ = false;
+}
+
+void SceneReceiver::expect() {
+  pages_new_ = false;
+  std::vector<asset_ref_t> manifest;
+  std::set<std::int64_t> named;
+  std::size_t total = 0, assets = 0;
+  for (const auto& [index, refs] : pages_)
+    for (const asset_ref_t& ref : refs) {
+      const std::size_t size = static_cast<std::size_t>(ref.size);
+      total += size;
+      if (++assets > kMaxAssets || size > kMaxAssetBytes || total > kMaxTotalBytes) {
+        ++refused_;
+        return;
+      }
+      if (named.insert(ref.hash).second) manifest.push_back(ref);
+    }
+  for (auto it = incoming_.begin(); it != incoming_.end();) {
+    const bool stays = named.contains(it->first);
+    if (!stays) drop(it->second.chunks);
+    it = stays ? std::next(it) : incoming_.erase(it);
+  }
+  refs_ = std::move(manifest);
+  for (const asset_ref_t& ref : refs_) {
+    if (assets_.contains(ref.hash)) continue;
+    incoming_.try_emplace(ref.hash).first->second.size = static_cast<std::size_t>(ref.size);
+  }
+}
+
+void SceneReceiver::take(asset_chunk_t&& m, HostTime now) {
+  const auto it = incoming_.find(m.hash);
+  if (it == incoming_.end()) return;
+  Incoming& in = it->second;
+  const std::size_t chunk = static_cast<std::size_t>(m.chunk), begin = chunk * kChunkBytes;
+  if (static_cast<std::size_t>(m.chunks) != in.chunk_count() || in.has(chunk)) return;
+  if (chunk < in.hashed || chunk >= in.hashed + kWindow) return;
+  if (m.data.size() != std::min(kChunkBytes, in.size - begin)) return;
+  if (bytes_held_ + m.data.size() > 2 * kMaxTotalBytes) return;  // the scene in use and the next one
+  if (chunk >= in.chunks.size()) in.chunks.resize(chunk + 1);
+  bytes_held_ += m.data.size();
+  in.chunks[chunk] = std::move(m.data);
+  progress_ = now;
+}
+
+void SceneReceiver::hash_some() {
+  std::size_t left = kHashedPerPoll;
+  for (auto it = incoming_.begin(); it != incoming_.end() && left >= kChunkBytes;) {
+    Incoming& in = it->second;
+    for (; in.has(in.hashed) && left >= kChunkBytes; ++in.hashed, left -= kChunkBytes)
+      in.hash = fnv1a_64(in.hash, in.chunks[in.hashed].data(), in.chunks[in.hashed].size());
+    if (in.hashed < in.chunk_count()) {
+      ++it;
+      continue;
+    }
+    const std::int64_t hash = it->first;
+    if (static_cast<std::int64_t>(in.hash) != hash) {  // a forged or mixed-up chunk: begin again
+      drop(in.chunks);
+      in.hashed = 0;
+      in.hash = kFnv1aBegin;
+      ++it;
+      continue;
+    }
+    const auto ref =
+        std::find_if(refs_.begin(), refs_.end(), [&](const asset_ref_t& r) { return r.hash == hash; });
+    assets_[hash] = {std::move(in.chunks), {ref->kind, ref->name, {}}};
+    it = incoming_.erase(it);
+  }
+}
+
+void SceneReceiver::drop(std::deque<Bytes>& chunks) { garbage_.push_back(std::exchange(chunks, {})); }
+
+void SceneReceiver::free_some() {
+  for (int left = kFreedPerPoll; left > 0 && !garbage_.empty(); --left) {
+    std::deque<Bytes>& chunks = garbage_.back();
+    if (chunks.empty()) {
+      garbage_.pop_back();
+      continue;
+    }
+    bytes_held_ -= chunks.back().size();
+    chunks.pop_back();
+  }
+}
+
+// Whoever announced this does not send it.
+void SceneReceiver::give_up(HostTime now) {
+  for (auto& [hash, in] : incoming_) drop(in.chunks);
+  incoming_.clear();
+  refs_.clear();
+  pages_.clear();
+  given_up_ = std::exchange(followed_, 0);
+  given_up_until_ = now + kGiveUp;
+}
+
+void SceneReceiver::ask(HostTime now) {
+  next_request_ = now + kAskAgainAfter;
+  int left = kMostRequests, under_way = 0;
+  for (const auto& [hash, in] : incoming_) {
+    if (left == 0 || ++under_way > kMostRequests) break;
+    const std::size_t end = std::min(in.chunk_count(), in.hashed + kWindow);
+    for (std::size_t i = in.hashed; i < end && left > 0;) {
+      if (in.has(i)) {
+        ++i;
+        continue;
+      }
+      const std::size_t first = i;
+      while (i < end && !in.has(i) && i - first < kLongestRun) ++i;
+      asset_request_t m{};
+      m.header.sim_time_ns = -1;
+      m.hash = hash;
+      m.first_chunk = static_cast<std::int32_t>(first);
+      m.chunk_count = static_cast<std::int32_t>(i - first);
+      bus_.publish(channels::kAssetRequest, m, Port::kBulk);
+      --left;
+    }
+  }
+}
+
+bool SceneReceiver::complete() {
+  const auto is_scene = [](const asset_ref_t& r) { return r.kind == asset_ref_t::SCENE; };
+  const auto ref = std::find_if(refs_.begin(), refs_.end(), is_scene);
+  if (ref == refs_.end() || ref->hash == refused_scene_ || (scene_ && ref->hash == scene_hash_)) return false;
+  const Asset* found = asset(ref->hash);
+  auto decoded = found ? decode_asset<scene_t>(found->bytes) : std::nullopt;
+  if (!decoded) {
+    refused_scene_ = ref->hash;
+    return false;
+  }
+  scene_ = std::move(*decoded);
+  scene_hash_ = ref->hash;
+  std::set<std::int64_t> named;
+  for (const asset_ref_t& r : refs_) named.insert(r.hash);
+  for (auto it = assets_.begin(); it != assets_.end();) {
+    const bool stays = named.contains(it->first);
+    if (!stays) {
+      drop(it->second.chunks);
+      garbage_.emplace_back().push_back(std::move(it->second.asset.bytes));
+    }
+    it = stays ? std::next(it) : assets_.erase(it);
+  }
+  return true;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,15 @@
+#include "sync/bus/asking.h"
+
+#include <sys/random.h>
+
+#include <stdexcept>
+
+namespace tactus::sync {
+
+std::int64_t question_id() {
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != sizeof random) throw std::runtime_error("no random numbers");
+  return static_cast<std::int64_t>(random >> 2) + 1;
+}
+
+}  // namespace tactus::sync

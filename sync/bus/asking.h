@@ -1,0 +1,37 @@
+// How a program asks a node for one thing: it repeats the question, which carries a random id, until a reply
+// carries that id.
+#pragma once
+
+#include <optional>
+
+#include "sync/bus/bus.h"
+#include "sync/bus/identity.h"
+#include "sync/clocks/pacing.h"
+
+namespace tactus::sync {
+
+// A number that no other question has, > 0. Throws std::runtime_error when the system has no random numbers.
+std::int64_t question_id();
+
+// The reply of this run to `question`; nothing: nobody answered for so long. For programs that a person runs: it
+// waits.
+template <class Question, class Reply>
+std::optional<Reply> ask(Bus& bus, const char* channel, Question& question, Queue<Reply>& replies,
+                         Nanoseconds patience) {
+  constexpr Nanoseconds kRepeat{100'000'000};  // a datagram may be lost
+  const HostTime begin = host_now();
+  for (HostTime next = begin; host_now() < begin + patience;) {
+    if (host_now() >= next) {
+      bus.publish(channel, question);
+      next += kRepeat;
+    }
+    bus.wait(kRepeat / 4);
+    bus.drain(host_now());
+    while (auto m = replies.pop())
+      if (m->message.header.run_id == bus.identity().run_id && m->message.id == question.id)
+        return std::move(m->message);
+  }
+  return std::nullopt;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,252 @@
+#include "sync/bus/bus.h"
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <lcm/lcm-cpp.hpp>
+#include <stdexcept>
+#include <system_error>
+
+#include "sync/bus/udp_reader.h"
+#include "sync/virtual_time/virtual_time.h"
+
+namespace tactus::sync {
+namespace {
+
+// For LCM's own queues, which a bus in memory uses. It drops the newest message when one is full, so it must not
+// fill.
+constexpr int kLcmQueue = 20000;
+// Multicast comes back to its sender at once, or a firewall keeps it.
+constexpr Nanoseconds kSelfTest = std::chrono::seconds(2);
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // LCM's own: stock tools know what it is
+
+// LCM explains to stderr, at length, why it cannot start; one sentence of ours is enough. Takes what is written to
+// stderr while it lives.
+class CapturedStderr {
+ public:
+  CapturedStderr() : kept_(dup(STDERR_FILENO)), file_(memfd_create("stderr", MFD_CLOEXEC)) {
+    if (kept_ >= 0 && file_ >= 0) dup2(file_, STDERR_FILENO);
+  }
+  ~CapturedStderr() {
+    if (kept_ >= 0 && file_ >= 0) dup2(kept_, STDERR_FILENO);
+    if (kept_ >= 0) close(kept_);
+    if (file_ >= 0) close(file_);
+  }
+  CapturedStderr(const CapturedStderr&) = delete;
+  CapturedStderr& operator=(const CapturedStderr&) = delete;
+
+  std::string text() const {
+    char buffer[4096];
+    const ssize_t size = pread(file_, buffer, sizeof buffer, 0);
+    return size > 0 ? std::string(buffer, static_cast<std::size_t>(size)) : std::string();
+  }
+
+ private:
+  int kept_, file_;
+};
+
+// Below SenderClock::kTolerance, above what it takes to read what has arrived.
+constexpr Nanoseconds kHeldUp{500'000};
+
+std::string joining(const Identity& id, const std::string& url) {
+  return id.node + ": cannot join the bus at " + url + ": ";
+}
+
+// For sending. LCM binds no port for that and starts no thread.
+std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id) {
+  const CapturedStderr lcm_says;
+  auto connection = std::make_shared<lcm::LCM>(url);
+  if (connection->good()) return connection;
+  throw std::runtime_error(
+      joining(id, url) +
+      "there is no multicast route; start it with scripts/run, or add one: " + "ip route add 224.0.0.0/4 dev lo");
+}
+
+std::unique_ptr<UdpReader> listen(const Identity& id, const BusOptions& options) try {
+  return std::make_unique<UdpReader>(options.group, options.port);
+} catch (const std::system_error& e) {
+  if (e.code().value() == EADDRINUSE)
+    throw std::runtime_error(
+        joining(id, lcm_url(options, options.port)) + "port " + std::to_string(options.port) +
+        " or the next is held by a program that does not share it; choose another --port, and " +
+        "leave the one after it free too");
+  throw std::runtime_error(joining(id, lcm_url(options, options.port)) + e.what());
+}
+
+}  // namespace
+
+struct Bus::Connections {
+  std::shared_ptr<lcm::LCM> realtime;
+  std::shared_ptr<lcm::LCM> bulk;
+  std::unique_ptr<UdpReader> reader;  // none in memory: there LCM hands over what arrives
+  std::unique_ptr<VirtualEnd> end;    // in a virtual time: instead of all of them
+  HostTime now{};                     // stamp for what is drained
+
+  struct Handler {
+    Connections* connections;
+    InboxBase* inbox;
+    void handle(const lcm::ReceiveBuffer* buffer, const std::string&) {
+      inbox->accept(buffer->data, buffer->data_size, connections->now);
+    }
+  };
+  std::vector<std::unique_ptr<Handler>> handlers;
+  using Subscribers = std::map<std::string, std::vector<InboxBase*>, std::less<>>;
+  std::array<Subscribers, 2> subscribers;  // of each port
+
+  void hear(std::size_t side, const ChannelBytes& m) {
+    const auto at = subscribers[side].find(m.channel);
+    if (at == subscribers[side].end()) return;
+    // A piece of a long message is told as what it is: too long.
+    const std::size_t size = m.whole ? m.data.size() : channels::kMaxMessageBytes + 1;
+    for (InboxBase* inbox : at->second) inbox->accept(m.data.data(), size, now);
+  }
+};
+
+std::string lcm_url(const BusOptions& o, int port) {
+  if (o.memory) return "memq://";
+  return "udpm://" + o.group + ":" + std::to_string(port) + "?ttl=" + std::to_string(o.ttl);
+}
+
+Bus::Bus(Identity identity, const BusOptions& options)
+    : identity_(std::move(identity)), maps_(identity_.run_id), connections_(std::make_unique<Connections>()) {
+  if (options.clock != 0) identity_.clock = options.clock;
+  Connections& c = *connections_;
+  if (VirtualTime* time = VirtualTime::current()) {
+    c.end = time->wire().join();
+    return;
+  }
+  c.realtime = c.bulk = open(lcm_url(options, options.port), identity_);
+  if (options.memory) return;
+  c.bulk = open(lcm_url(options, options.port + 1), identity_);
+  c.reader = listen(identity_, options);
+  test_self(lcm_url(options, options.port));
+}
+
+void Bus::test_self(const std::string& url) {
+  Connections& c = *connections_;
+  const std::string token = std::to_string(identity_.incarnation);
+  std::array<bool, 2> heard{};
+  for (const HostTime end = host_now() + kSelfTest; !(heard[0] && heard[1]);) {
+    if (host_now() > end)
+      throw std::runtime_error(
+          joining(identity_, url) +
+          "what is sent there does not come back; let the firewall pass UDP to its group, also "
+          "from this machine to itself");
+    for (lcm::LCM* port : {c.realtime.get(), c.bulk.get()})
+      port->publish(kSelfTestChannel, token.data(), static_cast<unsigned>(token.size()));
+    c.reader->wait(kSelfTest / 20);
+    c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) {
+      if (m.channel == kSelfTestChannel && std::equal(m.data.begin(), m.data.end(), token.begin(), token.end()))
+        heard[side] = true;
+    });
+  }
+}
+
+Bus::~Bus() = default;
+
+void Bus::subscribe(const char* channel, InboxBase* inbox, Port port) {
+  Connections& c = *connections_;
+  if (c.end) {
+    if (port != Port::kBulk) c.end->subscribe(0, channel, inbox);
+    if (port != Port::kRealtime) c.end->subscribe(1, channel, inbox);
+    return;
+  }
+  if (!c.reader) {
+    auto handler = std::make_unique<Connections::Handler>(Connections::Handler{&c, inbox});
+    c.realtime->subscribe(channel, &Connections::Handler::handle, handler.get())->setQueueCapacity(kLcmQueue);
+    c.handlers.push_back(std::move(handler));
+    return;
+  }
+  if (port != Port::kBulk) c.subscribers[0][channel].push_back(inbox);
+  if (port != Port::kRealtime) c.subscribers[1][channel].push_back(inbox);
+}
+
+namespace {
+// Stores what is known of clocks where it is looked up, not where it is taken out.
+class MapInbox : public InboxBase {
+ public:
+  explicit MapInbox(ClockMaps& maps) : InboxBase(channels::kClockMap), maps_(maps) {}
+  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
+    if (const auto m = decode<clock_map_t>(data, size))
+      maps_.observe(*m, arrival);
+    else
+      ++count_.bad;
+  }
+
+ private:
+  ClockMaps& maps_;
+};
+}  // namespace
+
+void Bus::follow_clocks() {
+  map_inbox_ = std::make_unique<MapInbox>(maps_);
+  subscribe(channels::kClockMap, map_inbox_.get(), Port::kRealtime);
+}
+
+void Bus::drain(HostTime now) {
+  Connections& c = *connections_;
+  if (c.end) return c.end->drain(now, kMaxDrain);
+  c.now = now;
+  if (c.reader) {
+    const auto hear = [&](std::size_t side, const ChannelBytes& m) {
+      // Held up since `now` was read: what came meanwhile would seem to have arrived before it was sent.
+      if (const HostTime later = host_now(); later - c.now > kHeldUp) c.now = later;
+      c.hear(side, m);
+    };
+    return c.reader->read(kMaxDrain, hear);
+  }
+  int left = kMaxDrain;
+  while (left > 0 && c.realtime->handleTimeout(0) > 0) --left;
+}
+
+void Bus::hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival) {
+  const auto hears = [&](InboxBase& inbox) {
+    if (inbox.count().channel == channel) inbox.accept(data.data(), data.size(), arrival);
+  };
+  for (const auto& inbox : inboxes_) hears(*inbox);
+  if (map_inbox_) hears(*map_inbox_);
+}
+
+void Bus::wait(Nanoseconds at_most) {
+  if (connections_->end) return VirtualTime::current()->wait(*connections_->end, at_most);
+  if (connections_->reader) return connections_->reader->wait(at_most);
+  pollfd fd{connections_->realtime->getFileno(), POLLIN, 0};
+  const std::int64_t ns = at_most.count();
+  const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
+  ppoll(&fd, 1, &timeout, nullptr);
+}
+
+void Bus::renew() {
+  identity_.incarnation = Identity::fresh(identity_.node, identity_.run_id).incarnation;
+  next_seq_.clear();
+}
+
+void Bus::stamp(const char* channel, header_t& h) {
+  h.run_id = identity_.run_id;
+  h.clock = identity_.clock;
+  h.source = identity_.source;
+  h.incarnation = identity_.incarnation;
+  h.seq = next_seq_[channel]++;
+  h.publish_time_ns = to_ns(host_now());
+}
+
+bool Bus::send(const char* channel, const void* data, unsigned size, Port port) {
+  if (connections_->end) {
+    VirtualTime& time = *VirtualTime::current();
+    const std::span bytes(static_cast<const std::uint8_t*>(data), size);
+    if (port != Port::kBulk) time.wire().send(*connections_->end, 0, channel, bytes, time.now());
+    if (port != Port::kRealtime) time.wire().send(*connections_->end, 1, channel, bytes, time.now());
+    return true;
+  }
+  bool sent = true;
+  if (port != Port::kBulk) sent = connections_->realtime->publish(channel, data, size) == 0;
+  if (port == Port::kBulk || (port == Port::kBoth && connections_->bulk != connections_->realtime))
+    sent = connections_->bulk->publish(channel, data, size) == 0 && sent;
+  return sent || refuse();
+}
+
+}  // namespace tactus::sync

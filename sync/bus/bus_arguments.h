@@ -1,0 +1,14 @@
+// The options by which a tool finds the bus of a running cluster: those of a node, and the environment of
+// scripts/attach.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "sync/bus/bus.h"
+
+namespace tactus::sync {
+
+// --group, --port and --ttl; TACTUS_GROUP, TACTUS_PORT and TACTUS_TTL are their defaults.
+void add_bus_options(CLI::App& app, BusOptions& options);
+
+}  // namespace tactus::sync

@@ -1,0 +1,128 @@
+// Where a subscriber finds what arrived: the newest message of a channel, or a bounded queue of them. Filled by
+// Bus::drain, read in the same thread.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "sync/clocks/clock_maps.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/sequence.h"
+#include "sync/time/time.h"
+#include "sync/virtual_time/message_receiver.h"
+
+namespace tactus::sync {
+
+// What all inboxes of one channel count.
+struct InputCount {
+  std::string channel;
+  SequenceTracker sequence;
+  std::int64_t bad = 0;
+  std::int64_t dropped = 0;  // pushed out of a full queue
+  std::int64_t newest_publish_ns = -1;
+  std::int64_t newest_run_id = 0;
+  std::int32_t newest_clock = 0;
+  HostTime newest_arrival{};
+};
+
+// How old the newest message is: by the sender's clock where it can be read on ours, else since its arrival.
+struct InputAge {
+  Nanoseconds age{-1};          // -1: nothing has come
+  Nanoseconds uncertainty{-1};  // half width; -1: not known
+};
+InputAge age_of(const InputCount& input, const OwnClock& own, HostTime now);
+
+template <class Message>
+struct Received {
+  Message message;
+  HostTime arrival;
+  Arrival order;
+};
+
+class InboxBase : public MessageReceiver {
+ public:
+  explicit InboxBase(std::string channel) { count_.channel = std::move(channel); }
+  InboxBase(const InboxBase&) = delete;
+  InboxBase& operator=(const InboxBase&) = delete;
+  const InputCount& count() const { return count_; }
+
+ protected:
+  template <class Message>
+  Arrival note(const Message& m, HostTime arrival) {
+    const Arrival order = count_.sequence.observe(m.header);
+    if (order != Arrival::kOld) {
+      count_.newest_publish_ns = m.header.publish_time_ns;
+      count_.newest_run_id = m.header.run_id;
+      count_.newest_clock = m.header.clock;
+      count_.newest_arrival = arrival;
+    }
+    return order;
+  }
+  InputCount count_;
+};
+
+// Keeps the newest message of all sources and when it arrived.
+template <class Message>
+class Latest : public InboxBase {
+ public:
+  using InboxBase::InboxBase;
+  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
+    auto m = decode<Message>(data, size);
+    if (!m) {
+      ++count_.bad;
+      return;
+    }
+    if (note(*m, arrival) == Arrival::kOld) return;
+    value_ = std::move(*m);
+    arrival_ = arrival;
+    fresh_ = true;
+  }
+
+  // Null until the first message.
+  const Message* get() const { return value_ ? &*value_ : nullptr; }
+  HostTime arrival() const { return arrival_; }
+  // The newest message if it has not been taken yet, else null.
+  const Message* take() { return std::exchange(fresh_, false) ? get() : nullptr; }
+
+ private:
+  std::optional<Message> value_;
+  HostTime arrival_{};
+  bool fresh_ = false;
+};
+
+// Keeps messages in order of arrival; when full the oldest is dropped and counted. Old and repeated ones are kept too:
+// pages of one step may overtake each other.
+template <class Message>
+class Queue : public InboxBase {
+ public:
+  Queue(std::string channel, std::size_t capacity) : InboxBase(std::move(channel)), capacity_(capacity) {}
+  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
+    auto m = decode<Message>(data, size);
+    if (!m) {
+      ++count_.bad;
+      return;
+    }
+    const Arrival order = note(*m, arrival);
+    if (queue_.size() >= capacity_) {
+      queue_.pop_front();
+      ++count_.dropped;
+    }
+    queue_.push_back({std::move(*m), arrival, order});
+  }
+
+  std::optional<Received<Message>> pop() {
+    if (queue_.empty()) return std::nullopt;
+    Received<Message> r = std::move(queue_.front());
+    queue_.pop_front();
+    return r;
+  }
+
+ private:
+  std::size_t capacity_;
+  std::deque<Received<Message>> queue_;
+};
+
+}  // namespace tactus::sync

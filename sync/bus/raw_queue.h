@@ -1,0 +1,65 @@
+// Bytes of a channel as they arrived, for who looks at any field of any type (lcmtypes/fields.h). Bounded: when
+// full the oldest is dropped and counted. What is not wanted now costs one comparison a message.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "sync/bus/inbox.h"
+
+namespace tactus::sync {
+
+class RawQueue : public InboxBase {
+ public:
+  RawQueue(std::string channel, std::size_t capacity)
+      : InboxBase(std::move(channel)), ring_(std::max<std::size_t>(1, capacity)) {}
+
+  void set_wanted(bool wanted) {
+    wanted_ = wanted;
+    if (!wanted) count_in_ring_ = 0;
+  }
+  // Allocates nothing.
+  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
+    if (!wanted_) return;
+    if (size > channels::kMaxMessageBytes) {
+      ++count_.bad;
+      return;
+    }
+    count_.newest_arrival = arrival;
+    if (count_in_ring_ == ring_.size()) {
+      first_ = (first_ + 1) % ring_.size();
+      --count_in_ring_;
+      ++count_.dropped;
+    }
+    Entry& entry = ring_[(first_ + count_in_ring_++) % ring_.size()];
+    entry.arrival = arrival;
+    entry.size = size;
+    const auto* bytes = static_cast<const std::uint8_t*>(data);
+    std::copy(bytes, bytes + size, entry.bytes.begin());
+  }
+
+  // Hands all that is there to take(bytes, arrival), oldest first.
+  template <class Take>
+  void read(Take&& take) {
+    for (; count_in_ring_ > 0; --count_in_ring_) {
+      const Entry& entry = ring_[first_];
+      first_ = (first_ + 1) % ring_.size();
+      take(std::span<const std::uint8_t>(entry.bytes.data(), entry.size), entry.arrival);
+    }
+  }
+
+ private:
+  struct Entry {
+    HostTime arrival{};
+    std::size_t size = 0;
+    std::array<std::uint8_t, channels::kMaxMessageBytes> bytes{};
+  };
+  std::vector<Entry> ring_;
+  std::size_t first_ = 0, count_in_ring_ = 0;
+  bool wanted_ = true;
+};
+
+}  // namespace tactus::sync

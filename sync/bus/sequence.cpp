@@ -1,0 +1,51 @@
+#include "sync/bus/sequence.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace tactus::sync {
+
+namespace {
+constexpr std::int64_t kEpochNs = 1'000'000'000;
+}
+
+SequenceTracker::Sender& SequenceTracker::find_or_add(std::int32_t source) {
+  const auto it = senders_.find(source);
+  if (it != senders_.end()) return it->second;
+  if (senders_.size() >= kMaxSenders) {
+    senders_.erase(std::min_element(senders_.begin(), senders_.end(),
+                                    [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
+    ++forgotten_;
+  }
+  return senders_[source];
+}
+
+Arrival SequenceTracker::observe(const header_t& h) {
+  Sender& s = find_or_add(h.source);
+  const bool first = s.heard == 0;
+  s.heard = ++messages_;
+  const auto begin_anew = [&](Arrival how) {
+    s = {h.incarnation, h.seq, h.publish_time_ns, {}, 0, messages_};
+    return how;
+  };
+  if (first || s.incarnation != h.incarnation) return begin_anew(Arrival::kNewIncarnation);
+  if (h.publish_time_ns < s.publish_ns - kEpochNs || std::abs(h.seq - s.seq) > kLongestGap)
+    return begin_anew(Arrival::kNewEpoch);
+  if (h.seq <= s.seq) {
+    if (h.publish_time_ns > s.publish_ns) {
+      if (++s.contradictions >= kContradictions) return begin_anew(Arrival::kNewEpoch);
+    } else {
+      gaps_ -= static_cast<std::int64_t>(s.missing.erase(h.seq));
+    }
+    return Arrival::kOld;
+  }
+  gaps_ += h.seq - s.seq - 1;
+  for (std::int64_t seq = std::max(s.seq + 1, h.seq - kRemembered); seq < h.seq; ++seq) s.missing.insert(seq);
+  while (static_cast<std::int64_t>(s.missing.size()) > kRemembered) s.missing.erase(s.missing.begin());
+  s.seq = h.seq;
+  s.publish_ns = h.publish_time_ns;
+  s.contradictions = 0;
+  return Arrival::kNew;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,95 @@
+#include "sync/clock_sync/clock_probe.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+
+std::optional<clock_probe_t> probe_answer(const clock_probe_t& request, const Identity& own, HostTime arrived) {
+  if (request.kind != clock_probe_t::REQUEST || request.header.run_id != own.run_id || request.header.clock == own.clock)
+    return std::nullopt;
+  clock_probe_t answer = request;
+  answer.kind = clock_probe_t::REPLY;
+  answer.request_arrived_ns = to_ns(arrived);
+  return answer;
+}
+
+HostTime ClockProber::next() const {
+  const auto sent = static_cast<int>(sent_.size());
+  if (sent < kProbes) return wave_begin_ + sent * kSpacing;
+  return wave_begin_ + (kProbes - 1) * kSpacing + kLongestTrip;
+}
+
+std::optional<clock_probe_t> ClockProber::request(HostTime now, HostTime stamp, std::int64_t nonce) {
+  if (static_cast<int>(sent_.size()) == kProbes || now < next()) return std::nullopt;
+  // After a stall the spacing is kept: answers to a burst would wait for each other.
+  if (now > next() + kSpacing) wave_begin_ = now - static_cast<int>(sent_.size()) * kSpacing;
+  sent_.push_back({nonce, to_ns(stamp)});
+  clock_probe_t m{};
+  m.kind = clock_probe_t::REQUEST;
+  m.asking_clock = own_.clock;
+  m.nonce = nonce;
+  m.request_sent_ns = to_ns(stamp);
+  m.request_arrived_ns = m.reply_sent_ns = -1;
+  return m;
+}
+
+bool ClockProber::takes(const clock_probe_t& r, HostTime back) const {
+  if (r.kind != clock_probe_t::REPLY || r.header.run_id != own_.run_id || r.asking_clock != own_.clock ||
+      r.header.clock == own_.clock)
+    return false;
+  const auto asked = [&](const Sent& s) { return s.nonce == r.nonce && s.sent_ns == r.request_sent_ns; };
+  if (std::none_of(sent_.begin(), sent_.end(), asked)) return false;
+  const Nanoseconds away = back - host_time(r.request_sent_ns);
+  const Nanoseconds there(r.reply_sent_ns - r.request_arrived_ns);
+  return there >= Nanoseconds(0) && there <= away && away <= kLongestTrip;
+}
+
+void ClockProber::reply(const clock_probe_t& r, HostTime back) {
+  if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // to somebody else
+  const auto known = heard_.find(r.header.clock);
+  const bool room = known != heard_.end() ? known->second.wave.replies < 2 * kProbes : heard_.size() < kMostClocks;
+  if (!takes(r, back) || !room) {
+    ++refused_;
+    return;
+  }
+  const HostTime sent = host_time(r.request_sent_ns), arrived = host_time(r.request_arrived_ns),
+                 replied = host_time(r.reply_sent_ns);
+  const ProbeWave wave{r.header.clock, probe_sample(sent, arrived, replied, back),
+                       (back - sent) - (replied - arrived), 1};
+  // Seen from any instant of the wave, the clocks have drifted by no more than that of its whole length.
+  const Nanoseconds margin = wave.sample.half_width + Nanoseconds(static_cast<std::int64_t>(
+                                                          OffsetTracker::kMaxDrift * static_cast<double>(kPeriod.count())));
+  const Heard heard{wave, wave.sample.offset - margin, wave.sample.offset + margin};
+  if (known == heard_.end()) {
+    heard_.emplace(r.header.clock, heard);
+    return;
+  }
+  Heard& before = known->second;
+  before.least = std::max(before.least, heard.least);
+  before.most = std::min(before.most, heard.most);
+  ++before.wave.replies;
+  if (wave.round_trip >= before.wave.round_trip) return;
+  before.wave.sample = wave.sample;
+  before.wave.round_trip = wave.round_trip;
+}
+
+std::vector<ProbeWave> ClockProber::finish(HostTime now) {
+  std::vector<ProbeWave> out;
+  if (static_cast<int>(sent_.size()) < kProbes || now < next()) return out;
+  for (const auto& [clock, heard] : heard_) {
+    if (heard.least <= heard.most)
+      out.push_back(heard.wave);
+    else
+      ++contradictory_;
+  }
+  Nanoseconds period = kPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(out.size() / kFewClocks));
+  if (waves_.size() > kMostClocks) waves_.clear();  // hosts that come and go for months
+  for (const ProbeWave& wave : out)
+    if (waves_[wave.clock] < kFirstWaves && ++waves_[wave.clock] < kFirstWaves) period = kFirstPeriod;
+  heard_.clear();
+  sent_.clear();
+  wave_begin_ = std::max(wave_begin_ + period, now);
+  return out;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,46 @@
+// A socket on the bus that hears only CLOCK_PROBE, and says when each arrived.
+//
+// It speaks LCM's datagrams ("UDP Multicast Protocol Description") without LCM: LCM's receiving thread hands messages on through
+// a queue and stamps them with the settable clock in microseconds, and here every microsecond between wire and stamp counts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <tactus/clock_probe_t.hpp>
+
+#include "sync/bus/bus.h"
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+class ProbeSocket {
+ public:
+  // Throws std::runtime_error with one sentence.
+  explicit ProbeSocket(const BusOptions& options);
+  ~ProbeSocket();
+  ProbeSocket(const ProbeSocket&) = delete;
+  ProbeSocket& operator=(const ProbeSocket&) = delete;
+
+  struct Arrived {
+    clock_probe_t probe;
+    HostTime at;  // never earlier than it arrived
+  };
+  // The next valid one, if it is there before `until`; nothing also after wake().
+  std::optional<Arrived> receive(HostTime until);
+  bool send(const clock_probe_t& probe);
+  // Ends a receive(). Thread-safe: yes.
+  void wake();
+  // Datagrams of the channel that were no valid message.
+  std::int64_t bad() const { return bad_; }
+
+ private:
+  std::optional<Arrived> read_one();
+  int socket_ = -1, wake_ = -1;
+  std::uint32_t address_ = 0;  // network order
+  std::uint16_t port_ = 0;
+  std::uint32_t next_number_ = 0;
+  Nanoseconds realtime_ahead_{0};  // of the monotonic clock, when last seen
+  std::int64_t bad_ = 0;
+};
+
+}  // namespace tactus::sync

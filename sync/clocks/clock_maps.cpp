@@ -1,0 +1,70 @@
+#include "sync/clocks/clock_maps.h"
+
+#include <cmath>
+
+namespace tactus::sync {
+namespace {
+
+Nanoseconds scaled(Nanoseconds d, double factor) {
+  return Nanoseconds(std::llround(static_cast<double>(d.count()) * factor));
+}
+// Times off the bus may be anything; the border bounds those of a map, these are bounded here.
+constexpr std::int64_t kLatest = std::int64_t{1} << 60;
+bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kLatest; }
+
+}  // namespace
+
+ClockLine::ClockLine(const clock_map_t& m)
+    : at_(host_time(m.at_ns)),
+      offset_(m.offset_ns),
+      drift_(m.drift),
+      uncertainty_(m.uncertainty_ns),
+      uncertainty_drift_(m.uncertainty_drift) {}
+
+Nanoseconds ClockLine::uncertainty_at(Nanoseconds since) const {
+  // One nanosecond for each of the two roundings.
+  return uncertainty_ + scaled(since < Nanoseconds(0) ? -since : since, uncertainty_drift_) + Nanoseconds(2);
+}
+
+ClockReading ClockLine::from_of(HostTime of) const {
+  // of = to + offset + drift * (to - at), solved for to - at: the difference is small, so a double holds it exactly enough.
+  const Nanoseconds since = scaled(of - at_ - offset_, 1 / (1 + drift_));
+  return {at_ + since, uncertainty_at(since)};
+}
+
+ClockReading ClockLine::to_of(HostTime to) const {
+  const Nanoseconds since = to - at_;
+  return {to + offset_ + scaled(since, drift_), uncertainty_at(since)};
+}
+
+void ClockMaps::observe(const clock_map_t& m, HostTime arrival) {
+  if (run_id_ == 0) run_id_ = m.header.run_id;
+  if (m.header.run_id != run_id_) {
+    ++foreign_;
+    return;
+  }
+  const std::pair key{m.of_clock, m.to_clock};
+  const auto it = known_.find(key);
+  if (it == known_.end()) {
+    if (known_.size() < kMost) known_.emplace(key, Known{m, arrival});
+    return;
+  }
+  const header_t& before = it->second.map.header;
+  const bool same = before.incarnation == m.header.incarnation && before.source == m.header.source;
+  if (same ? m.header.seq < before.seq : arrival - it->second.arrival < kSilence) return;
+  it->second = {m, arrival};
+}
+
+std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock, std::int32_t on_clock) const {
+  if (!representable(time)) return std::nullopt;
+  if (of_clock == on_clock) return ClockReading{time, Nanoseconds(0)};
+  std::optional<ClockReading> out;
+  if (const auto it = known_.find({of_clock, on_clock}); it != known_.end())
+    out = ClockLine(it->second.map).from_of(time);
+  else if (const auto back = known_.find({on_clock, of_clock}); back != known_.end())
+    out = ClockLine(back->second.map).to_of(time);
+  if (out && out->uncertainty > kMostUncertain) out.reset();
+  return out;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,64 @@
+// The host clock and loops on absolute deadlines. The only place, with mains, where a clock is read.
+#pragma once
+
+#include <cstdint>
+
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+// CLOCK_MONOTONIC. Realtime-safe: yes. Thread-safe: yes.
+HostTime host_now();
+
+// The deadlines of a loop, without a clock: pure, so that tests move time by hand.
+class Deadlines {
+ public:
+  Deadlines(double rate_Hz, HostTime start) : start_(start), next_(start) { set_rate(rate_Hz); }
+
+  // From the next deadline on. Throws std::invalid_argument unless 0 < rate_Hz <= 10000.
+  void set_rate(double rate_Hz);
+  double rate_Hz() const { return rate_Hz_; }
+
+  HostTime next() const { return next_; }
+  // Call after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
+  // burst. Returns how many ticks were skipped.
+  std::int64_t advance(HostTime now);
+  // The next deadline is then, and others count from there; so many before it were left out on purpose and count as missed.
+  void align(HostTime next, std::int64_t left_out = 0);
+
+  std::int64_t ticks() const { return ticks_; }
+  std::int64_t missed() const { return missed_; }
+
+ private:
+  HostTime start_;
+  HostTime next_;
+  double rate_Hz_ = 1;
+  std::int64_t since_start_ = 0;  // periods from start_ to next_: deadlines do not drift by rounding
+  std::int64_t ticks_ = 0;
+  std::int64_t missed_ = 0;
+};
+
+// Sleeps until then; not at all when that is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
+void sleep_until(HostTime t);
+
+// Sleeps on absolute deadlines.
+class Loop {
+ public:
+  explicit Loop(double rate_Hz) : deadlines_(rate_Hz, host_now()) {}
+
+  // Sleeps until the next deadline and returns the clock after waking. A signal ends the sleep early.
+  // Realtime-safe: yes (it only sleeps).
+  HostTime wait();
+  void set_rate(double rate_Hz) { deadlines_.set_rate(rate_Hz); }
+  void align(HostTime next, std::int64_t left_out) { deadlines_.align(next, left_out); }
+
+  // How late the last wake-up was.
+  Nanoseconds wake_lateness() const { return lateness_; }
+  const Deadlines& deadlines() const { return deadlines_; }
+
+ private:
+  Deadlines deadlines_;
+  Nanoseconds lateness_{0};
+};
+
+}  // namespace tactus::sync

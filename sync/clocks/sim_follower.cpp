@@ -1,0 +1,58 @@
+#include "sync/clocks/sim_follower.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+
+namespace {
+
+Nanoseconds distance(SimTime a, SimTime b) { return a < b ? b - a : a - b; }
+
+}  // namespace
+
+// Compares on the sender's clock. The rate may have changed at any instant since, so either is good enough.
+bool SimFollower::contradicts(const header_t& header, const sim_clock_t& clock) const {
+  const HostTime t = host_time(header.publish_time_ns);
+  const TimeMap told{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};
+  const auto far = [&](double rate) {
+    const TimeMap known{sim_time(clock_.sim_ns), host_time(clock_.host_ns), rate};
+    return distance(known.to_sim(t), told.to_sim(t)) > kFar;
+  };
+  return far(clock_.rate) && far(clock.rate);
+}
+
+Follow SimFollower::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  Follow verdict = Follow::kSame;
+  if (header.incarnation != incarnation_) {
+    const bool replaced = std::find(replaced_.begin(), replaced_.end(), header.incarnation) != replaced_.end();
+    if (replaced && arrival - last_arrival_ < kSilence) return Follow::kIgnore;
+    if (incarnation_ != 0) replaced_.push_back(incarnation_);
+    std::erase(replaced_, header.incarnation);
+    if (replaced_.size() > kRemembered) replaced_.pop_front();
+    incarnation_ = header.incarnation;
+    verdict = Follow::kRestart;
+  } else if (header.publish_time_ns < newest_publish_ns_ - kEpoch.count()) {
+    verdict = Follow::kRestart;
+  } else if (contradicts(header, clock) && arrival - confirmed_ < kSilence) {
+    return Follow::kIgnore;
+  }
+  confirmed_ = arrival;
+  if (verdict == Follow::kRestart) {
+    sender_ = SenderClock(own_);
+    newest_publish_ns_ = 0;
+  }
+  last_arrival_ = std::max(last_arrival_, arrival);
+  sender_.observe(header, arrival);
+  if (header.publish_time_ns >= newest_publish_ns_) {
+    newest_publish_ns_ = header.publish_time_ns;
+    clock_ = clock;
+  }
+  return verdict;
+}
+
+std::optional<TimeMap> SimFollower::map(HostTime now) const {
+  if (incarnation_ == 0) return std::nullopt;
+  return TimeMap{sim_time(clock_.sim_ns), sender_.to_host(clock_.host_ns, now), clock_.rate};
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,44 @@
+// The events of a log in their order, each with the time at which it is to be handed over: its own stamp, or where
+// that is damaged the time of the event before. Times never fall back but where a log itself goes on at an earlier
+// time. Pure.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "sync/log/log_ages.h"
+#include "sync/log/log_origin.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/summary_clock.h"
+
+namespace tactus::sync {
+
+class DatedEvents {
+ public:
+  // ages: which stamps can be of this log, where that is known; null: any. Both outlive this.
+  DatedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogAges* ages = nullptr)
+      : scanner_(bytes), origin_(origin), ages_(ages) {}
+
+  // Reads on from the first event at or behind this byte, as if nothing had been read; no time is before `from`.
+  void start_at(std::size_t at, HostTime from);
+  // False at the end.
+  bool next(LogEvent& event, HostTime& time);
+
+  const LogScanner& scanner() const { return scanner_; }
+
+ private:
+  bool credible(const LogEvent& event) const {
+    return ages_ == nullptr || ages_->of_the_run(bounded_us(event.timestamp_us));
+  }
+  HostTime time_of(const LogEvent& event);
+
+  LogScanner scanner_;
+  const LogOrigin& origin_;
+  const LogAges* ages_;
+  SummaryClock clock_;
+  std::optional<HostTime> before_;
+  std::optional<LogEvent> ahead_;
+  bool begun_ = false;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,76 @@
+// A log in place of the bus: hands what was recorded to the inboxes, tick by tick, at the recorder's times, so
+// that a node renders it as it would have rendered the run, as fast as it can. Pure but for the mapping of the
+// file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "sync/bus/bus.h"
+#include "sync/log/dated_events.h"
+#include "sync/log/log_ages.h"
+#include "sync/log/log_origin.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/mapped_log.h"
+
+namespace tactus::sync {
+
+class LogFeed {
+ public:
+  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no message of a run.
+  LogFeed(const std::string& path, double rate_Hz);
+
+  // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour
+  // would.
+  std::int64_t run_id() const { return origin_.info.header.run_id; }
+  std::int32_t clock() const { return origin_.info.header.clock; }
+  // That node's options: in memory, with the run and the clock of the log.
+  BusOptions bus() const;
+
+  // Messages on this channel are not handed over from now on.
+  void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
+  // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
+  // the recorder.
+  HostTime next(Bus& bus) { return next_at(bus, now_ + period_); }
+  // The same for a loop whose ticks are not even: the next one is then, and not before the last.
+  HostTime next_at(Bus& bus, HostTime tick);
+  // All has been handed over, and `after` has passed since.
+  bool over(Nanoseconds after) const { return now_ >= end_ + after; }
+
+  // All once more from the beginning, for who looks ahead. Refers to this.
+  DatedEvents from_begin() const {
+    DatedEvents events(file_.bytes(), origin_, &ages_);
+    events.start_at(0, begin_);
+    return events;
+  }
+
+  HostTime begin() const { return begin_; }
+  HostTime end() const { return end_; }
+  // Of the whole log.
+  std::int64_t events() const { return whole_.events(); }
+  std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
+  std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
+  // Events whose stamps are damaged: further than LogAges::kApart_us from those of the run, and too few to
+  // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
+  std::int64_t misdated() const { return ages_.misdated(); }
+  // One sentence when the log itself does not say, or not rightly, which run it is; empty: it does.
+  const std::string& recovered() const { return origin_.recovered; }
+
+ private:
+  MappedLog file_;
+  std::set<std::string, std::less<>> left_out_;
+  LogScanner whole_;
+  LogAges ages_;
+  LogOrigin origin_;
+  DatedEvents events_;
+  LogEvent pending_;
+  HostTime pending_at_{};
+  bool has_pending_ = false;
+  HostTime begin_{}, end_{}, now_{};
+  Nanoseconds period_;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,132 @@
+#include "sync/log/log_origin.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/fields.h"
+#include "sync/bus/decode.h"
+#include "sync/bus/identity.h"
+#include "sync/log/log_header.h"
+
+namespace tactus::sync {
+namespace {
+
+constexpr std::int64_t kMostStamp_ns = 4'000'000'000'000'000'000;  // the difference of two still is a number
+
+std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8 && i < data.size(); ++i) value = value << 8 | data[i];
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
+
+std::int64_t bounded_us(std::int64_t timestamp_us) {
+  return std::clamp(timestamp_us, -kMostStamp_ns / 1000, kMostStamp_ns / 1000);
+}
+
+HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_ns) {
+  const std::int64_t offset_ns = std::clamp(realtime_offset_ns, -kMostStamp_ns, kMostStamp_ns);
+  return host_time(std::clamp(bounded_us(timestamp_us) * 1000 - offset_ns, -kMostStamp_ns, kMostStamp_ns));
+}
+
+HostTime LogOrigin::time(std::int64_t timestamp_us) const {
+  return time_of_stamp(timestamp_us, info.realtime_offset_ns);
+}
+
+void OriginFinder::observe(const LogEvent& event) {
+  if (event.channel == channels::kLogInfo) {
+    if (!told_) told_ = decode<log_info_t>(event.data.data(), event.data.size());
+    return;  // the head is stamped ahead of the run
+  }
+  const auto header = peek_header(event.data.data(), event.data.size());
+  // Bytes of another system may read as a header; that they begin as one of our types is no chance.
+  if (message_type(fingerprint_of(event.data)) == nullptr) return;
+  // A replay of another log, recorded beside a run, or the scene at the head: said by nobody at that time.
+  if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
+  auto it = pairs_.find({header->run_id, header->clock});
+  if (it == pairs_.end()) {
+    if (pairs_.size() >= kMostPairs) {
+      const auto rarest = std::min_element(pairs_.begin(), pairs_.end(), [](const auto& a, const auto& b) {
+        return a.second.events < b.second.events;
+      });
+      if (rarest->second.events > 1) return;
+      pairs_.erase(rarest);
+    }
+    it = pairs_.emplace(std::pair{header->run_id, header->clock}, Pair{}).first;
+  }
+  Pair& pair = it->second;
+  ++pair.events;
+  if (header->source == static_cast<std::int32_t>(fnv1a_32("recorder"))) ++pair.of_recorder;
+  const std::int64_t stamp_ns = bounded_us(event.timestamp_us) * 1000;
+  if (pair.differences_ns.size() < kMostSamples && header->publish_time_ns <= INT64_MAX / 2)
+    pair.differences_ns.push_back(stamp_ns - header->publish_time_ns);
+}
+
+std::int64_t OriginFinder::witnesses() const {
+  std::int64_t sum = 0;
+  for (const auto& [key, pair] : pairs_) sum += pair.events;
+  return sum;
+}
+
+OriginFinder::Pairs::const_iterator OriginFinder::likeliest() const {
+  const auto more = [](const auto& a, const auto& b) {
+    const bool of_a = a.second.of_recorder >= kFewestOfRecorder, of_b = b.second.of_recorder >= kFewestOfRecorder;
+    return of_a != of_b ? of_b : a.second.events < b.second.events;
+  };
+  return std::max_element(pairs_.begin(), pairs_.end(), more);
+}
+
+std::int64_t OriginFinder::offset_ns(const Pair& pair) {
+  std::vector<std::int64_t> d = pair.differences_ns;
+  if (d.empty()) return 0;
+  const auto at = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 20);
+  std::nth_element(d.begin(), at, d.end());
+  return *at;
+}
+
+LogOrigin OriginFinder::find() const {
+  LogOrigin origin;
+  const auto found = likeliest();
+  if (told_) {
+    origin.info = *told_;
+    origin.known = true;
+    if (found == pairs_.end()) return origin;
+    const auto own = pairs_.find({told_->header.run_id, told_->header.clock});
+    const bool of_this_run = std::any_of(pairs_.begin(), pairs_.end(),
+                                         [&](const auto& p) { return p.first.first == told_->header.run_id; });
+    const bool contradicted = found->second.of_recorder >= kFewestOfRecorder;
+    if (own == pairs_.end() && of_this_run && !contradicted) return origin;
+    if (own != pairs_.end() && !own->second.differences_ns.empty()) {
+      const std::int64_t estimate = offset_ns(own->second);
+      if (std::llabs(estimate / 1000 - told_->realtime_offset_ns / 1000) <= kContradiction_ns / 1000)
+        return origin;
+      origin.info.realtime_offset_ns = estimate;
+      origin.recovered = "its LOG_INFO contradicts the times of its messages; theirs are taken, good to a latency";
+      return origin;
+    }
+  }
+  if (found == pairs_.end()) return origin;
+  origin.known = true;
+  origin.info.header.run_id = found->first.first;
+  origin.info.header.clock = found->first.second;
+  origin.info.realtime_offset_ns = offset_ns(found->second);
+  origin.recovered = std::string("its LOG_INFO is ") + (told_ ? "not of this run" : "missing or damaged") +
+                     "; run and clock are taken from the headers of " + std::to_string(found->second.events) +
+                     " messages, its times are good to a latency";
+  return origin;
+}
+
+LogOrigin origin_of(std::span<const std::uint8_t> log) {
+  // A second of a run; the largest scene at its head and then some.
+  constexpr std::int64_t kWitnesses = 4096;
+  constexpr std::size_t kMostBytes = 320 << 20;
+  LogScanner scanner(log);
+  OriginFinder finder;
+  for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMostBytes && scanner.next(e);)
+    finder.observe(e);
+  return finder.find();
+}
+
+}  // namespace tactus::sync

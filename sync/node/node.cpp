@@ -1,0 +1,282 @@
+#include "sync/node/node.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <utility>
+
+#include "sync/bus/bus_arguments.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/bus/health_inputs.h"
+#include "sync/bus/kernel_drops.h"
+#include "sync/text/printable.h"
+#include "sync/virtual_time/virtual_time.h"
+
+namespace tactus::sync {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void request_stop(int) { stop_requested = true; }
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+Realtime parse_realtime(const std::string& text) {
+  return text == "require" ? Realtime::kRequire : text == "off" ? Realtime::kOff : Realtime::kTry;
+}
+
+std::string enter(const Declaration& d, const NodeOptions& o) {
+  if (o.check) std::exit(0);
+  if (VirtualTime::current()) return "virtual time";
+  catch_signals();
+  // Timers of normal threads are rounded up by 50 us unless told otherwise.
+  prctl(PR_SET_TIMERSLACK, 1000);
+  return set_realtime(parse_realtime(o.realtime), d.fifo_priority);
+}
+
+NodeOptions with_profile(NodeOptions o) {
+  if (!o.degrade.empty()) o.profile = read_profile_file(o.degrade);
+  return o;
+}
+
+std::int32_t saturated(std::int64_t n) { return static_cast<std::int32_t>(std::min<std::int64_t>(n, INT32_MAX)); }
+
+constexpr Nanoseconds kReportPeriod{100'000'000};
+// A loop that was demoted gets its priority back after so long below 80 %.
+constexpr Nanoseconds kForgiven{10'000'000'000};
+constexpr Nanoseconds kRateWindow{1'000'000'000};
+constexpr std::size_t kMostTagRequests = 64;
+// A note may quote what came over the bus; a report with it still fits a datagram.
+constexpr std::size_t kLongestNote = 140;
+
+}  // namespace
+
+void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
+  name = d.node;
+  app.description(d.about);
+  add_bus_options(app, bus);
+  app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
+      ->envname("TACTUS_RUN_ID")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--name", name, "name of this process on the bus")->capture_default_str();
+  app.add_option("--realtime", realtime, "real-time priority: require, try or off")
+      ->check(CLI::IsMember({"require", "try", "off"}))
+      ->capture_default_str();
+  app.add_option("--out", out, "folder for what this node writes")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
+  app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
+  if (!d.modality.empty() || d.node == "sync_node")
+    app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
+  // For measurements only, hence not in --help: a renderer that eats its core.
+  app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.node)->check(CLI::Range(0.0, 100.0))->group("");
+  app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
+}
+
+void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& e) {
+    std::exit(app.exit(e));
+  } catch (const CLI::ParseError& e) {
+    std::cerr << node << ": " << e.what() << "; see " << node << " --help\n";
+    std::exit(1);
+  }
+}
+
+int fail(const std::string& node, const std::exception& e) {
+  const std::string what = e.what();
+  std::cerr << (what.starts_with(node) ? "" : node + ": ") << printable(what) << "\n";
+  return 1;
+}
+
+Node::Node(Declaration declaration, NodeOptions options)
+    : declaration_(std::move(declaration)),
+      options_(with_profile(std::move(options))),
+      scheduling_(enter(declaration_, options_)),
+      bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
+      loop_(declaration_.rate_Hz),
+      tags_(options_.name, options_.run_id),
+      tag_requests_(channels::kTagRequest, kMostTagRequests) {
+  bus_.follow_clocks();
+  bus_.hear_also(tag_requests_);
+  tag_work();
+  health_.tool = -1;
+  health_.nominal_rate_Hz = declaration_.rate_Hz;
+  rate_since_ = tick_begin_ = next_report_ = host_now();
+  std::cerr << options_.name << ": " << declaration_.rate_Hz << " Hz, " << scheduling_ << ", "
+            << (VirtualTime::current() ? "a bus of this process" : lcm_url(options_.bus, options_.bus.port)) << std::endl;
+}
+
+Node::~Node() = default;
+
+bool Node::running() const {
+  const VirtualTime* const time = VirtualTime::current();
+  return !stop_requested && !(time && time->asked_to_leave());
+}
+
+void Node::set_rate(double rate_Hz) {
+  loop_.set_rate(rate_Hz);
+  health_.nominal_rate_Hz = rate_Hz;
+}
+
+void Node::set_state(std::int8_t state, std::string note) {
+  health_.state = state;
+  note_ = std::move(note);
+}
+
+void Node::renew() {
+  bus_.renew();
+  ticks_before_ = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
+  missed_before_ = loop_.deadlines().missed();
+  tick_ = wake_ = Histogram();
+  health_.stale_ticks = health_.contacts_rendered = 0;
+  rate_since_ = host_now();
+  ticks_at_rate_since_ = 0;
+}
+
+void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz) {
+  overridden_ = true;
+  health_.ticks = ticks;
+  health_.missed_ticks = missed;
+  health_.nominal_rate_Hz = rate_Hz;
+}
+
+void Node::tag_work() {
+  tags_.add("work", "us", &work_us_);
+  std::vector<Phase> phases = declaration_.phases;
+  phases.insert(phases.end(), {Phase::kDecode, Phase::kOther});
+  for (const Phase phase : phases) tags_.add(std::string("work.") + name(phase), "us", phases_.told(phase));
+}
+
+void Node::serve_tags(HostTime now) {
+  while (const auto m = tag_requests_.pop()) tags_.take(m->message, now);
+  tags_.step(now);
+  while (tag_list_t* m = tags_.next_list()) bus_.publish(channels::kTagList, *m);
+  while (tag_values_t* m = tags_.next_values()) bus_.publish(channels::kTagValues, *m);
+}
+
+void Node::begin_tick(HostTime now) {
+  tick_begin_ = now;
+  phases_.begin(tags_.wanted());
+  const InPhase decoding(Phase::kDecode);
+  bus_.drain(now);
+}
+
+void Node::end_tick(HostTime now) {
+  phases_.end();
+  work_us_ = static_cast<double>((now - tick_begin_).count()) / 1000;
+  serve_tags(now);
+  tick_.add(now - tick_begin_);
+  if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
+  if (VirtualTime::current() || (!demoted_ && !is_realtime())) return;
+  const bool too_busy = guard_.tick(tick_begin_, now);
+  if (too_busy && !demoted_) {
+    leave_realtime();
+    demoted_ = true;
+    scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
+    std::cerr << options_.name << ": " << scheduling_ << std::endl;
+  } else if (demoted_ && guard_.calm() >= kForgiven) {
+    demoted_ = false;
+    scheduling_ = set_realtime(Realtime::kTry, declaration_.fifo_priority) + " again, after a demotion";
+    std::cerr << options_.name << ": " << scheduling_ << std::endl;
+  }
+}
+
+HostTime Node::wait() {
+  const HostTime end = host_now();
+  end_tick(end);
+  if (end >= next_report_) report(end);
+  const HostTime now = loop_.wait();
+  wake_.add(loop_.wake_lateness());
+  begin_tick(now);
+  if (options_.load > 0)
+    for (const auto wasted = from_seconds(options_.load / loop_.deadlines().rate_Hz()); host_now() - now < wasted;) continue;
+  return now;
+}
+
+HostTime Node::poll() {
+  const HostTime now = host_now();
+  const InPhase decoding(Phase::kDecode);
+  bus_.drain(now);
+  return now;
+}
+
+HostTime Node::wait_for_event() {
+  const HostTime end = host_now();
+  end_tick(end);
+  if (end >= next_report_) report(end);
+  bus_.wait(from_seconds(1 / loop_.deadlines().rate_Hz()));
+  ++event_ticks_;
+  begin_tick(host_now());
+  return tick_begin_;
+}
+
+node_health_t Node::health_message(HostTime now) {
+  node_health_t m = health_;
+  m.header.sim_time_ns = -1;
+  m.node = options_.name;
+  m.modality = declaration_.modality;
+  m.owes = declaration_.owes | (declaration_.late == Late::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
+  m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
+  if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
+  m.tick = tick_.to_message();
+  m.wake = wake_.to_message();
+  std::int64_t forgotten = 0;
+  const auto list = [&](const InputCount& c) {
+    input_health_t in{};
+    in.channel = c.channel;
+    const InputAge age = age_of(c, bus_.clocks(), now);
+    in.age_ns = age.age.count();
+    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // ClockMaps::kMostUncertain at the most
+    in.messages = c.sequence.messages();
+    in.gaps = saturated(c.sequence.gaps() + c.dropped);
+    in.bad = saturated(c.bad);
+    add_input(m, in);
+    forgotten += c.sequence.forgotten();
+  };
+  // What it cannot do without comes first: it is listed whatever there is room for.
+  const auto needed = [&](const InputCount& c) {
+    return std::find(declaration_.inputs.begin(), declaration_.inputs.end(), c.channel) != declaration_.inputs.end();
+  };
+  for (const bool first : {true, false})
+    for (const auto& inbox : bus_.inboxes())
+      if (needed(inbox->count()) == first) list(inbox->count());
+  m.foreign_control = bus_.clocks().maps->foreign();
+  if (forgotten > 0) m.note += "; " + std::to_string(forgotten) + " senders too many";
+  fit(m, channels::kMaxMessageBytes);
+  return m;
+}
+
+void Node::report(HostTime now) {
+  next_report_ += kReportPeriod;
+  if (next_report_ <= now) next_report_ = now + kReportPeriod;  // after a stall one report, not two in a row
+  if (!overridden_) {
+    health_.ticks = (event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks()) - ticks_before_;
+    health_.missed_ticks = loop_.deadlines().missed() - missed_before_;
+  }
+  if (now - rate_since_ >= kRateWindow) {
+    health_.rate_Hz = static_cast<double>(health_.ticks - ticks_at_rate_since_) / to_seconds(now - rate_since_);
+    rate_since_ = now;
+    ticks_at_rate_since_ = health_.ticks;
+  }
+  if (reports_++ % 10 == 0) health_.kernel_drops = VirtualTime::current() ? 0 : kernel_drops();
+  node_health_t m = health_message(now);
+  bus_.publish(channels::kNodeHealth, m);
+}
+
+}  // namespace tactus::sync

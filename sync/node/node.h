@@ -1,0 +1,138 @@
+// What every process of the cluster has: options, identity, priority, the bus, a paced loop, health. A node's main
+// is then the same few lines:
+//
+//   sync::Node node(declaration, options);
+//   while (node.running()) {
+//     const sync::HostTime now = node.wait();   // sleeps until the tick, drains the bus
+//     ...                                       // pure work
+//     node.bus().publish(channel, message);
+//   }
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tactus/node_health_t.hpp>
+#include <vector>
+
+#include "sync/bus/bus.h"
+#include "sync/node/declaration.h"
+#include "sync/time/histogram.h"
+#include "sync/clocks/pacing.h"
+#include "sync/time/phases.h"
+#include "sync/node/realtime.h"
+#include "sync/node/tags.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tactus::sync {
+
+// The options that every node has. Bind them to a CLI11 app with add_options, add the node's own, then parse.
+struct NodeOptions {
+  BusOptions bus;
+  std::int64_t run_id = 1;
+  std::string name;  // process name; default: the declaration's
+  std::string realtime = "try";
+  std::string out = ".";  // folder for what the node writes
+  std::uint64_t seed = 1;
+  std::vector<std::string> set;  // name=value
+  std::string degrade;           // file of a degradation profile; empty: none
+  std::string profile;           // its XML, once read
+  double load = 0;               // for measurements: so much of its period is wasted
+  bool check = false;            // leave, with success, where the bus would be joined
+
+  void add_to(CLI::App& app, const Declaration& declaration);
+};
+
+// Parses; prints help or one sentence and exits when there is nothing to run. Then the process may start.
+void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv);
+
+// For `int main() try { ... } catch (const std::exception& e) { return sync::fail("audio_node", e); }`: prints one
+// sentence to stderr and returns 1.
+int fail(const std::string& node, const std::exception& e);
+
+class Node {
+ public:
+  // Takes its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.
+  Node(Declaration declaration, NodeOptions options);
+  ~Node();
+
+  // False after SIGTERM or SIGINT.
+  bool running() const;
+
+  // Ends the tick before, reports health when due, sleeps until the next tick, drains the bus. Returns the clock.
+  HostTime wait();
+  // In the middle of a tick: drains the bus once more, without waiting. Returns the clock.
+  HostTime poll();
+  // Like wait() for a process that is driven by events: wakes when something arrives, after a period at the latest.
+  HostTime wait_for_event();
+
+  // To everyone this process is another from here on, as if it had been started anew; its health counts from zero.
+  void renew();
+
+  Bus& bus() { return bus_; }
+  // Variables of this process that can be recorded; the time of each phase of its tick is among them.
+  Tags& tags() { return tags_; }
+  const NodeOptions& options() const { return options_; }
+  const Declaration& declaration() const { return declaration_; }
+  void set_rate(double rate_Hz);
+  // For a loop whose phase is somebody else's: the next tick is then; so many before it are left out and count as missed.
+  void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
+  // Ticks done and missed so far: their sum numbers the periods of the loop.
+  const Deadlines& deadlines() const { return loop_.deadlines(); }
+
+  // Between the parts of work that takes many ticks: reports health when that is due, and nothing else.
+  void still_here() {
+    if (const HostTime now = host_now(); now >= next_report_) report(now);
+  }
+
+  // What the next health report says.
+  void set_state(std::int8_t state, std::string note = "");
+  void set_tool(int tool) { health_.tool = tool; }
+  void count_rendered(std::int64_t events) { health_.contacts_rendered += events; }
+  // Step of its quality ladder, 0: full, of so many.
+  void set_quality(int step, int steps) {
+    health_.quality = static_cast<std::int8_t>(step);
+    health_.qualities = static_cast<std::int8_t>(steps);
+  }
+  void set_profile(std::int64_t hash) { health_.profile = hash; }
+  void set_realtime_factor(double factor) { health_.realtime_factor = factor; }
+  // For nodes that tick elsewhere (the audio callback): totals instead of the loop's own.
+  void override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz);
+
+ private:
+  void tag_work();
+  // The loop's turn is over, and the next one has begun.
+  void end_tick(HostTime now);
+  void begin_tick(HostTime now);
+  void serve_tags(HostTime now);
+  void report(HostTime now);
+  node_health_t health_message(HostTime now);
+
+  Declaration declaration_;
+  NodeOptions options_;
+  std::string scheduling_;
+  bool demoted_ = false;
+  Bus bus_;
+  Loop loop_;
+  BusyGuard guard_;
+  Tags tags_;
+  Queue<tag_request_t> tag_requests_;
+  Phases phases_{host_now};
+  double work_us_ = 0;
+  Histogram tick_, wake_;
+  node_health_t health_{};
+  std::string note_;
+  HostTime tick_begin_{};
+  HostTime next_report_{};
+  HostTime rate_since_{};
+  std::int64_t ticks_at_rate_since_ = 0;
+  std::int64_t ticks_before_ = 0, missed_before_ = 0;  // of the lives before
+  std::int64_t event_ticks_ = 0;
+  bool overridden_ = false;
+  int reports_ = 0;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,96 @@
+#include "sync/node/offline.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "sync/log/export_events.h"
+#include "sync/log/log_parts.h"
+
+namespace tactus::sync {
+
+void OfflineOptions::add_to(CLI::App& app, const std::string& does, const std::string& output) {
+  app.add_option("--log", log,
+                 does + " instead of what is on the bus, as fast as it can; needs " + output +
+                     "; --degrade logged takes the profiles of the run");
+  app.add_option("--presented", presented, "file for a table of what became of each event of the log, CSV")
+      ->needs("--log");
+}
+
+Offline::Offline(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
+                 Nanoseconds rings_on)
+    : feed_(options.log, rate_Hz),
+      rate_Hz_(rate_Hz),
+      as_recorded_(options.as_recorded),
+      end_(feed_.end() + rings_on),
+      now_(feed_.begin()),
+      began_(clock),
+      said_(clock) {
+  if (!options.presented.empty()) written.push_back({options.presented, "--presented"});
+  // Also by another path or a link.
+  std::error_code none;
+  std::vector<std::string> parts = log_parts_in(options.log);
+  parts.push_back(options.log);
+  for (const Written& w : written)
+    for (const std::string& path : {w.path, w.path + ".part"})
+      if (std::any_of(parts.begin(), parts.end(),
+                      [&](const std::string& part) { return std::filesystem::equivalent(part, path, none); }))
+        throw std::runtime_error(path + " is the log itself, which would be lost; choose another " + w.option);
+  if (options.presented.empty()) return;
+  presented_ = std::make_unique<WholeFile>(options.presented, "--presented");
+  presented_->write(presented_csv_names());
+}
+
+void Offline::adapt(NodeOptions& options) {
+  options.bus = feed_.bus();
+  options.run_id = feed_.run_id();
+  options.realtime = "off";
+  if (options.degrade == "logged") as_recorded_ = true, options.degrade.clear();
+  if (as_recorded_) return;
+  feed_.leave_out(channels::kDegradation);
+  // That of the scene is a profile of the run too.
+  if (options.degrade.empty()) options.profile = "<profile/>";
+}
+
+void Offline::expect_rate(double rate_Hz) const {
+  if (rate_Hz == rate_Hz_) return;
+  std::ostringstream text;
+  text << "the scene of the log asks for " << rate_Hz << " ticks a second, not " << rate_Hz_
+       << "; give --set rate=" << rate_Hz;
+  throw std::runtime_error(text.str());
+}
+
+void Offline::note(const std::string& modality, const presentation_t& report) {
+  if (presented_) presented_->write(csv_row(modality, report));
+}
+
+std::optional<std::string> Offline::progress(HostTime clock) {
+  if (clock - said_ < from_seconds(1)) return std::nullopt;
+  said_ = clock;
+  const double whole_s = to_seconds(end_ - feed_.begin());
+  const double share = whole_s > 0 ? to_seconds(now_ - feed_.begin()) / whole_s : 1;
+  return std::to_string(std::lround(100 * std::clamp(share, 0.0, 1.0))) + " % of the log";
+}
+
+std::string Offline::finish(double rendered_s, HostTime clock) {
+  if (!over()) throw std::runtime_error("stopped before the log was over: nothing is kept");
+  if (presented_) presented_->finish();
+  const double took_s = to_seconds(clock - began_);
+  std::ostringstream text;
+  text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as time)";
+  if (!feed_.recovered().empty()) text << "\n" << feed_.recovered();
+  if (feed_.damaged_regions() > 0)
+    text << "\nskipped damage of the log: " << feed_.damaged_regions() << " regions, " << feed_.damaged_bytes()
+         << " bytes";
+  if (feed_.misdated() > 0)
+    text << "\n"
+         << feed_.misdated()
+         << " events bear damaged times, far from the others; they were taken with those before them";
+  return text.str();
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,210 @@
+#include "sync/node/sense.h"
+
+#include <algorithm>
+#include <iostream>
+#include <tactus/degraded_t.hpp>
+#include <utility>
+
+namespace tactus::sync {
+namespace {
+
+constexpr std::size_t kMostDecisions = 8192;
+constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
+constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
+constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as PresentationMatcher::kReportsWithin
+constexpr std::size_t kRememberedArrivals = 8192;    // as sync/resampling/contact_stream.cpp remembers ids
+
+// Operators on the output that the profile asks of this sense and that it does not have.
+std::vector<std::string> not_declared(const Profile& profile, const Declaration& d) {
+  std::vector<std::string> missing;
+  for (const Rule& rule : profile.rules) {
+    if (rule.modality != d.modality) continue;
+    for (const std::string& name : output_operators(rule.output))
+      if (std::find(d.degradable.begin(), d.degradable.end(), name) == d.degradable.end()) missing.push_back(name);
+  }
+  return missing;
+}
+
+}  // namespace
+
+Sense::Sense(Node& node) : Sense(node, node.declaration()) { listens_in_ = false; }
+
+Sense::Sense(Node& node, Declaration of)
+    : node_(node),
+      declaration_(std::move(of)),
+      listens_in_(true),
+      degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)),
+      playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
+      simulation_(node.bus().clocks()),
+      playout_(declaration_.modality),
+      reporter_(declaration_.modality) {
+  if (node.options().profile.empty()) return;
+  const std::string& text = node.options().profile;
+  put_in_force({text, fnv1a_64(text.data(), text.size()), 0, SimTime{}});
+  receiver_.set_generation(0);
+}
+
+Sense::~Sense() = default;
+
+void Sense::set_scene(const scene_t& scene, int tool) {
+  names_ = {};
+  for (const body_def_t& b : scene.bodies) names_.bodies.push_back(b.name);
+  for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
+  stack_.set_scene(names_);
+  tool_ = tool;
+  // What was said on the command line or since then holds.
+  if (!node_.options().profile.empty() || receiver_.generation() > 0) return;
+  // A scene that brings none takes away that of the scene before.
+  if (scene.profile.empty() && profile_hash_ == 0) return;
+  const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
+  const std::int64_t hash = fnv1a_64(text.data(), text.size());
+  if (hash != profile_hash_) put_in_force({text, hash, 0, SimTime{}});
+}
+
+void Sense::put_in_force(const ProfileInForce& profile) {
+  const Declaration& d = declaration_;
+  try {
+    const Profile parsed = parse_profile(profile.text, "profile");
+    stack_ = Stack(parsed, d.modality, profile.start);
+    stack_.set_scene(names_);
+    for (const auto& stream : streams_) stream->change_profile();
+    profile_hash_ = profile.hash;
+    profile_name_ = parsed.name;
+    node_.set_profile(profile.hash);
+    if (profile.generation > 0 || !parsed.rules.empty())
+      std::cerr << d.node << ": profile \"" << parsed.name << "\", "
+                << (stack_.empty() ? "nothing" : "degrades this sense") << std::endl;
+    for (const std::string& name : not_declared(parsed, d))
+      std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
+                << std::endl;
+  } catch (const std::invalid_argument& e) {
+    std::cerr << node_.declaration().node << ": refused: " << e.what() << std::endl;
+  }
+}
+
+void Sense::take_control(HostTime) {
+  const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
+  while (const auto m = degradations_.pop())
+    if (ours(m->message.header))
+      // Also the same text once more: its times count from when it is put in force.
+      if (const auto whole = receiver_.take(m->message)) put_in_force(*whole);
+  if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
+    std::cerr << node_.declaration().node << ": refused: " << refusal << std::endl;
+  while (const auto m = playouts_.pop())
+    if (ours(m->message.header)) playout_.take(m->message);
+}
+
+void Sense::step(HostTime now) {
+  take_control(now);
+  const auto map = simulation_.map(now);
+  const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
+  const Nanoseconds delay_before = std::exchange(profile_delay_, stack_.presentation_delay(sim_now));
+  if (profile_delay_ > delay_before) delay_what_is_on_its_way(now, sim_now);
+  output_ = stack_.output(sim_now);
+  lockstep_ = map && playout_.lockstep_Hz() > 0 ? std::optional(Lockstep{*map, playout_.lockstep_Hz()}) : std::nullopt;
+  serial_delay_ = playout_.step(now) + profile_delay_;
+  delay_ = lockstep_ ? now - lockstep_->begin_of_turn(now - serial_delay_) : serial_delay_;
+  const HostTime lets = lockstep_ ? lockstep_->begin_of_turn(now) : now;
+  for (const auto& stream : streams_) stream->step(*this, now, lets);
+}
+
+void Sense::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
+  const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
+  for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
+    const HostTime arrived = arrivals_.at(*id);
+    if (arrived < since) break;
+    Decision d;
+    d.key = static_cast<std::uint64_t>(*id);
+    d.is_event = true;
+    d.time = sim_now - (now - arrived);
+    d.verdict.release = d.arrival = arrived;
+    decisions_.push_back(d);
+  }
+}
+
+HostTime Sense::schedule(std::int64_t event_id, HostTime happened) const {
+  if (lockstep_) return lockstep_->next_turn(happened) + serial_delay_;
+  if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
+  const auto arrived = arrivals_.find(event_id);
+  const HostTime ready = arrived == arrivals_.end() ? happened : arrived->second + output_latency_;
+  return std::max(happened, ready) + profile_delay_;
+}
+
+HostTime Sense::newest_arrival() const {
+  HostTime newest{};
+  for (const auto& stream : streams_) newest = std::max(newest, stream->newest_arrival());
+  return newest;
+}
+
+void Sense::note_arrivals(const contact_events_t& m, HostTime arrival) {
+  for (const contact_event_t& e : m.events) {
+    if (!arrivals_.try_emplace(e.event_id, arrival).second) continue;
+    arrivals_order_.push_back(e.event_id);
+    if (arrivals_order_.size() > kRememberedArrivals) {
+      arrivals_.erase(arrivals_order_.front());
+      arrivals_order_.pop_front();
+    }
+  }
+}
+
+bool Sense::owes(const contact_event_t& e) const {
+  const int owes = declaration_.owes;
+  if ((owes & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
+  return (e.kind == contact_event_t::BEGIN && (owes & node_health_t::OWES_BEGIN)) ||
+         (e.kind == contact_event_t::HIT && (owes & node_health_t::OWES_HIT));
+}
+
+void Sense::report_dropped(const std::vector<contact_event_t>& dropped) {
+  for (const contact_event_t& e : dropped) {
+    if (!owes(e)) continue;
+    presentation_t r{};
+    r.event_id = e.event_id;
+    r.part = presentation_t::WHOLE;
+    r.scheduled_ns = r.presented_ns = -1;
+    r.outcome = presentation_t::DROPPED_BY_PROFILE;
+    report(r);
+  }
+}
+
+void Sense::report(const presentation_t& report) {
+  presentation_t r = report;
+  const auto arrived = arrivals_.find(r.event_id);
+  r.ready_ns = arrived == arrivals_.end() ? -1 : to_ns(arrived->second + output_latency_);
+  reporter_.report(r);
+  if (tell_) tell_(r);
+}
+
+void Sense::publish(HostTime now) {
+  if (listens_in_) return decisions_.clear();
+  reporter_.publish(node_.bus(), now);
+  if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
+  next_decisions_ = now + kDecisionPeriod;
+  publish_decisions();
+}
+
+void Sense::publish_decisions() {
+  if (decisions_.size() > kMostDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMostDecisions);
+  degraded_t m{};
+  m.header.sim_time_ns = -1;
+  m.modality = declaration_.modality;
+  m.profile = profile_hash_;
+  for (std::size_t i = 0; i < decisions_.size(); ++i) {
+    const Decision& d = decisions_[i];
+    decision_t out{};
+    out.key = static_cast<std::int64_t>(d.key);
+    out.is_event = d.is_event ? 1 : 0;
+    out.time_ns = to_ns(d.time);
+    out.why = static_cast<std::int8_t>(d.verdict.why);
+    const Nanoseconds held = d.verdict.release - d.arrival + d.verdict.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
+    out.held_ns = d.verdict.dropped() ? 0 : held.count();
+    out.twice = d.verdict.twice ? 1 : 0;
+    m.decisions.push_back(out);
+    if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions_.size()) continue;
+    m.count = static_cast<std::int32_t>(m.decisions.size());
+    node_.bus().publish(channels::kDegraded, m);
+    m.decisions.clear();
+  }
+  decisions_.clear();
+}
+
+}  // namespace tactus::sync

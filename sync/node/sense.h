@@ -1,0 +1,194 @@
+// What a sense is on the bus: its streams, with the operators of its profile in between; when it presents; and its reports of
+// what it presented. A node that renders has one.
+//
+//   sync::Sense sense(node);
+//   auto& events = sense.events();
+//   while (node.running()) {
+//     const sync::HostTime now = node.wait();
+//     sense.step(now);                        // takes in what arrived, lets through what is due
+//     while (const auto m = events.pop()) ...
+//     ... render what is due at now, which happened sense.delay() ago ...
+//     sense.publish(now);
+//   }
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tactus/playout_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <vector>
+
+#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/node/node.h"
+#include "sync/playout/follower.h"
+#include "sync/playout/lockstep.h"
+#include "sync/presentation/presentation_reporter.h"
+#include "sync/clocks/sim_follower.h"
+
+namespace tactus::sync {
+
+template <class Message>
+struct Let {
+  Message message;
+  HostTime arrival;  // when it really arrived
+};
+
+class Sense {
+ public:
+  // A message stream of this sense: what the renderer reads instead of the inbox.
+  template <class Message>
+  class Stream {
+   public:
+    // The next message that is let through by now.
+    std::optional<Let<Message>> pop() {
+      auto next = degraded_.pop(now_);
+      if (!next) return std::nullopt;
+      return Let<Message>{std::move(next->first), next->second};
+    }
+    const InputCount& count() const { return inbox_.count(); }
+
+   private:
+    friend class Sense;
+    explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
+    Queue<Message>& inbox_;
+    std::conditional_t<std::is_same_v<Message, contact_events_t>, DegradedEvents, DegradedSnapshots<Message>> degraded_;
+    bool waits_ = false;
+    HostTime now_{};
+  };
+
+  // Reads the node's --degrade. Throws std::runtime_error with one sentence when that is no profile.
+  explicit Sense(Node& node);
+  // The sense of another process, listened in on: its streams with what the same profile decides, when it presents, and nothing
+  // said on the bus. So a process knows what a person gets of it.
+  Sense(Node& node, Declaration of);
+  ~Sense();
+
+  // Make them before the first step.
+  Stream<contact_events_t>& events(std::size_t capacity = 4096) { return add<contact_events_t>(channels::kContactEvents, capacity); }
+  template <class Message>
+  Stream<Message>& snapshots(const char* channel, std::size_t capacity) {
+    return add<Message>(channel, capacity);
+  }
+  // Of a sense that has no instant of presentation to move, a servo loop: its news waits instead.
+  template <class Message>
+  Stream<Message>& held_snapshots(const char* channel, std::size_t capacity) {
+    auto& stream = add<Message>(channel, capacity);
+    stream.waits_ = true;
+    return stream;
+  }
+
+  // A scene has come: its names, its tool and the profile that it brings.
+  void set_scene(const scene_t& scene, int tool = -1);
+  // How late this sense presents while nobody says otherwise, and how long it needs from the arrival of an event to its
+  // output at the most.
+  void set_own_delay(Nanoseconds delay) { playout_.set_own(delay); }
+  void set_output_latency(Nanoseconds latency) { output_latency_ = latency; }
+
+  // Once a tick.
+  void step(HostTime now);
+
+  // What is presented now happened so long ago: by policy and by profile. In lock-step it grows until the next turn.
+  Nanoseconds delay() const { return delay_; }
+  // Of that, what the profile adds.
+  Nanoseconds profile_delay() const { return profile_delay_; }
+  // When the event that happened at that time is to be presented: so much later, or as soon as this sense can when the
+  // policy is that.
+  HostTime schedule(std::int64_t event_id, HostTime happened) const;
+  // What is wrong with the output itself.
+  const OutputDef& output() const { return output_; }
+  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
+  const std::string& profile_name() const { return profile_name_; }
+  // When the newest message of any stream really arrived.
+  HostTime newest_arrival() const;
+
+  void report(const presentation_t& report);
+  // Is told of every report, too: of a log, whose reports nobody hears on the bus.
+  void tell(std::function<void(const presentation_t&)> of_report) { tell_ = std::move(of_report); }
+  // Sends reports, and the decisions of the profile.
+  void publish(HostTime now);
+
+ private:
+  struct AnyStream {
+    virtual ~AnyStream() = default;
+    virtual void step(Sense& sense, HostTime now, HostTime lets) = 0;
+    virtual void change_profile() = 0;
+    virtual HostTime newest_arrival() const = 0;
+  };
+  template <class Message>
+  struct Held : AnyStream {
+    explicit Held(Queue<Message>& inbox) : stream(inbox) {}
+    void step(Sense& sense, HostTime now, HostTime lets) override;
+    // Events are decided on one by one.
+    void change_profile() override {
+      if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
+    }
+    HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
+    Stream<Message> stream;
+  };
+  template <class Message>
+  Stream<Message>& add(const char* channel, std::size_t capacity) {
+    auto held = std::make_unique<Held<Message>>(node_.bus().queue<Message>(channel, capacity));
+    auto& stream = held->stream;
+    streams_.push_back(std::move(held));
+    return stream;
+  }
+
+  // A delay of a profile begins: it holds for events too that have come and are not out yet. That is decided, and logged, here.
+  void delay_what_is_on_its_way(HostTime now, SimTime sim_now);
+  void take_control(HostTime now);
+  void put_in_force(const ProfileInForce& profile);
+  void note_arrivals(const contact_events_t& m, HostTime arrival);
+  void report_dropped(const std::vector<contact_event_t>& dropped);
+  bool owes(const contact_event_t& event) const;
+  void publish_decisions();
+
+  Node& node_;
+  Declaration declaration_;
+  bool listens_in_ = false;
+  Queue<degradation_t>& degradations_;
+  Queue<playout_t>& playouts_;
+  ProfileReceiver receiver_;
+  std::int64_t profile_hash_ = 0;
+  std::string profile_name_;
+  Stack stack_;
+  SceneNames names_;
+  int tool_ = -1;
+  Decisions decisions_;
+  HostTime next_decisions_{};
+  std::vector<std::unique_ptr<AnyStream>> streams_;
+  SimFollower simulation_;
+  PlayoutFollower playout_;
+  std::optional<Lockstep> lockstep_;
+  Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
+  OutputDef output_;
+  PresentationReporter reporter_;
+  std::function<void(const presentation_t&)> tell_;
+  std::map<std::int64_t, HostTime> arrivals_;  // of events, raw
+  std::deque<std::int64_t> arrivals_order_;
+};
+
+template <class Message>
+void Sense::Held<Message>::step(Sense& sense, HostTime now, HostTime lets) {
+  // A turn that is held up while it reads hears what came meanwhile, too, and does not keep it until the next.
+  HostTime heard = now;
+  while (auto m = stream.inbox_.pop()) {
+    heard = std::max(heard, m->arrival);
+    if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    if constexpr (std::is_same_v<Message, contact_events_t>) {
+      sense.note_arrivals(m->message, m->arrival);
+      stream.degraded_.push(m->message, m->arrival, sense.stack_, &sense.decisions_);
+    } else {
+      stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
+    }
+  }
+  if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
+  // In lock-step the state of the world is that of the turn; events say themselves when they are due.
+  const bool is_state = !std::is_same_v<Message, contact_events_t>;
+  stream.now_ = (is_state && lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+}
+
+}  // namespace tactus::sync

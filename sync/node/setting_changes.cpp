@@ -1,0 +1,32 @@
+#include "sync/node/setting_changes.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace tactus::sync {
+
+void SettingChanges::take(const setting_change_t& change, const Apply& apply) {
+  if (change.node != node_ || change.header.run_id != run_id_) return;
+  const auto known =
+      std::find_if(known_.begin(), known_.end(), [&](const setting_reply_t& r) { return r.id == change.id; });
+  if (known != known_.end()) {
+    replies_.push_back(*known);
+    return;
+  }
+  setting_reply_t reply{};
+  reply.header.sim_time_ns = -1;
+  reply.id = change.id;
+  try {
+    apply(change.name, change.value);
+    reply.done = 1;
+    reply.text = node_ + ": " + change.name + " is " + change.value;
+  } catch (const std::invalid_argument& e) {
+    reply.text = node_ + ": " + e.what();
+  }
+  reply.text.resize(std::min<std::size_t>(reply.text.size(), 512));
+  known_.push_back(reply);
+  if (known_.size() > kRemembered) known_.pop_front();
+  replies_.push_back(reply);
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,61 @@
+// Settings of a process that tagged variables drive (<tactus:map>): the grip that makes the picture slower, the
+// speed that makes the sound louder. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tactus/map_def_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "sync/node/tag_table.h"
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+// The value of the setting for one of the variable.
+double mapped(const map_def_t& map, double value);
+
+class SettingMaps {
+ public:
+  // A setting is changed at most so often: settings are changed by name and as text.
+  static constexpr Nanoseconds kChangeEvery{10'000'000};
+  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMostPatterns = 16;  // of a tag_request_t
+
+  // node: the process whose settings are meant.
+  explicit SettingMaps(std::string node) : node_(std::move(node)) {}
+
+  // Those of a scene that drive settings of this process, at most kMost.
+  void set(const std::vector<map_def_t>& maps);
+  bool any() const { return !maps_.empty(); }
+  // What is to be asked for, once a second.
+  tag_request_t request() const;
+  void push(const tag_list_t& m) { table_.push(m); }
+  void push(const tag_values_t& m);
+
+  struct Change {
+    std::string name, value;
+  };
+  // Settings whose variable has another value than when they were handed out last. A variable that is silent
+  // leaves its setting where it is.
+  std::vector<Change> take(HostTime now);
+  // The setting cannot be changed: its maps rest until the next scene.
+  void give_up(const std::string& name);
+
+ private:
+  struct Map {
+    map_def_t def;
+    std::string setting;
+    bool fresh = false;
+    double value = 0;
+    std::string said;  // handed out last
+  };
+  std::string node_;
+  std::vector<Map> maps_;
+  TagTable table_;
+  HostTime next_{};
+};
+
+}  // namespace tactus::sync

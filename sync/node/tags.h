@@ -1,0 +1,82 @@
+// Variables of a process that can be recorded while it runs. One line tags one:
+//
+//   node.tags().add("depth", "m", &depth_m);                              // each tick
+//   node.tags().add("voices", "1", [&] { return double(bank.size()); }, 10);  // ten times a second
+//
+// With nobody asking (TAG_REQUEST) nothing is taken, kept or sent. Pure: the node hands messages in and sends what
+// there is.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
+#include <vector>
+
+#include "sync/node/tag_requests.h"
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+class Tags {
+ public:
+  static constexpr std::size_t kMost = 1024;
+  // What is taken is sent at the latest after so long (design: a viewer's picture at 20 Hz).
+  static constexpr Nanoseconds kSendEvery{50'000'000};
+  static constexpr Nanoseconds kListEvery{1'000'000'000};
+  using Getter = std::function<double()>;
+
+  Tags(std::string node, std::int64_t run_id) : node_(std::move(node)), requests_(run_id) {}
+
+  // rate_Hz 0: each tick. The getter is called in the node's loop; not finite: no value now. Throws
+  // std::invalid_argument with one sentence when the name is taken or is none, or there are too many.
+  void add(std::string name, std::string unit, Getter getter, double rate_Hz = 0);
+  template <class Number>
+  requires std::integral<Number> || std::floating_point<Number>
+  void add(std::string name, std::string unit, const Number* variable, double rate_Hz = 0) {
+    add(
+        std::move(name), std::move(unit), [variable] { return static_cast<double>(*variable); }, rate_Hz);
+  }
+
+  // Somebody wants values: only then is it worth to compute what is only tagged.
+  bool wanted() const { return !blocks_.empty(); }
+  void take(const tag_request_t& request, HostTime now);
+  // Once a tick: takes what is due. Allocates nothing once a block has been filled.
+  void step(HostTime now);
+  // What is to be sent now: null when there is no more. Valid until the next call.
+  tag_list_t* next_list();
+  tag_values_t* next_values();
+
+ private:
+  struct Tag {
+    tag_def_t def;
+    Getter getter;
+  };
+  // Tags of one rate whose rows go together.
+  struct Block {
+    double rate_Hz;
+    HostTime next{};   // when the next row is due
+    HostTime begun{};  // when the first row was taken
+    std::size_t most_rows;
+    bool full = false;
+    tag_values_t message{};
+  };
+  void arrange();
+  void page_list();
+  void append_row(Block& block, HostTime now);
+
+  std::string node_;
+  std::vector<Tag> tags_;
+  std::int64_t list_ = 0;  // 0: has to be computed
+  std::vector<tag_list_t> pages_;
+  std::size_t next_page_ = 0;  // pages_.size(): all sent
+  HostTime list_due_{};
+  TagRequests requests_;
+  std::vector<Block> blocks_;
+  std::size_t sent_ = 0;  // block whose message was handed out last, plus 1
+};
+
+}  // namespace tactus::sync

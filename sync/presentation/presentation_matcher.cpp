@@ -1,0 +1,297 @@
+#include "sync/presentation/presentation_matcher.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "lcmtypes/channels.h"
+
+namespace tactus::sync {
+namespace {
+
+// A sense has at most three parts; with as many nodes as anyone would run, this many reports of one event.
+constexpr std::size_t kMaxReportsPerEvent = 64;
+
+std::size_t place(const std::string& modality) {
+  static const std::array<std::string, 5> known = {"haptic_push", "haptic", "audio", "visual", "thermal"};
+  return static_cast<std::size_t>(std::distance(known.begin(), std::find(known.begin(), known.end(), modality)));
+}
+
+bool was_presented(std::int8_t outcome) {
+  return outcome == presentation_t::PRESENTED || outcome == presentation_t::LATE ||
+         outcome == presentation_t::INAUDIBLE;
+}
+
+// What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
+constexpr Nanoseconds kMostHeld{
+    61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
+constexpr Nanoseconds kMostUncertain{60'000'000'000};
+
+// Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
+bool is_onset(std::int8_t part, std::int8_t kind) {
+  return part == presentation_t::WHOLE ||
+         part == (kind == contact_event_t::HIT ? presentation_t::TRANSIENT : presentation_t::CONSTRAINT);
+}
+
+template <class Map>
+bool has_room(const Map& map, const typename Map::key_type& key, std::size_t most) {
+  return map.size() < most || map.contains(key);
+}
+
+}  // namespace
+
+bool named_before(const std::string& a, const std::string& b) {
+  return std::pair(place(a), a) < std::pair(place(b), b);
+}
+
+PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, HostTime arrival) {
+  const auto it = events_.find(id);
+  if (it != events_.end()) return &it->second;
+  if (events_.size() >= kMaxEvents) return ++overflow_, nullptr;
+  forget_.emplace(arrival + kSettleAfter + kRemember, id);
+  return &events_[id];
+}
+
+SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) {
+  // The one that is forgotten is learnt anew when its sender speaks again.
+  if (!has_room(clocks_, h.source, kMaxSenses)) clocks_.erase(clocks_.begin());
+  SenderClock& clock = clocks_.try_emplace(h.source, own_).first->second;
+  clock.observe(h, arrival);
+  return clock;
+}
+
+void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
+  const bool any_run = own_.run_id == 0;
+  const bool ours = any_run || m.header.run_id == own_.run_id;
+  if (ours && has_room(simulations_, m.header.source, kMaxSenses)) simulations_.insert(m.header.source);
+  if (!ours && simulation_heard_ && arrival - *simulation_heard_ < kSettleAfter) {
+    ++foreign_;
+    return;
+  }
+  TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
+  if (!any_run) map.host = clock_of(m.header, arrival).to_host(m.clock.host_ns, arrival);
+  for (const contact_event_t& e : m.events) {
+    Event* event = find_or_add(e.event_id, arrival);
+    if (event == nullptr || event->known) continue;
+    event->known = true;
+    event->kind = e.kind;
+    event->tool = e.tool;
+    event->source = ours ? m.header.source : 0;  // a foreign simulation's health is not heeded
+    event->incarnation = m.header.incarnation;
+    // Nothing is published before its time.
+    event->time = std::min(map.to_host(sim_time(e.time_ns)), arrival);
+    due_.emplace(std::max(event->time + kSettleAfter, arrival + kSettleAfter / 2), e.event_id);
+    ++(e.kind == contact_event_t::BEGIN ? begins_ : e.kind == contact_event_t::HIT ? hits_ : ends_);
+  }
+}
+
+void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
+  if (own_.run_id == 0) own_ = OwnClock(m.header.run_id, m.header.clock, own_.maps);
+  if (m.header.run_id != own_.run_id) {
+    ++foreign_;
+    return;
+  }
+  if (!has_room(renderers_, m.header.source, kMaxSenses) ||
+      (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxSenses))) {
+    ++overflow_;
+    return;
+  }
+  Renderer& r = renderers_[m.header.source];
+  r.modality = m.modality;
+  r.owes = m.owes;
+  r.tool = m.tool;
+  const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
+  if (simulations_.contains(m.header.source)) simulation_heard_ = arrival;
+  const bool returned = r.life.observe(m.header.incarnation, m.state, sent);
+  std::erase_if(last_debts_,
+                [&](const LastDebt& d) { return d.source == m.header.source || d.simulation == m.header.source; });
+  if (r.modality.empty()) return;
+  DebtTally& tally = tallies_[r.modality];
+  if (returned) {
+    tally.dead -= r.dead_unless_it_returns;
+    tally.stalled += r.dead_unless_it_returns;
+  }
+  r.dead_unless_it_returns = 0;
+}
+
+void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
+  if (m.header.run_id != own_.run_id) {
+    ++foreign_;
+    return;
+  }
+  const SenderClock& clock = clock_of(m.header, arrival);
+  for (const presentation_t& p : m.reports) {
+    Event* event = find_or_add(p.event_id, arrival);
+    if (event == nullptr || event->reports.size() >= kMaxReportsPerEvent) continue;
+    const auto same = [&](const Report& r) { return r.source == m.header.source && r.part == p.part; };
+    if (std::any_of(event->reports.begin(), event->reports.end(), same)) continue;
+    Report report{m.header.source, m.modality, p.part, p.outcome, -1, Nanoseconds(0)};
+    if (p.presented_ns >= 0) {
+      const SenderClock::Reading at = clock.read(p.presented_ns, arrival);
+      if (at.uncertainty >= Nanoseconds(0)) {
+        report.presented_ns = to_ns(at.time);
+        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMostUncertain.count())) + at.uncertainty;
+      } else {
+        ++unmapped_reports_;
+      }
+    }
+    if (p.ready_ns >= 0 && event->known && needs_.size() < kMaxNeeds) {
+      const SenderClock::Reading ready = clock.read(p.ready_ns, arrival);
+      if (ready.uncertainty >= Nanoseconds(0))
+        needs_.push_back({p.event_id, m.modality, ready.time - event->time});
+    }
+    event->reports.push_back(std::move(report));
+    if (event->settled) ++late_reports_;
+  }
+}
+
+std::map<std::string, bool> PresentationMatcher::senses() const {
+  std::map<std::string, bool> waited_for;
+  for (const auto& [source, r] : renderers_)
+    if (!r.modality.empty()) waited_for[r.modality] = (r.owes & node_health_t::NOT_WAITED_FOR) == 0;
+  return waited_for;
+}
+
+void PresentationMatcher::observe(const playout_t& m, HostTime) {
+  if (m.header.run_id != own_.run_id) return;
+  turn_ = m.lockstep_Hz > 0 ? from_seconds(1 / m.lockstep_Hz) : Nanoseconds(0);
+  for (const playout_entry_t& e : m.entries)
+    if (has_room(playout_, e.modality, kMaxSenses))
+      playout_.try_emplace(e.modality, e.modality).first->second.take(m);
+}
+
+void PresentationMatcher::observe(const degraded_t& m, HostTime) {
+  if (m.header.run_id != own_.run_id) return;
+  for (const decision_t& d : m.decisions) {
+    const auto it = d.is_event ? events_.find(d.key) : events_.end();
+    if (it == events_.end() || !has_room(it->second.held, m.modality, kMaxSenses)) continue;
+    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMostHeld);
+  }
+}
+
+Nanoseconds PresentationMatcher::on_purpose(const Event& e, const std::string& modality) const {
+  const auto playout = playout_.find(modality);
+  const auto held = e.held.find(modality);
+  return turn_ + (playout == playout_.end() ? Nanoseconds(0) : playout->second.delay()) +
+         (held == e.held.end() ? Nanoseconds(0) : held->second);
+}
+
+Nanoseconds PresentationMatcher::longest_on_purpose(const Event& e) const {
+  Nanoseconds longest{0};
+  for (const auto& [modality, tally] : tallies_) longest = std::max(longest, on_purpose(e, modality));
+  return longest;
+}
+
+void PresentationMatcher::advance(HostTime now) {
+  for (auto& [modality, follower] : playout_) follower.step(now);
+  while (!due_.empty() && due_.begin()->first <= now) {
+    const std::int64_t id = due_.begin()->second;
+    Event& event = events_.at(id);
+    due_.erase(due_.begin());
+    const Nanoseconds later = longest_on_purpose(event);
+    const HostTime until = event.time + later + kSettleAfter;
+    if (later > Nanoseconds(0) && until > now)
+      due_.emplace(until, id);
+    else
+      settle(event, now, false);
+  }
+  while (!forget_.empty() && forget_.begin()->first <= now) {
+    const auto it = events_.find(forget_.begin()->second);
+    forget_.erase(forget_.begin());
+    if (it->second.known && !it->second.settled) {  // some sense is late on purpose
+      forget_.emplace(now + kRemember, it->first);
+      continue;
+    }
+    if (!it->second.known) unknown_reports_ += static_cast<std::int64_t>(it->second.reports.size());
+    events_.erase(it);
+  }
+}
+
+void PresentationMatcher::finish(HostTime now) {
+  advance(now);
+  for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
+  due_.clear();
+  // All processes end before the log of them does: that is no death.
+  for (const LastDebt& d : last_debts_) {
+    --tallies_[d.modality].owed;
+    --tallies_[d.modality].dead;
+  }
+  last_debts_.clear();
+}
+
+bool PresentationMatcher::owes(const Renderer& r, const Event& e) const {
+  const int kind = e.kind == contact_event_t::BEGIN ? node_health_t::OWES_BEGIN
+                   : e.kind == contact_event_t::HIT ? node_health_t::OWES_HIT
+                                                    : 0;
+  if (r.modality.empty() || (r.owes & kind) == 0) return false;
+  return (r.owes & node_health_t::OWES_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
+}
+
+void PresentationMatcher::settle(Event& e, HostTime now, bool last) {
+  e.settled = true;
+  for (auto& [source, renderer] : renderers_)
+    if (owes(renderer, e)) settle_debt(renderer, source, e, now, last);
+  count_asynchrony(e);
+}
+
+void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Event& e, HostTime now, bool last) {
+  const Nanoseconds later = on_purpose(e, r.modality);
+  const NodeLife::Answer life = r.life.during(e.time, e.time + later + kReportsWithin, now);
+  if (life.fate == NodeLife::Fate::kAbsent) return;
+  DebtTally& tally = tallies_[r.modality];
+  std::int64_t* outcome = nullptr;
+  bool late = false;  // every part of it that was presented
+  for (const Report& report : e.reports) {
+    if (report.source != source) continue;
+    if (was_presented(report.outcome)) {
+      late = report.outcome == presentation_t::LATE;
+      outcome = &tally.presented;
+      if (!late) break;
+    }
+    if (outcome == &tally.presented) continue;
+    const bool by_profile = report.outcome == presentation_t::DROPPED_BY_PROFILE;
+    if (by_profile || outcome == nullptr) outcome = by_profile ? &tally.dropped_by_profile : &tally.dropped_late;
+  }
+  if (outcome == nullptr) {
+    // The log ends before it was to be presented.
+    if (last && later > Nanoseconds(0) && now < e.time + later + kReportsWithin) return;
+    const auto simulation = renderers_.find(e.source);
+    const bool source_died = simulation != renderers_.end() &&
+                             simulation->second.life.died_before(e.incarnation, e.time + kRepeated, now);
+    if (last && (life.may_return || life.fate == NodeLife::Fate::kUndecided || source_died)) return;
+    if (life.fate == NodeLife::Fate::kStalled) {
+      outcome = &tally.stalled;
+    } else if (life.fate == NodeLife::Fate::kDead || source_died) {
+      outcome = &tally.dead;
+      if (life.may_return) ++r.dead_unless_it_returns;
+      if (simulation != renderers_.end() && simulation->second.life.silent_since(e.time + kEndsWithin, now))
+        last_debts_.push_back({source, e.source, r.modality});
+    } else {
+      outcome = &tally.lost;
+    }
+  }
+  ++tally.owed;
+  ++*outcome;
+  if (late) ++tally.late;
+}
+
+void PresentationMatcher::count_asynchrony(const Event& e) {
+  // Of several nodes of one sense (walls of a room) the first.
+  std::map<std::string, const Report*> onset;
+  for (const Report& r : e.reports) {
+    if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;
+    const Report*& first = onset[r.part == presentation_t::CONSTRAINT ? r.modality + "_push" : r.modality];
+    if (first == nullptr || r.presented_ns < first->presented_ns) first = &r;
+  }
+  for (const auto& [a, report_a] : onset)
+    for (const auto& [b, report_b] : onset) {
+      if (!named_before(a, b)) continue;
+      if (has_room(pairs_, {a, b}, kMaxPairs))
+        pairs_[{a, b}].add(Nanoseconds(report_b->presented_ns - report_a->presented_ns),
+                           report_a->uncertainty + report_b->uncertainty);
+      else
+        ++overflow_;
+    }
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,56 @@
+#include "sync/presentation/presentation_matcher_life.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+
+bool NodeLife::observe(std::int64_t incarnation, std::int8_t state, HostTime sent) {
+  const bool able = state != node_health_t::WAITING && state != node_health_t::OUTPUT_LOST;
+  const bool first = spans_.empty();
+  const bool same = !first && spans_.back().incarnation == incarnation;
+  if (!first && sent < spans_.back().end) return false;  // overtaken
+  const bool returned = same && sent - spans_.back().end > kStall;
+  if (same && !returned && spans_.back().able == able) {
+    spans_.back().end = sent;
+  } else {
+    Span next{incarnation, able, same ? spans_.back().owes_from : HostTime::max(), sent, sent};
+    spans_.push_back(next);
+  }
+  Span& now = spans_.back();
+  const bool ready = state == node_health_t::READY;
+  if ((ready || state == node_health_t::RUNNING || state == node_health_t::STALE) &&
+      now.owes_from == HostTime::max()) {
+    now.owes_from = ready ? sent : sent + kGrace;
+    first_owes_from_ = std::min(first_owes_from_, now.owes_from);
+  }
+  while (spans_.size() > 1 && sent - spans_[1].begin > kRemember) spans_.pop_front();
+  return returned;
+}
+
+NodeLife::Answer NodeLife::during(HostTime from, HostTime to, HostTime now) const {
+  if (from < first_owes_from_) return {Fate::kAbsent, false};
+  const auto after = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) { return s.begin > from; });
+  if (after == spans_.begin()) return {Fate::kDead, false};  // longer ago than is remembered
+  for (auto span = std::prev(after);; ++span) {
+    if (!span->able || from < span->owes_from) return {Fate::kDead, false};
+    if (to <= span->end) return {Fate::kAlive, false};
+    const auto next = std::next(span);
+    if (next == spans_.end()) {
+      if (now - span->end > kDeath) return {Fate::kDead, true};
+      return {Fate::kUndecided, false};
+    }
+    if (next->incarnation != span->incarnation) return {Fate::kDead, false};
+    if (next->begin - span->end > kStall) return {Fate::kStalled, false};
+    // Only its ability changed: to it there was no interruption.
+    if (next->begin > to && next->able) return {Fate::kAlive, false};
+  }
+}
+
+bool NodeLife::died_before(std::int64_t incarnation, HostTime until, HostTime now) const {
+  const auto last =
+      std::find_if(spans_.rbegin(), spans_.rend(), [&](const Span& s) { return s.incarnation == incarnation; });
+  if (last == spans_.rend() || last->end >= until) return false;
+  return last != spans_.rbegin() || now - last->end > kDeath;
+}
+
+}  // namespace tactus::sync

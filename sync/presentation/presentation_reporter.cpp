@@ -1,0 +1,52 @@
+#include "sync/presentation/presentation_reporter.h"
+
+#include <tactus/presented_t.hpp>
+
+namespace tactus::sync {
+namespace {
+constexpr std::size_t kReportsPerMessage = 30;  // of 42 bytes each
+}
+
+void PresentationReporter::report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented,
+                                  Nanoseconds uncertainty, std::int8_t outcome) {
+  presentation_t r{};
+  r.event_id = event_id;
+  r.part = part;
+  r.scheduled_ns = to_ns(scheduled);
+  r.presented_ns = to_ns(presented);
+  r.uncertainty_ns = uncertainty.count();
+  r.outcome = outcome;
+  report(r);
+}
+
+void PresentationReporter::report(const presentation_t& r) {
+  if (pending_.size() >= kMaxPending) {
+    pending_.pop_front();
+    ++dropped_;
+  }
+  pending_.push_back({r, {}, false});
+}
+
+void PresentationReporter::publish(Bus& bus, HostTime now) {
+  presented_t m{};
+  m.header.sim_time_ns = -1;
+  m.modality = modality_;
+  const auto flush = [&] {
+    if (m.reports.empty()) return;
+    m.count = static_cast<std::int32_t>(m.reports.size());
+    bus.publish(channels::kPresented, m);
+    m.reports.clear();
+  };
+  for (Pending& p : pending_) {
+    if (p.sent && now - p.first_sent < kRepeatAfter) continue;
+    m.reports.push_back(p.report);
+    if (m.reports.size() >= kReportsPerMessage) flush();
+    // The second sending is the last: marked by a time that the clean-up below recognises.
+    p.first_sent = p.sent ? HostTime::min() : now;
+    p.sent = true;
+  }
+  flush();
+  std::erase_if(pending_, [](const Pending& p) { return p.sent && p.first_sent == HostTime::min(); });
+}
+
+}  // namespace tactus::sync

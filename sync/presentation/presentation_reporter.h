@@ -1,0 +1,40 @@
+// Collects what a renderer did with its events and sends it on PRESENTED: each report twice, so that one lost datagram
+// loses none. Bounded: when more than kMaxPending wait, the oldest are dropped and counted.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <tactus/presentation_t.hpp>
+
+#include "sync/bus/bus.h"
+
+namespace tactus::sync {
+
+class PresentationReporter {
+ public:
+  static constexpr std::size_t kMaxPending = 1024;
+  static constexpr Nanoseconds kRepeatAfter{20'000'000};
+
+  explicit PresentationReporter(std::string modality) : modality_(std::move(modality)) {}
+
+  // scheduled, presented: on this host's clock; presented: nothing if it was not.
+  void report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented, Nanoseconds uncertainty,
+              std::int8_t outcome);
+  void report(const presentation_t& report);
+  // Call once a tick: sends what is new and what is due for its repetition, paged.
+  void publish(Bus& bus, HostTime now);
+  std::int64_t dropped() const { return dropped_; }
+
+ private:
+  struct Pending {
+    presentation_t report;
+    HostTime first_sent{};
+    bool sent = false;
+  };
+  std::string modality_;
+  std::deque<Pending> pending_;
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace tactus::sync

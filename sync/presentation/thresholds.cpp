@@ -1,0 +1,69 @@
+#include "sync/presentation/thresholds.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "sync/thresholds.gen.h"
+
+namespace tactus::sync {
+namespace {
+
+// One line of the file: fields with commas are quoted.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += c;
+  }
+  return fields;
+}
+
+std::vector<Threshold> read() {
+  std::vector<Threshold> rows;
+  std::istringstream lines(kThresholdsCsv);
+  std::string line;
+  std::getline(lines, line);  // names of the columns
+  while (std::getline(lines, line)) {
+    const auto f = fields_of(line);
+    if (f.size() == 6) rows.push_back({f[0], f[1], from_seconds(std::stod(f[2]) * 1e-3), f[3], f[4], f[5]});
+  }
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<Threshold>& published_thresholds() {
+  static const std::vector<Threshold> rows = read();
+  return rows;
+}
+
+std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const std::string& later) {
+  std::optional<ThresholdRange> range;
+  for (const Threshold& t : published_thresholds()) {
+    if (t.earlier != earlier || t.later != later) continue;
+    if (!range) range = {t.at, t.at};
+    range->least = std::min(range->least, t.at);
+    range->largest = std::max(range->largest, t.at);
+  }
+  return range;
+}
+
+Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa) {
+  // A push is felt by the same sense as a vibration.
+  const auto sense = [](const std::string& name) { return name.substr(0, name.rfind("_push")); };
+  const auto after = thresholds_of(sense(a), sense(b)), before = thresholds_of(sense(b), sense(a));
+  if (!after && !before) return {};
+  const auto count = [&](auto limit) {
+    return soa.beyond(before ? limit(*before) : SoaHistogram::kWideRange,
+                      after ? limit(*after) : SoaHistogram::kWideRange);
+  };
+  return {count([](const ThresholdRange& r) { return r.least; }),
+          count([](const ThresholdRange& r) { return r.largest; })};
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,35 @@
+// Published thresholds of asynchrony between two senses: sync/presentation/thresholds.csv, a row per pair, direction and
+// source. The sources disagree, so none of them is the truth: what is measured is held against the least and the
+// largest of a direction. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sync/presentation/presentation_matcher_soa.h"
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+struct Threshold {
+  std::string earlier, later;  // modalities
+  Nanoseconds at{0};
+  std::string what, situation, source;
+};
+
+const std::vector<Threshold>& published_thresholds();
+
+struct ThresholdRange {
+  Nanoseconds least{0}, largest{0};
+};
+// Of all sources, when one sense is presented after the other; none when there is no source.
+std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const std::string& later);
+
+// How many of the asynchronies of a pair lie beyond them, to 0.1 ms; -1: no source for either direction.
+struct Beyond {
+  std::int64_t least = -1, all = -1;
+};
+Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa);
+
+}  // namespace tactus::sync

@@ -1,0 +1,46 @@
+// Random delays with a given distribution and correlation. Pure.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+enum class JitterShape { kUniform, kNormal, kPareto, kTrace };
+
+// What a profile asks for: "3ms normal", "10ms uniform", "2ms pareto correlation=0.5", "trace=FILE".
+struct JitterDef {
+  JitterShape shape = JitterShape::kUniform;
+  // uniform: half width around the constant delay; normal: standard deviation; pareto: mean of what is added; s.
+  double scale_s = 0;
+  // Of consecutive delays in the normal domain, 0 .. < 1: a first-order process whose marginal stays the shape's.
+  double correlation = 0;
+  // Added delays of a trace, s, taken in turn, round and round.
+  std::vector<double> trace_s{};
+  // True: what arrives in order leaves in order, as in a queue.
+  bool keep_order = true;
+};
+
+// Tail index of the Pareto shape, shifted to begin at 0 (Lomax 1954); design: a heavy tail whose variance is
+// finite.
+inline constexpr double kParetoIndex = 2.5;
+
+class Jitter {
+ public:
+  explicit Jitter(JitterDef def) : def_(std::move(def)) {}
+
+  // The next delay on top of the constant one, may be negative. u: uniform in (0, 1), drawn for it.
+  Nanoseconds next(double u);
+  bool keeps_order() const { return def_.keep_order; }
+
+ private:
+  JitterDef def_;
+  bool begun_ = false;
+  double z_ = 0;  // of the process, standard normal
+  std::size_t turn_ = 0;
+};
+
+}  // namespace tactus::sync

@@ -1,3 +1,0 @@
-#include "sync/recorder_node.h"
-
-int main(int argc, char** argv) { return tactus::sync::run_recorder(argc, argv); }

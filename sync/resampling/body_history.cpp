@@ -1,0 +1,154 @@
+#include "sync/resampling/body_history.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::sync {
+namespace {
+
+// Cubic Hermite between two samples with their velocities; SLERP for the orientation, short way round.
+BodyPose between(const BodyPose& a, const BodyPose& b, double span_s, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  BodyPose p;
+  p.position = (2 * s3 - 3 * s2 + 1) * a.position + (s3 - 2 * s2 + s) * span_s * a.velocity +
+               (3 * s2 - 2 * s3) * b.position + (s3 - s2) * span_s * b.velocity;
+  p.orientation = a.orientation.slerp(s, b.orientation);
+  p.velocity = (1 - s) * a.velocity + s * b.velocity;
+  p.angular_velocity = (1 - s) * a.angular_velocity + s * b.angular_velocity;
+  return p;
+}
+
+BodyPose moved_on(BodyPose p, double dt_s) {
+  p.position += p.velocity * dt_s;
+  const double angle = p.angular_velocity.norm() * dt_s;
+  if (angle > 0) p.orientation = Eigen::AngleAxisd(angle, p.angular_velocity.normalized()) * p.orientation;
+  return p;
+}
+
+BodyPose from_message(const body_state_t& b) {
+  return {to_eigen(b.position_m), to_eigen(b.orientation).normalized(), to_eigen(b.velocity_m_s),
+          to_eigen(b.angular_velocity_rad_s)};
+}
+
+bool rests(const BodyPose& p) {
+  return p.velocity == Eigen::Vector3d::Zero() && p.angular_velocity == Eigen::Vector3d::Zero();
+}
+
+How past(Nanoseconds newest) {
+  return newest <= BodyHistory::kExtrapolateAtMost ? How::kExtrapolated
+         : newest <= BodyHistory::kStaleAfter      ? How::kHeld
+                                                   : How::kStale;
+}
+
+}  // namespace
+
+void BodyHistory::push(const world_state_t& page, HostTime arrival) {
+  switch (follower_.follow(page.header, page.clock, arrival)) {
+    case Follow::kIgnore: return;
+    case Follow::kRestart:
+      bodies_.clear();
+      samples_kept_ = 0;
+      newest_.reset();
+      break;
+    case Follow::kSame: break;
+  }
+  const SimTime time = sim_time(page.header.sim_time_ns), latest = follower_.latest_credible();
+  if (newest_ && *newest_ > latest) forget_after(latest);
+  if (time > latest) {
+    ++refused_;
+    return;
+  }
+  if (!newest_ || time > *newest_) newest_ = time;
+  const Nanoseconds period =
+      page.rate_Hz > 1 ? from_seconds(1 / static_cast<double>(page.rate_Hz)) : Nanoseconds(0);
+  for (const body_state_t& b : page.bodies) {
+    if (b.body >= kMaxBodies) {
+      ++refused_;
+      continue;
+    }
+    Samples& samples = bodies_[b.body];
+    if (!place(samples, {time, page.header.seq, page.group == world_state_t::AHEAD, period, from_message(b)}))
+      continue;
+    if (samples.size() <= 2) continue;
+    const bool young = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
+    if (young && samples_kept_ <= kMaxSamples) continue;
+    samples.pop_front();
+    --samples_kept_;
+  }
+}
+
+// Pages may overtake each other: true when it found its place. Of several of one instant the first stays, but what
+// is told of now takes the place of what was foreseen.
+bool BodyHistory::place(Samples& samples, Stamped fresh) {
+  const auto later = [&](const Stamped& s) { return s.time <= fresh.time; };
+  auto at = std::find_if(samples.rbegin(), samples.rend(), later).base();
+  if (fresh.ahead) {
+    // Told of now, and later than this was, for an instant before: this was taken back. What is said ahead is said
+    // in the order of its times, so nothing before a sample that holds needs to be looked at.
+    for (auto s = at; s != samples.begin();) {
+      if ((--s)->ahead && s->seq < fresh.seq && s->time < fresh.time) break;
+      if (!s->ahead && s->seq > fresh.seq && fresh.time - s->time <= SimFollower::kFar) return false;
+    }
+  } else {
+    take_back(samples, fresh);
+    at = std::find_if(samples.rbegin(), samples.rend(), later).base();
+  }
+  if (at != samples.begin() && std::prev(at)->time == fresh.time) {
+    Stamped& there = *std::prev(at);
+    if (there.ahead && !fresh.ahead) there = fresh;
+    return false;
+  }
+  samples.insert(at, std::move(fresh));
+  ++samples_kept_;
+  return true;
+}
+
+// A body is told of now: what was said of it ahead, before that, holds no more. Nobody foretells more than kFar,
+// so no page, however false, takes back more.
+void BodyHistory::take_back(Samples& samples, const Stamped& now) {
+  const auto end =
+      std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= now.time; }).base();
+  const auto void_now = [&](const Stamped& s) {
+    return s.ahead && s.seq < now.seq && s.time - now.time <= SimFollower::kFar;
+  };
+  const auto kept = std::remove_if(end, samples.end(), void_now);
+  samples_kept_ -= static_cast<std::size_t>(samples.end() - kept);
+  samples.erase(kept, samples.end());
+}
+
+// What was credible once need not be any more: its message may have been the first of all, and false.
+void BodyHistory::forget_after(SimTime latest) {
+  newest_.reset();
+  for (auto& [body, samples] : bodies_) {
+    for (; !samples.empty() && samples.back().time > latest; --samples_kept_) samples.pop_back();
+    if (!samples.empty() && (!newest_ || samples.back().time > *newest_)) newest_ = samples.back().time;
+  }
+}
+
+How BodyHistory::how(SimTime t) const {
+  if (!newest_) return How::kNone;
+  return t <= *newest_ ? How::kInterpolated : past(t - *newest_);
+}
+
+Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
+  const auto it = bodies_.find(body);
+  if (it == bodies_.end() || it->second.empty()) return {};
+  const auto& samples = it->second;
+  const auto after = std::find_if(samples.begin(), samples.end(), [&](const Stamped& s) { return s.time > t; });
+  if (after == samples.begin()) return {after->pose, How::kHeld};  // older than all that is kept
+  const Stamped& before = *std::prev(after);
+  if (before.time == t) return {before.pose, How::kExact};
+  if (after != samples.end()) {
+    SimTime begin = before.time;
+    if (after->period > Nanoseconds(0) && rests(before.pose)) begin = std::max(begin, after->time - after->period);
+    if (t <= begin) return {before.pose, How::kInterpolated};
+    const double span_s = to_seconds(after->time - begin), s = to_seconds(t - begin) / span_s;
+    return {between(before.pose, after->pose, span_s, s), How::kInterpolated};
+  }
+  const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
+  // At rest it is left out, and well known. One that was moving is missing: its page was lost.
+  return {moved_on(before.pose, dt_s), rests(before.pose) ? how(t) : past(t - before.time)};
+}
+
+}  // namespace tactus::sync

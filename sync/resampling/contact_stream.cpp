@@ -1,0 +1,246 @@
+#include "sync/resampling/contact_stream.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tactus::sync {
+namespace {
+
+// Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
+constexpr std::size_t kRememberedIds = 8192;
+constexpr std::size_t kRememberedLives = 8192;
+// At the least, however old.
+constexpr std::size_t kSnapshots = 128;
+// Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
+// kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
+constexpr std::size_t kPartialSnapshots = 64;
+constexpr std::size_t kPartialPages = 8 * ContactStream::kMaxPages;
+
+float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
+
+// The scalars of the same contact between two snapshots; points and normal stay those of the older.
+contact_t between(contact_t a, const contact_t& b, double s) {
+  a.depth_m = mix(a.depth_m, b.depth_m, s);
+  a.area_m2 = mix(a.area_m2, b.area_m2, s);
+  a.normal_force_N = mix(a.normal_force_N, b.normal_force_N, s);
+  a.impulse_N_s = mix(a.impulse_N_s, b.impulse_N_s, s);
+  return a;
+}
+
+Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
+  return std::find_if(list.begin(), list.end(), [id](const contact_t& c) { return c.contact_id == id; });
+}
+
+}  // namespace
+
+bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  const std::int64_t before = follower_.incarnation();
+  const Follow verdict = follower_.follow(header, clock, arrival);
+  if (verdict == Follow::kIgnore) return false;
+  if (verdict == Follow::kRestart) {
+    if (before != 0) ++restarts_;
+    pending_.clear();
+    seen_.clear();
+    seen_order_.clear();
+    lives_.clear();
+    lives_order_.clear();
+    for (auto& group : partial_) group.clear();
+    for (auto& group : snapshots_) group.clear();
+    for (auto& kept : contacts_kept_) kept = 0;
+  }
+  forget_after(follower_.latest_credible());
+  return true;
+}
+
+// What was credible once need not be any more: its message may have been the first of all, and false.
+void ContactStream::forget_after(SimTime latest) {
+  pending_.erase(pending_.upper_bound(latest), pending_.end());
+  for (std::size_t group = 0; group < kGroups; ++group) {
+    partial_[group].erase(partial_[group].upper_bound(latest), partial_[group].end());
+    auto& snapshots = snapshots_[group];
+    while (!snapshots.empty() && snapshots.back().time > latest) {
+      contacts_kept_[group] -= snapshots.back().contacts.size();
+      snapshots.pop_back();
+    }
+  }
+}
+
+void ContactStream::push(const contact_events_t& m, HostTime arrival) {
+  if (!accept(m.header, m.clock, arrival)) return;
+  const SimTime latest = follower_.latest_credible();
+  for (const contact_event_t& event : m.events) {
+    if (sim_time(event.time_ns) > latest) {
+      ++refused_;
+      continue;
+    }
+    if (!seen_.insert(event.event_id).second) {
+      ++duplicates_;
+      continue;
+    }
+    seen_order_.push_back(event.event_id);
+    if (seen_order_.size() > kRememberedIds) {
+      seen_.erase(seen_order_.front());
+      seen_order_.pop_front();
+    }
+    note_event(event);
+    pending_.emplace(sim_time(event.time_ns), event);
+    if (pending_.size() > kMaxPendingEvents) {
+      pending_.erase(std::prev(pending_.end()));
+      ++overflow_;
+    }
+  }
+}
+
+void ContactStream::note_event(const contact_event_t& event) {
+  const auto [it, fresh] = lives_.try_emplace(event.contact_id);
+  if (fresh) {
+    lives_order_.push_back(event.contact_id);
+    if (lives_order_.size() > kRememberedLives) {
+      lives_.erase(lives_order_.front());
+      lives_order_.pop_front();
+    }
+  }
+  if (event.kind == contact_event_t::BEGIN) it->second.begin = event;
+  if (event.kind == contact_event_t::END) it->second.end = sim_time(event.time_ns);
+}
+
+void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
+  if (!accept(m.header, m.clock, arrival)) return;
+  const auto group = static_cast<std::size_t>(m.group);
+  const SimTime time = sim_time(m.header.sim_time_ns);
+  if (time > follower_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
+    ++refused_;
+    return;
+  }
+  const auto& snapshots = snapshots_[group];
+  // Repeated, or older than all that is kept.
+  if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
+  const auto at = std::lower_bound(snapshots.begin(), snapshots.end(), time, [](const Snapshot& s, SimTime t) { return s.time < t; });
+  if (at != snapshots.end() && at->time == time) return;
+  Pages& pages = partial_[group][time];
+  pages.pages = m.pages;
+  pages.arrived[m.page] = {m.contacts, m.header.seq};
+  if (static_cast<int>(pages.arrived.size()) < pages.pages) {
+    bound_partial(group);
+    return;
+  }
+  Snapshot snapshot{time, {}, {}};
+  for (auto& [number, page] : pages.arrived) {
+    snapshot.contacts.insert(snapshot.contacts.end(), page.contacts.begin(), page.contacts.end());
+    snapshot.seqs.resize(snapshot.contacts.size(), page.seq);
+  }
+  partial_[group].erase(time);
+  // One that was overtaken may still become whole, unless it is too old to matter.
+  partial_[group].erase(partial_[group].begin(), partial_[group].lower_bound(time - kStaleAfter));
+  insert(group, std::move(snapshot));
+}
+
+void ContactStream::bound_partial(std::size_t group) {
+  auto& partial = partial_[group];
+  std::size_t pages = 0;
+  for (const auto& [time, p] : partial) pages += p.arrived.size();
+  while (partial.size() > kPartialSnapshots || (pages > kPartialPages && partial.size() > 1)) {
+    pages -= partial.begin()->second.arrived.size();
+    partial.erase(partial.begin());
+  }
+}
+
+// One that was overtaken finds its place: the newest alone never decides that those after it are of no use.
+void ContactStream::insert(std::size_t group, Snapshot snapshot) {
+  auto& snapshots = snapshots_[group];
+  contacts_kept_[group] += snapshot.contacts.size();
+  const auto newer = [&](const Snapshot& s) { return s.time > snapshot.time; };
+  snapshots.insert(std::find_if_not(snapshots.rbegin(), snapshots.rend(), newer).base(), std::move(snapshot));
+  const auto too_old = [&] { return snapshots.size() > kSnapshots && snapshots.back().time - snapshots.front().time > span_; };
+  while (too_old() || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
+    contacts_kept_[group] -= snapshots.front().contacts.size();
+    snapshots.pop_front();
+  }
+}
+
+std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
+  std::vector<contact_event_t> due;
+  const auto end = pending_.lower_bound(until);
+  for (auto it = pending_.begin(); it != end; ++it) due.push_back(it->second);
+  pending_.erase(pending_.begin(), end);
+  return due;
+}
+
+bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
+  const auto it = lives_.find(contact_id);
+  if (it == lives_.end()) return true;  // joined late: its begin was not heard
+  const Life& life = it->second;
+  return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
+}
+
+How ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
+  if (group.empty() || t < group.front().time) return How::kNone;
+  if (t > group.back().time) return t - group.back().time <= kStaleAfter ? How::kHeld : How::kStale;
+  const auto it =
+      std::lower_bound(group.begin(), group.end(), t, [](const Snapshot& s, SimTime x) { return s.time < x; });
+  return it->time == t ? How::kExact : How::kInterpolated;
+}
+
+// It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
+bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
+  if (group != contact_frame_t::AHEAD) return false;
+  const auto life = lives_.find(id);
+  if (life != lives_.end() && life->second.begin) return false;
+  return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
+}
+
+void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
+  const auto& group = snapshots_[number];
+  if (how(group, t) == How::kNone) return;
+  const auto after =
+      std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
+  const auto before = std::prev(after);
+  for (std::size_t i = 0; i < before->contacts.size(); ++i) {
+    const contact_t& c = before->contacts[i];
+    if (!alive(c.contact_id, t) || foreseen_only(number, before, c.contact_id)) continue;
+    out.push_back({c, before->seqs[i], true});
+    if (after == group.end()) continue;
+    const auto next = find(after->contacts, c.contact_id);
+    const double s = to_seconds(t - before->time) / to_seconds(after->time - before->time);
+    if (next != after->contacts.end()) out.back().contact = between(c, *next, s);
+  }
+  if (after == group.end()) return;
+  // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
+  for (std::size_t i = 0; i < after->contacts.size(); ++i) {
+    const contact_t& c = after->contacts[i];
+    const auto life = lives_.find(c.contact_id);
+    const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
+    if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
+      out.push_back({c, after->seqs[i], false});
+  }
+}
+
+// Of a contact that moved between the groups of bodies: as a snapshot of t or before has it rather than one of later,
+// and of two as the one has it that was said later.
+void ContactStream::keep_last_told(std::vector<Candidate>& list) {
+  const auto better = [](const Candidate& a, const Candidate& b) { return std::pair(a.present, a.seq) > std::pair(b.present, b.seq); };
+  std::map<std::int64_t, std::size_t> at;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto [it, first] = at.try_emplace(list[i].contact.contact_id, kept);
+    if (!first && better(list[i], list[it->second])) std::swap(list[it->second], list[i]);
+    if (!first) continue;
+    if (kept != i) std::swap(list[kept], list[i]);
+    ++kept;
+  }
+  list.resize(kept);
+}
+
+Sample<Contacts> ContactStream::state_at(SimTime t) const {
+  Sample<Contacts> state;
+  std::vector<Candidate> found;
+  for (std::size_t group = 0; group < kGroups; ++group) {
+    state.how = std::max(state.how, how(snapshots_[group], t));
+    append_state(group, t, found);
+  }
+  keep_last_told(found);
+  for (Candidate& c : found) state.value.push_back(std::move(c.contact));
+  return state;
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,63 @@
+#include "sync/resampling/pose_history.h"
+
+#include <algorithm>
+
+#include "lcmtypes/vectors.h"
+
+namespace tactus::sync {
+namespace {
+
+Eigen::Quaterniond turned(const Eigen::Quaterniond& from, const Eigen::Vector3d& spin_rad_s, double s) {
+  const double angle = spin_rad_s.norm() * s;
+  if (angle == 0) return from;
+  return (Eigen::AngleAxisd(angle, spin_rad_s.normalized()) * from).normalized();
+}
+
+}  // namespace
+
+void PoseHistory::push(const tool_state_t& m, HostTime arrival) {
+  if (m.header.incarnation != incarnation_) {  // another process holds it now; what it held before is over
+    incarnation_ = m.header.incarnation;
+    sender_ = SenderClock(own_);
+    samples_.clear();
+  }
+  sender_.observe(m.header, arrival);
+  // Nothing was read later than it arrived.
+  const HostTime time = std::min(sender_.to_host(m.header.publish_time_ns, arrival), arrival);
+  // A log that is played anew begins before what was heard: that is over.
+  if (!samples_.empty() && time < samples_.back().time - kSpan) samples_.clear();
+  if (!samples_.empty() && time <= samples_.back().time) return;
+  samples_.push_back({time,
+                      {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
+                       to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
+  while (samples_.size() > kMaxSamples || samples_.front().time < time - kSpan) samples_.pop_front();
+}
+
+Sample<BodyPose> PoseHistory::at(HostTime t) const {
+  if (samples_.empty()) return {};
+  const Stamped& newest = samples_.back();
+  if (t >= newest.time) {
+    BodyPose pose = newest.pose;
+    const Nanoseconds past = t - newest.time;
+    if (past > kStaleAfter) return {pose, How::kStale};
+    const double s = to_seconds(std::min(past, kExtrapolateAtMost));
+    pose.position += s * pose.velocity;
+    pose.orientation = turned(pose.orientation, pose.angular_velocity, s);
+    return {pose, past == Nanoseconds(0)      ? How::kExact
+                  : past > kExtrapolateAtMost ? How::kHeld
+                                              : How::kExtrapolated};
+  }
+  const auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
+                                      [](HostTime time, const Stamped& s) { return time < s.time; });
+  if (after == samples_.begin()) return {samples_.front().pose, How::kHeld};
+  const Stamped &a = *std::prev(after), &b = *after;
+  if (a.time == t) return {a.pose, How::kExact};
+  const double s = to_seconds(t - a.time) / to_seconds(b.time - a.time);
+  return {
+      {a.pose.position + s * (b.pose.position - a.pose.position), a.pose.orientation.slerp(s, b.pose.orientation),
+       a.pose.velocity + s * (b.pose.velocity - a.pose.velocity),
+       a.pose.angular_velocity + s * (b.pose.angular_velocity - a.pose.angular_velocity)},
+      How::kInterpolated};
+}
+
+}  // namespace tactus::sync

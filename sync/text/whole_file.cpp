@@ -1,0 +1,73 @@
+#include "sync/text/whole_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace tactus::sync {
+namespace {
+
+constexpr std::size_t kWaiting = 1 << 16;  // design: bytes for one call of the system
+
+}  // namespace
+
+std::string part_of(const std::string& path) {
+  std::error_code ignored;
+  const bool plain = !std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored);
+  return plain ? path + ".part" : path;
+}
+
+WholeFile::WholeFile(std::string path, std::string option)
+    : path_(std::move(path)), part_(part_of(path_)), option_(std::move(option)) {
+  file_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0)
+    throw std::runtime_error("cannot write " + path_ + " (" + std::strerror(errno) + "); choose another " +
+                             option_);
+  if (part_ == path_) return;
+  // Of two that write one file the second is refused; who dies lets go.
+  if (flock(file_, LOCK_EX | LOCK_NB) != 0 || ftruncate(file_, 0) != 0) {
+    close(std::exchange(file_, -1));
+    throw std::runtime_error("another program is writing " + part_ + "; choose another " + option_);
+  }
+}
+
+WholeFile::~WholeFile() {
+  if (file_ < 0) return;
+  if (part_ != path_) unlink(part_.c_str());
+  close(file_);
+}
+
+void WholeFile::write(std::string_view text) {
+  waiting_.append(text);
+  if (waiting_.size() >= kWaiting) flush();
+}
+
+void WholeFile::flush() {
+  for (std::size_t done = 0; done < waiting_.size();) {
+    const ssize_t n = ::write(file_, waiting_.data() + done, waiting_.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0)
+      throw std::runtime_error("cannot go on in " + path_ + " (" + std::strerror(n < 0 ? errno : ENOSPC) +
+                               "); free some disk or choose another " + option_);
+    done += static_cast<std::size_t>(n);
+  }
+  waiting_.clear();
+}
+
+void WholeFile::finish() {
+  if (file_ < 0) return;
+  flush();
+  std::error_code error;
+  if (part_ != path_) std::filesystem::rename(part_, path_, error);
+  if (error)
+    throw std::runtime_error("cannot finish " + path_ + " (" + error.message() + "); choose another " + option_);
+  close(std::exchange(file_, -1));
+}
+
+}  // namespace tactus::sync

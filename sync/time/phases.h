@@ -1,0 +1,63 @@
+// Where the time of a tick goes. Code says what it is at by a scope:
+//
+//   const sync::InPhase phase(sync::Phase::kCollision);
+//
+// and costs one comparison while nobody wants to know. Which tick it is part of is a matter of the thread: the
+// loop of a process has its phases, threads beside it have none, and a library needs no argument for it and
+// computes the same.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+
+enum class Phase { kOther, kDecode, kCollision, kSolve, kIntegrate, kRender };
+inline constexpr std::size_t kPhases = 6;
+// "other", "decode", "collision", "solve", "integrate", "render".
+const char* name(Phase phase);
+
+class Phases {
+ public:
+  using Clock = HostTime (*)();
+  explicit Phases(Clock clock) : clock_(clock) {}
+
+  // A tick of this thread begins; measured: somebody wants to know. What is not measured stays as it was.
+  void begin(bool measured);
+  void end();
+  // Of the last tick that was measured, us.
+  double us(Phase phase) const { return told_us_[static_cast<std::size_t>(phase)]; }
+  const double* told(Phase phase) const { return &told_us_[static_cast<std::size_t>(phase)]; }
+
+ private:
+  friend class InPhase;
+  Phase enter(Phase phase);
+
+  Clock clock_;
+  std::array<Nanoseconds, kPhases> spent_{};
+  std::array<double, kPhases> told_us_{};
+  Phase now_ = Phase::kOther;
+  HostTime since_{};
+};
+
+class InPhase {
+ public:
+  explicit InPhase(Phase phase) : phases_(current) {
+    if (phases_ != nullptr) before_ = phases_->enter(phase);
+  }
+  ~InPhase() {
+    if (phases_ != nullptr) phases_->enter(before_);
+  }
+  InPhase(const InPhase&) = delete;
+  InPhase& operator=(const InPhase&) = delete;
+
+ private:
+  friend class Phases;
+  static thread_local constinit Phases* current;  // null: not measured
+  Phases* phases_;
+  Phase before_ = Phase::kOther;
+};
+
+}  // namespace tactus::sync

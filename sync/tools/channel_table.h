@@ -1,0 +1,67 @@
+// Rows of the tables that hold every message of a channel, whatever its type: long, a row for each number or text,
+// or wide, a row for each message. Pure. docs/export.md says what the columns are.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lcmtypes/fields.h"
+#include "sync/log/log_origin.h"
+#include "sync/log/log_reader.h"
+#include "sync/node/tag_table.h"
+
+namespace tactus::sync {
+
+// What the columns that all tables have are filled from, and learnt of, all messages of a log.
+class TableContext {
+ public:
+  static constexpr std::size_t kMostNames = 4096;
+
+  explicit TableContext(const LogOrigin& origin) : origin_(origin) {}
+  // Once for each event of the log, before any row is made: names of senders, lists of tags.
+  void learn(const LogEvent& event);
+  // Seconds since the live part of the log began.
+  double log_s(HostTime arrival) const;
+  // The name of the process with that hash; in hexadecimal when it never said it.
+  std::string sender(std::int32_t source) const;
+  const TagTable& tags() const { return tags_; }
+  const LogOrigin& origin() const { return origin_; }
+
+ private:
+  const LogOrigin& origin_;
+  std::map<std::int32_t, std::string> names_;
+  TagTable tags_;
+};
+
+// One cell by RFC 4180, and a number so that it reads back to the same.
+std::string csv_cell(std::string_view text);
+std::string csv_cell(const Leaf& value);
+
+// log_s, world_s, sender, seq, field, unit, value.
+std::string long_names();
+// The rows of a message; empty when it is no whole message of the type.
+std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
+                      HostTime arrival);
+
+// Of a type: the fields that every message has once, each in a column named "field (unit)". What is in a list is
+// in no column.
+class WideColumns {
+ public:
+  explicit WideColumns(const MessageType& type);
+  std::string names() const;
+  std::string row(const TableContext& context, const LogEvent& event, HostTime arrival) const;
+
+ private:
+  const MessageType& type_;
+  std::map<std::string, std::size_t> column_;  // by path
+  std::vector<std::string> paths_;
+};
+
+// log_s, node, tag, unit, value: of every value that a TAG_VALUES holds.
+std::string tag_names();
+std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival);
+
+}  // namespace tactus::sync

@@ -1,0 +1,110 @@
+// degrade: puts a degradation profile in force in a running cluster, or takes it away, and says who has taken it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "sync/bus/bus.h"
+#include "sync/bus/bus_arguments.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/bus/identity.h"
+#include "sync/node/node.h"
+#include "sync/clocks/pacing.h"
+#include "sync/text/printable.h"
+#include "sync/clocks/sim_follower.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100 ms, the clock of the simulation every ms
+constexpr sync::Nanoseconds kPatience{2'000'000'000};  // health comes every 100 ms
+constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + sync::printable(n);
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Puts a degradation profile in force in the running cluster; \"off\" takes it away.");
+  sync::BusOptions bus_options;
+  std::int64_t run_id = 1;
+  std::string file;
+  app.add_option("PROFILE", file, "XML file of the profile, or off");
+  sync::add_bus_options(app, bus_options);
+  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  sync::parse_or_exit(app, "degrade", argc, argv);
+
+  if (file.empty()) throw std::runtime_error("name the profile to put in force, or off; see degrade --help");
+
+  sync::ProfileInForce profile;
+  profile.text = file == "off" ? "<profile name=\"off\"/>" : sync::read_profile_file(file);
+  profile.hash = sync::fnv1a_64(profile.text.data(), profile.text.size());
+  profile.generation = realtime_ns();
+
+  sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
+  auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
+  auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
+  sync::SimFollower simulation(bus.clocks());
+  std::map<std::string, bool> senses;  // whether each has taken it
+  std::set<std::string> modalities;    // that are there
+  const sync::HostTime begin = sync::host_now();
+  while (sync::host_now() < begin + kListen) {
+    bus.wait(kRepeat);
+    bus.drain(sync::host_now());
+    while (const auto m = frames.pop()) simulation.follow(m->message.header, m->message.clock, m->arrival);
+    while (const auto m = healths.pop())
+      if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
+  }
+  if (modalities.empty())
+    throw std::runtime_error(
+        "no sense is heard on this bus, nothing was changed; run it inside the cluster: scripts/degrade");
+  for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
+    if (!modalities.contains(rule.modality))
+      throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
+                               sync::printable(rule.modality) + "\" is heard in this cluster, only " + joined(modalities) +
+                               "; nothing was changed");
+  const auto map = simulation.map(sync::host_now());
+  if (map) profile.start = std::max(sync::SimTime{}, map->to_sim(sync::host_now()));
+
+  const sync::HostTime sent = sync::host_now();
+  for (sync::HostTime next = sent; sync::host_now() < sent + kPatience;) {
+    if (sync::host_now() >= next) {
+      sync::send_profile(bus, profile);
+      next += kRepeat;
+    }
+    bus.wait(kRepeat / 4);
+    bus.drain(sync::host_now());
+    while (const auto m = healths.pop())
+      if (m->message.header.run_id == run_id && !m->message.modality.empty())
+        senses[m->message.node] = m->message.profile == profile.hash;
+    // Every sense has spoken twice by then.
+    const bool all = std::all_of(senses.begin(), senses.end(), [](const auto& s) { return s.second; });
+    if (!senses.empty() && all && sync::host_now() - sent > 3 * kRepeat) break;
+  }
+  std::set<std::string> taken, missing;
+  for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
+  if (senses.empty())
+    throw std::runtime_error("nothing is heard any more of " + joined(modalities) +
+                             " since it was sent; it may still take effect when they go on");
+  if (taken.empty())
+    throw std::runtime_error(joined(missing) +
+                             " did not take it; it may not be what they can use, see their logs");
+  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
+            << joined(taken) << std::endl;
+  if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("degrade", e);
+}

@@ -1,0 +1,19 @@
+// message_types: says which messages this build speaks: its version, the channels, the fields and fingerprint of every type.
+// Builds that print the same understand each other.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "sync/node/node.h"
+#include "sync/log/recorder_types.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Says which messages this build speaks: its version, then channels, fields and fingerprints as they are in every log."};
+  sync::parse_or_exit(app, "message_types", argc, argv);
+  std::cout << "version " << TACTUS_VERSION << "\n";
+  for (const std::string& page : sync::log_types()) std::cout << page.substr(page.find('\n') + 1);
+  return std::cout.flush() ? 0 : 1;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("message_types", e);
+}

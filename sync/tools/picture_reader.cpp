@@ -1,0 +1,40 @@
+#include "sync/tools/picture_reader.h"
+
+#include <algorithm>
+
+namespace tactus::sync {
+namespace {
+constexpr std::int32_t kChunkBytes = 1024;
+}
+
+std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
+  const bool last = m.chunk == m.chunks - 1;
+  if (m.chunks < 1 || m.chunks > kMostChunks || m.chunk < 0 || m.chunk >= m.chunks ||
+      m.size != static_cast<std::int32_t>(m.data.size()) || m.size < 1 || m.size > kChunkBytes ||
+      (!last && m.size != kChunkBytes))
+    return std::nullopt;
+  if (!partials_.contains(m.header.source) && partials_.size() == kMostSources)
+    partials_.erase(std::min_element(partials_.begin(), partials_.end(), [](const auto& a, const auto& b) {
+      return a.second.heard < b.second.heard;
+    }));
+  Partial& p = partials_[m.header.source];
+  p.heard = ++messages_;
+  const bool another_life = p.incarnation != m.header.incarnation;
+  if (!another_life && m.picture < p.picture) return std::nullopt;  // overtaken by the next
+  if (another_life || m.picture > p.picture || static_cast<std::int32_t>(p.chunks.size()) != m.chunks) {
+    skipped_ += p.missing > 0;
+    p.incarnation = m.header.incarnation;
+    p.picture = m.picture;
+    p.missing = m.chunks;
+    p.chunks.assign(static_cast<std::size_t>(m.chunks), {});
+  }
+  auto& chunk = p.chunks[static_cast<std::size_t>(m.chunk)];
+  if (!chunk.empty() || p.missing == 0) return std::nullopt;  // again
+  chunk = m.data;
+  if (--p.missing > 0) return std::nullopt;
+  StreamedPicture whole{m.header.source, m.picture, m.header.sim_time_ns, m.presented_ns, m.width, m.height, {}};
+  for (auto& c : p.chunks) whole.jpeg.insert(whole.jpeg.end(), c.begin(), c.end());
+  return whole;
+}
+
+}  // namespace tactus::sync

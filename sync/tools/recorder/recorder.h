@@ -1,0 +1,92 @@
+// What the recorder does with what it hears: holds it back until the scene is there, then writes it, and counts.
+// Pure but for the sink that it is given.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <tactus/log_info_t.hpp>
+
+#include "sync/log/log_parts.h"
+#include "sync/log/log_writer.h"
+#include "sync/bus/message_batch.h"
+#include "sync/tools/recorder/recorder_head.h"
+#include "sync/bus/sequence.h"
+
+namespace tactus::sync {
+
+class Recorder {
+ public:
+  // Without a scene after so long, or with so much waiting for it, the log begins without.
+  static constexpr Nanoseconds kWaitForScene{5'000'000'000};
+  static constexpr std::size_t kMaxHeldBytes = 32 << 20;
+  // Gaps are counted in so many channels; what is on others is written all the same.
+  static constexpr std::size_t kMaxChannels = 256;
+  // A disk that refused is tried again after so long.
+  static constexpr Nanoseconds kRetryAfter{1'000'000'000};
+
+  // info: all but header and live_from_ns.
+  Recorder(Identity identity, log_info_t info, LogWriter writer, HostTime start);
+  // Splits and bounds the log: next opens the file of the next part (it may throw), prune is told the bytes of the
+  // present one and removes what is too much; it returns the bytes of the parts before it that are kept.
+  using Next = std::function<std::unique_ptr<LogSink>()>;
+  using Prune = std::function<std::int64_t(std::int64_t)>;
+  void limit(const LogLimits& limits, Next next, Prune prune);
+
+  void push(const MessageBatch& batch);
+  // The scene is complete: it goes to the head of the log, if that is not written yet, and to those of later
+  // parts.
+  void begin(const std::vector<HeadAsset>& assets, HostTime now);
+  // Call every 100 ms or more often: begins when it has waited long enough, and hands what there is to the disk.
+  void poll(HostTime now);
+  // Begins if nothing made it before, and writes all.
+  void finish(HostTime now);
+
+  bool begun() const { return begun_; }
+  bool failing() const { return !writer_.trouble().empty() || !split_trouble_.empty(); }
+  std::int64_t lost() const { return lost_before_ + writer_.lost(); }
+  // Messages beyond the largest size that the log may have.
+  std::int64_t beyond() const { return beyond_; }
+  int parts() const { return parts_; }
+  // Messages missing in the numbering of their sender, over all channels.
+  std::int64_t gaps() const;
+  // One line: what was written, what is missing and where.
+  std::string note(std::int64_t tap_overflow, std::int64_t tap_oversized) const;
+
+ private:
+  struct Held {
+    HostTime arrival;
+    std::string channel;
+    Bytes data;
+  };
+  void write(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+  void write_live(HostTime time, std::string_view channel, std::span<const std::uint8_t> data);
+  void write_head(HostTime live_from);
+  bool due_to_split(HostTime now) const;
+  void split(HostTime now);
+  std::int64_t events() const { return events_before_ + writer_.events(); }
+
+  Identity identity_;
+  log_info_t info_;
+  LogWriter writer_;
+  HostTime start_;
+  bool begun_ = false;
+  std::vector<Held> held_;
+  std::size_t held_bytes_ = 0;
+  HostTime next_flush_{};
+  LogLimits limits_;
+  Next next_;
+  Prune prune_;
+  // The scene of the head, kept where there may be another head.
+  std::vector<asset_ref_t> scene_refs_;
+  std::vector<Bytes> scene_bytes_;
+  HostTime part_began_{};
+  std::string split_trouble_;
+  std::int64_t bytes_before_ = 0, events_before_ = 0, lost_before_ = 0, beyond_ = 0;
+  int parts_ = 1;
+  std::map<std::string, SequenceTracker, std::less<>> sequences_;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,34 @@
+// The head of a log: which run it is and the scene with all its assets, so that a log is complete in itself. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tactus/log_info_t.hpp>
+#include <vector>
+
+#include "sync/bus/identity.h"
+#include "sync/assets/scene_exchange.h"
+
+namespace tactus::sync {
+
+// A replay must not burst: at this distance the head is 2 MB a second.
+inline constexpr Nanoseconds kHeadSpacing{500'000};
+
+struct HeadEvent {
+  HostTime time;
+  std::string channel;
+  Bytes data;
+};
+
+// One asset of the scene.
+struct HeadAsset {
+  asset_ref_t ref;
+  const Bytes* bytes;
+};
+
+// LOG_INFO, then the message types (sync/log/recorder_types.h), the manifest in pages, then every chunk of every
+// asset; the last kHeadSpacing before live_from. info.live_from_ns is filled in.
+std::vector<HeadEvent> log_head(const Identity& recorder, log_info_t info, const std::vector<HeadAsset>& assets,
+                                HostTime live_from);
+
+}  // namespace tactus::sync

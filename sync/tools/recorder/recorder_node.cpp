@@ -1,0 +1,131 @@
+// recorder: writes everything that crosses the bus to OUT/run.lcmlog, which the stock lcm-logplayer replays.
+//
+//   in   everything, on both ports; the scene and its assets for the head of the log
+//   out  a file; its health says what was lost; TAG_REQUEST, so that tagged variables are in the log
+//
+// When nothing arrives it writes nothing; when the scene does not come in 5 s the log begins without it; when the
+// disk is full it says so, keeps what it can, and goes on. What was heard is with the kernel within 20 ms: SIGKILL loses no
+// more. A machine that loses power keeps what its kernel had written, which by Linux' defaults lacks up to the last 30 s.
+#include "sync/tools/recorder/recorder_node.h"
+
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "lcmtypes/valid.h"
+#include "sync/node/node.h"
+#include "sync/tools/recorder/recorder.h"
+#include "sync/tools/recorder/recorder_tap.h"
+#include "sync/virtual_time/virtual_time.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};  // it holds for three (lcmtypes/types/control/tag_request_t.lcm)
+
+// Throws std::runtime_error with one sentence.
+tag_request_t request_for(std::vector<std::string> patterns) {
+  if (patterns == std::vector<std::string>{"none"}) patterns.clear();
+  tag_request_t m{};
+  m.header.sim_time_ns = -1;
+  m.pattern_count = static_cast<std::int32_t>(patterns.size());
+  m.patterns = std::move(patterns);
+  m.header.run_id = m.header.incarnation = 1;  // for the check only: the bus fills them in
+  if (!valid(m)) throw std::runtime_error("--tags: give at most 16 patterns of at most 128 letters, or none");
+  return m;
+}
+
+std::int64_t realtime_minus_monotonic_ns() {
+  if (sync::VirtualTime::current()) return 0;  // it has no date
+  timespec t{};
+  clock_gettime(CLOCK_REALTIME, &t);
+  return t.tv_sec * 1'000'000'000 + t.tv_nsec - sync::to_ns(sync::host_now());
+}
+
+std::vector<sync::HeadAsset> assets_of(const sync::SceneReceiver& scene) {
+  std::vector<sync::HeadAsset> assets;
+  for (const asset_ref_t& ref : scene.manifest())
+    if (const sync::Asset* asset = scene.asset(ref.hash)) assets.push_back({ref, &asset->bytes});
+  return assets;
+}
+
+}  // namespace
+
+int tactus::sync::run_recorder(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "recorder",
+                                      .modality = "",
+                                      .rate_Hz = 50,  // of writing to disk; a thread of its own stamps on arrival
+                                      .fifo_priority = 40,
+                                      .about = "Writes everything that crosses the bus to OUT/run.lcmlog."};
+  CLI::App app;
+  sync::NodeOptions options;
+  log_info_t info{};
+  std::string scene_file;
+  options.add_to(app, declaration);
+  app.add_option("--scene", scene_file, "scene of the run, noted in the log");
+  app.add_option("--seconds", info.seconds, "length of the run, noted in the log");
+  app.add_option("--git", info.git, "commit of the run, noted in the log");
+  double split_mb = 0, split_minutes = 0, max_mb = 0;
+  sync::LogLimits limits;
+  app.add_option("--split-mb", split_mb, "begins another file, which replays alone, at this size")->check(CLI::Range(1.0, 1e6));
+  app.add_option("--split-minutes", split_minutes, "begins another file after so long")->check(CLI::Range(0.01, 1e5));
+  app.add_option("--keep", limits.keep, "of these files only the newest so many stay; needs a way to split")->check(CLI::Range(1, 100'000));
+  app.add_option("--max-mb", max_mb, "of all files: the oldest go; of a single one: what exceeds it is left out, and counted")
+      ->check(CLI::Range(1.0, 1e7));
+  std::vector<std::string> patterns{"*"};
+  app.add_option("--tags", patterns, "tagged variables to record, as node.tag with * for any letters, or none; may be repeated")
+      ->capture_default_str();
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  info.scene = std::filesystem::path(scene_file).filename().string();
+  info.version = TACTUS_VERSION;
+  info.seed = static_cast<std::int64_t>(options.seed);
+  info.realtime_offset_ns = realtime_minus_monotonic_ns();
+
+  limits.split_bytes = static_cast<std::int64_t>(split_mb * 1e6);
+  limits.split_after = sync::from_seconds(60 * split_minutes);
+  limits.max_bytes = static_cast<std::int64_t>(max_mb * 1e6);
+  if (limits.keep > 0 && !limits.splits()) throw std::runtime_error("--keep needs --split-mb or --split-minutes");
+  if (limits.splits() && limits.max_bytes > 0 && limits.split_bytes * 2 > limits.max_bytes)
+    throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
+
+  tag_request_t wanted = request_for(patterns);
+  sync::Node node(declaration, options);
+  sync::RecorderTap tap(options.bus);
+  sync::SceneReceiver scene(node.bus());
+  sync::LogParts parts(options.out, limits);
+  std::unique_ptr<sync::LogSink> first = parts.open();
+  const std::string path = parts.path();
+  sync::Recorder recorder(node.bus().identity(), info, sync::LogWriter(std::move(first)), sync::host_now());
+  recorder.limit(limits, [&] { return parts.open(); },
+                 [&](std::int64_t bytes) { return parts.prune(bytes), parts.bytes_before(); });
+  std::cerr << "recorder: writing " << path << std::endl;
+
+  sync::MessageBatch batch;
+  sync::HostTime next_request{};
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    tap.take(batch);
+    recorder.push(batch);
+    if (scene.poll(now)) recorder.begin(assets_of(scene), now);
+    recorder.poll(now);
+    if (wanted.pattern_count > 0 && now >= next_request) {
+      node.bus().publish(channels::kTagRequest, wanted);
+      next_request = now + kRequestPeriod;
+    }
+    const bool trouble = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
+    node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
+                   recorder.note(tap.overflow(), tap.oversized()));
+  }
+  tap.stop();
+  tap.take(batch);
+  recorder.push(batch);
+  recorder.finish(sync::host_now());
+  std::cerr << "recorder: " << path << ": " << recorder.note(tap.overflow(), tap.oversized()) << std::endl;
+  if (recorder.failing()) throw std::runtime_error(path + " is incomplete; make room on its disk");
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("recorder", e);
+}

@@ -1,0 +1,68 @@
+#include "sync/tools/recorder/recorder_tap.h"
+
+#include <poll.h>
+
+#include "sync/clocks/pacing.h"
+#include "sync/virtual_time/virtual_time.h"
+
+namespace tactus::sync {
+namespace {
+
+// How soon the thread notices that it shall end.
+constexpr int kPollMs = 50;
+// Messages taken from one port before the other has its turn.
+constexpr int kTurn = 64;
+
+}  // namespace
+
+RecorderTap::Ports::Ports(const BusOptions& options)
+    : both{UdpPort(options.group, options.port), UdpPort(options.group, options.port + 1)} {}
+
+RecorderTap::RecorderTap(const BusOptions& options) {
+  if (VirtualTime* time = VirtualTime::current()) {
+    told_ = time->wire().tell([this](HostTime, std::string_view channel, std::span<const std::uint8_t> data) { keep({channel, data}); });
+    return;
+  }
+  ports_.emplace(options);
+  thread_ = std::thread([this] { listen(); });
+}
+
+RecorderTap::~RecorderTap() { stop(); }
+
+void RecorderTap::stop() {
+  if (!ports_) VirtualTime::current()->wire().tell_no_more(told_);
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void RecorderTap::keep(const ChannelBytes& m) {
+  if (!m.fits())
+    ++oversized_;
+  else if (!arrived_.add(host_now(), m, kMaxBatchBytes))
+    ++overflow_;
+}
+
+void RecorderTap::listen() {
+  pollfd fds[2] = {{ports_->both[0].descriptor(), POLLIN, 0}, {ports_->both[1].descriptor(), POLLIN, 0}};
+  while (true) {
+    const bool last = stop_;
+    poll(fds, 2, last ? 0 : kPollMs);
+    bool more = true;
+    while (more) {
+      more = false;
+      for (UdpPort& port : ports_->both) {
+        const std::lock_guard lock(mutex_);
+        more |= port.read(kTurn, [this](const ChannelBytes& m) { keep(m); }) > 0;
+      }
+    }
+    if (last) return;
+  }
+}
+
+void RecorderTap::take(MessageBatch& batch) {
+  batch.clear();
+  const std::lock_guard lock(mutex_);
+  std::swap(batch, arrived_);
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,95 @@
+// relay: carries what other sites need of the bus of this one to them, and what they say to this one. One in each site.
+//
+//   in   what its rules name, on both ports; the same from other relays, by UDP from one to one
+//   out  likewise
+//
+// Each line has a queue of its own, which drops what would come too late: a slow site, or one that is gone, is nothing to
+// the others. Without it this site goes on alone; what it heard of others is held, and said to be old.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "sync/node/node.h"
+#include "sync/relay/relay.h"
+#include "sync/tools/replay/replay_port.h"
+#include "sync/bus/udp_reader.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr std::uintmax_t kMostRulesBytes = 1 << 20;
+constexpr sync::Nanoseconds kNotePeriod{500'000'000};
+
+std::string read_rules(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) throw std::runtime_error("--rules " + path + " cannot be read; give a file of rules, as scripts/spread/relays/wide.xml");
+  if (text.str().size() > kMostRulesBytes) throw std::runtime_error("--rules " + path + " is larger than 1 MiB; give a file of rules");
+  return text.str();
+}
+
+std::vector<sync::LineEnd> other_sites(const std::vector<std::string>& texts) {
+  std::vector<sync::LineEnd> sites;
+  for (const std::string& text : texts) sites.push_back(sync::parse_other_site(text));
+  return sites;
+}
+
+sync::BusOptions bulk_of(sync::BusOptions bus) {
+  ++bus.port;
+  return bus;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "relay",
+                                      .modality = "",
+                                      .rate_Hz = 500,  // so it adds a millisecond in the mean
+                                      .fifo_priority = 40,
+                                      .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
+  CLI::App app;
+  sync::NodeOptions options;
+  std::string listen, rules_file;
+  std::vector<std::string> to;
+  options.add_to(app, declaration);
+  app.add_option("--listen", listen, "where other relays reach this one: [ADDRESS:]PORT");
+  app.add_option("--to", to, "where another site's relay listens, and what the line to it carries: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
+  app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/spread/relays/ has some");
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+
+  std::optional<sync::LineEnd> here;
+  std::optional<sync::RelayRules> rules;
+  if (!listen.empty()) here = sync::parse_line_end(listen);
+  if (!rules_file.empty()) rules = sync::parse_relay_rules(read_rules(rules_file), rules_file);
+  const std::vector<sync::LineEnd> sites = other_sites(to);
+  sync::Node node(declaration, options);
+  if (!here || !rules || sites.empty()) throw std::invalid_argument("--listen, --to and --rules are needed; see relay --help");
+  sync::Relay relay(*rules, sites, options.run_id);
+  sync::LineSocket line(*here);
+  sync::UdpReader reader(options.bus.group, options.bus.port);
+  sync::ReplayPort realtime(options.bus), bulk(bulk_of(options.bus));
+  for (std::size_t i = 0; i < relay.sites().size(); ++i)
+    node.tags().add("late_" + std::to_string(i + 1), "1", [&relay, i] { return static_cast<double>(relay.line(i).late); }, 1);
+  node.tags().add("in", "1", [&] { return static_cast<double>(relay.counts().in); }, 1);
+  node.tags().add("out", "1", [&] { return static_cast<double>(relay.counts().out); }, 1);
+
+  sync::HostTime next_note{};
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    line.read(relay.sites(), [&](std::size_t site, const sync::LineMessage& m) {
+      if (relay.hear_line(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
+    });
+    reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.hear_bus(m, side == 1, now); });
+    relay.flush(now, [&](const sync::LineEnd& site, std::span<const std::uint8_t> datagram) { return line.send(site, datagram); });
+    if (now < next_note) continue;
+    next_note = now + kNotePeriod;
+    bool silent = false;
+    for (std::size_t i = 0; i < relay.sites().size(); ++i) silent |= relay.silent(i, now);
+    node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.note(now));
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("relay", e);
+}

@@ -1,0 +1,95 @@
+// Plays a log: which of its events are due, as time goes on, is halted, hurried or turned back. Pure.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "sync/log/dated_events.h"
+#include "sync/log/log_seek.h"
+#include "sync/tools/replay/replay_stamps.h"
+
+namespace tactus::sync {
+
+struct ReplayOptions {
+  double speed = 1;    // recorded seconds per second; 0: as fast as most_per_s lets it
+  double start_s = 0;  // since the log's live part began
+  double end_s = -1;   // likewise; negative: at its end
+  bool loop = false;
+  bool paused = false;
+  double most_per_s =
+      16'000;  // messages; design: 20,000 a second reach lcm-logger whole, whose receive buffer is LCM's default
+  bool from_head = false;  // time counts from the first event, and the head is played too
+};
+
+class Replay {
+ public:
+  static constexpr double kSlowest = 0.01, kFastest = 100;
+  // No more in one poll: LCM's own queue takes 30 messages, and its default receive buffer 90.
+  static constexpr int kBurst = 20;
+  // Events of the log looked at in one poll, sent or not.
+  static constexpr int kMostLooked = 20'000;
+  // A replay that is so far behind its time does not catch up: it goes on from where it is, later by this, and
+  // counts it.
+  static constexpr Nanoseconds kMostBehind{100'000'000};
+
+  // `log` outlives this. Throws std::runtime_error with one sentence when it holds no event, or not what the
+  // options ask for.
+  Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const ReplayOptions& options, HostTime now);
+
+  // Hands over what is due. take: true when it was sent, so that it counts.
+  using Take = std::function<bool(const LogEvent&, const ReplayMoment&)>;
+  void poll(HostTime now, const Take& take);
+
+  void pause(HostTime now);
+  void resume(HostTime now);
+  // Plays so many recorded seconds, then pauses.
+  void step(double seconds, HostTime now);
+  void seek(double seconds, HostTime now);
+  // As in the options. False: that is no speed.
+  bool set_speed(double speed, HostTime now);
+  void set_loop(bool loop) { loop_ = loop; }
+
+  double position_s() const { return seconds(position_ - begin_); }
+  double length_s() const { return seconds(end_ - begin_); }
+  double speed() const { return speed_; }
+  bool paused() const { return paused_; }
+  bool loop() const { return loop_; }
+  // At the end, with no loop.
+  bool over() const { return over_; }
+  std::int64_t sent() const { return sent_; }
+  std::int64_t passes() const { return pass_; }
+  // How much later than its speed asks for it is, in all.
+  double behind_s() const { return seconds(behind_); }
+  const LogScanner& scanner() const { return events_.scanner(); }
+
+ private:
+  static double seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
+  void anchor(HostTime now) { anchor_live_ = now, anchor_recorded_ = position_; }
+  void jump(HostTime to, HostTime now);
+  HostTime due(HostTime now) const;
+  bool read();
+
+  std::span<const std::uint8_t> log_;
+  LogOrigin origin_;
+  DatedEvents events_{log_, origin_};
+  HostTime begin_{}, start_{}, end_{};
+  HostTime position_{};
+  HostTime anchor_live_{}, anchor_recorded_{};
+  double speed_;
+  double most_per_s_;
+  double budget_ = 0;
+  HostTime polled_{};
+  HostTime position_polled_{};
+  double measured_speed_ = 1;
+  bool loop_, paused_, over_ = false;
+  std::optional<HostTime> pause_at_;
+  std::optional<LogEvent> pending_;
+  HostTime pending_at_{};
+  std::int64_t pass_ = 0, sent_ = 0;
+  Nanoseconds behind_{0};
+};
+
+}  // namespace tactus::sync

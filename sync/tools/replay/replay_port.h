@@ -1,0 +1,32 @@
+// Sends bytes on a channel of the bus, as they are. In a file of its own: Bus sends only messages that it has
+// stamped itself.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sync/bus/bus.h"
+
+namespace tactus::sync {
+
+class ReplayPort {
+ public:
+  // The real-time port: a log does not say which port a message came by, and receivers of bulk data listen on
+  // both. Throws std::runtime_error with one sentence.
+  explicit ReplayPort(const BusOptions& options);
+  ~ReplayPort();
+  // False: the network refused it.
+  bool send(std::string_view channel, std::span<const std::uint8_t> message);
+  std::int64_t refused() const { return refused_; }
+
+ private:
+  struct Connection;
+  std::unique_ptr<Connection> connection_;
+  std::string channel_;
+  std::int64_t refused_ = 0;
+};
+
+}  // namespace tactus::sync

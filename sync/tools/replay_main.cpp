@@ -1,0 +1,194 @@
+// replay: plays a log to the senses of a running cluster, in place of its simulation.
+//
+//   in   a log; orders from --control; ASSET_REQUEST
+//   out  the messages of the log, as if they were said now; the scene of the log to whoever asks
+//
+// It needs no other process and waits for none. Damage of the log is passed over and counted.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "sync/log/mapped_log.h"
+#include "sync/node/node.h"
+#include "sync/text/printable.h"
+#include "sync/tools/replay/replay.h"
+#include "sync/tools/replay/replay_choice.h"
+#include "sync/tools/replay/replay_control.h"
+#include "sync/tools/replay/replay_port.h"
+#include "sync/tools/replay/replay_scene.h"
+
+using namespace tactus;
+
+namespace {
+
+// What the nodes that run say the kernel has dropped at their sockets since they were heard of first.
+class Drops {
+ public:
+  explicit Drops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
+  void listen() {
+    while (const auto m = healths_.pop()) {
+      const header_t& h = m->message.header;
+      if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMost && !nodes_.contains({h.source, h.incarnation}))) continue;
+      nodes_.try_emplace({h.source, h.incarnation}, m->message.kernel_drops, 0).first->second.second = m->message.kernel_drops;
+    }
+  }
+  std::int64_t sum() const {
+    std::int64_t sum = 0;
+    for (const auto& [node, drops] : nodes_) sum += drops.second - drops.first;
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  std::int64_t run_id_;
+  sync::Queue<node_health_t>& healths_;
+  std::map<std::pair<std::int32_t, std::int64_t>, std::pair<std::int64_t, std::int64_t>> nodes_;  // first and newest
+};
+
+std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Asset>& assets) {
+  return std::find_if(assets.begin(), assets.end(), [](const sync::Asset& a) { return a.kind == asset_ref_t::SCENE; });
+}
+
+// What scripts/replay must know of a log before it starts anything.
+void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& assets, double length_s) {
+  nlohmann::json j;
+  j["scene"] = sync::printable(origin.info.scene);
+  j["version"] = sync::printable(origin.info.version);
+  j["git"] = sync::printable(origin.info.git);
+  j["seed"] = origin.info.seed;
+  j["length_s"] = length_s;
+  j["of_tactus"] = origin.known;
+  j["recovered"] = origin.recovered;
+  j["assets"] = assets.size();
+  j["tools"] = nlohmann::json::array();
+  if (const auto it = scene_asset(assets); it != assets.end())
+    if (const auto scene = sync::decode_asset<scene_t>(it->bytes))
+      for (const tool_def_t& tool : scene->tools) j["tools"].push_back(sync::printable(tool.name));
+  std::cout << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "replay",
+                                      .modality = "",
+                                      .rate_Hz = 1000,
+                                      .fifo_priority = 50,
+                                      .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  std::string log, speed = "1", control;
+  sync::ReplayOptions play;
+  sync::ReplayWishes wishes;
+  bool only_describe = false, stay = false;
+  app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
+  app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
+  app.add_option("--start", play.start_s, "s since the world began");
+  app.add_option("--end", play.end_s, "likewise; default: the end of the log");
+  app.add_flag("--loop", play.loop, "begins anew at its end");
+  app.add_flag("--paused", play.paused, "waits for an order of --control");
+  app.add_option("--most", play.most_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
+  app.add_option("--channels", wishes.channels, "regular expression: only channels that match as a whole");
+  app.add_option("--leave-out", wishes.leave_out, "likewise: not these");
+  app.add_option("--also", wishes.also, "likewise: these too, which would be left out");
+  app.add_option("--rename", wishes.rename, "FROM=TO, channels; may be repeated");
+  app.add_option("--live", wishes.live, "a process that runs: what it said then stays in the log; may be repeated");
+  app.add_flag("--as-recorded", wishes.as_recorded, "the degradation profiles of the log hold too");
+  app.add_flag("--verbatim", wishes.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
+  app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
+  app.add_flag("--stay", stay, "does not leave at the end of the log");
+  app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  play.speed = sync::speed_of(speed);
+  if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
+
+  const sync::MappedLog file(log);
+  const sync::LogOrigin origin = sync::origin_of(file.bytes());
+  if (!origin.known && !wishes.verbatim && !only_describe)
+    std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";
+  wishes.verbatim |= !origin.known;
+  play.from_head = wishes.verbatim;
+  sync::ReplayChoice choice(wishes);
+  std::optional<sync::Replay> replay;
+  try {
+    replay.emplace(file.bytes(), origin, play, sync::host_now());
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(sync::printable(log) + " " + e.what());
+  }
+  const std::vector<sync::Asset> assets = wishes.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
+  if (only_describe) return describe(origin, assets, replay->length_s()), 0;
+
+  sync::Node node(declaration, options);
+  if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
+  if (!wishes.verbatim && scene_asset(assets) == assets.end())
+    std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";
+  std::optional<sync::SceneSender> scene;
+  if (!assets.empty()) scene.emplace(node.bus(), assets);
+  sync::ReplayPort port(options.bus);
+  sync::ReplayStamps stamps(origin, node.bus().identity());
+  // A pipe that nobody writes to yet, or any more, is no end of it.
+  const int orders = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (!control.empty() && orders < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
+  if (orders == STDIN_FILENO) fcntl(orders, F_SETFL, fcntl(orders, F_GETFL) | O_NONBLOCK);
+  Drops drops(node.bus());
+
+  sync::Lines lines;
+  std::vector<std::uint8_t> message;
+  bool quit = false, told_over = false;
+  const auto note = [&] {
+    std::ostringstream text;
+    text << std::fixed;
+    text.precision(2);
+    text << replay->position_s() << " of " << replay->length_s() << " s at ";
+    replay->speed() == 0 ? text << "full speed" : text << replay->speed() << " x";
+    text << (replay->over() ? ", over" : replay->paused() ? ", paused" : "") << ", " << replay->sent() << " messages";
+    if (replay->behind_s() > 0) text << ", " << replay->behind_s() << " s behind, for no more than " << play.most_per_s << " messages a second go out";
+    if (port.refused() > 0) text << ", " << port.refused() << " refused by the network";
+    if (replay->scanner().damaged_regions() > 0)
+      text << ", " << replay->scanner().damaged_regions() << " damaged places (" << replay->scanner().damaged_bytes() << " bytes) passed over";
+    return text.str();
+  };
+  std::cerr << "replay: begins, " << note() << std::endl;
+  sync::HostTime next_note{};
+  while (node.running() && !quit) {
+    const sync::HostTime now = node.wait();
+    drops.listen();
+    char bytes[512];
+    for (ssize_t n; orders >= 0 && (n = read(orders, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
+    for (std::string line; lines.take(line);) {
+      const std::string wrong = sync::obey(*replay, line, now, quit);
+      std::cerr << "replay: " << (wrong.empty() ? note() : wrong) << std::endl;
+      told_over = told_over && replay->over();
+    }
+    replay->poll(now, [&](const sync::LogEvent& event, const sync::ReplayMoment& moment) {
+      stamps.hear(event, moment);
+      const auto channel = choice.channel_of(event);
+      if (!channel) return false;
+      message.assign(event.data.begin(), event.data.end());
+      if (!choice.verbatim()) stamps.restamp(message, moment, now);
+      port.send(*channel, message);
+      return true;
+    });
+    if (scene) scene->poll(now);
+    if (now >= next_note) {
+      next_note = now + sync::from_seconds(0.1);
+      node.set_state(node_health_t::RUNNING, note());
+    }
+    if (!replay->over()) continue;
+    if (!stay) break;
+    if (!told_over) std::cerr << "replay: over, " << note() << std::endl;
+    told_over = true;
+  }
+  std::cerr << "replay: ends, " << note() << "; " << drops.sum() << " dropped by the kernel at the nodes' sockets" << std::endl;
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("replay", e);
+}

@@ -1,0 +1,64 @@
+// set: changes settings of a node of the running cluster while it runs, and says what became of it.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <stdexcept>
+
+#include "sync/bus/asking.h"
+#include "sync/bus/bus_arguments.h"
+#include "sync/node/node.h"
+#include "sync/text/printable.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kPatience{3'000'000'000};  // every node looks once a tick
+
+setting_change_t change_of(const std::string& node, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw std::invalid_argument("\"" + sync::printable(text) +
+                                "\" is no NAME=VALUE; write for example rendering=direct");
+  setting_change_t c{};
+  c.header.sim_time_ns = -1;
+  c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid
+  c.id = sync::question_id();
+  c.node = node;
+  c.name = text.substr(0, equals);
+  c.value = text.substr(equals + 1);
+  if (!valid(c)) throw std::invalid_argument("a name or a value is too long or holds what cannot be printed");
+  return c;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Changes settings of a node of the running cluster, and says what became of it.");
+  sync::BusOptions bus_options;
+  std::int64_t run_id = 1;
+  std::string node;
+  std::vector<std::string> words;
+  sync::add_bus_options(app, bus_options);
+  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("NODE", node, "as its health calls it: haptic_node, or what --name gave it")->required();
+  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md says which may change")->required();
+  sync::parse_or_exit(app, "set", argc, argv);
+  std::vector<setting_change_t> changes;  // all are read before the first is sent
+  for (const std::string& word : words) changes.push_back(change_of(node, word));
+
+  sync::Bus bus(sync::Identity::fresh("set", run_id), bus_options);
+  auto& replies = bus.queue<setting_reply_t>(channels::kSettingReply, 64);
+  for (setting_change_t& change : changes) {
+    const auto reply = sync::ask(bus, channels::kSetting, change, replies, kPatience);
+    if (!reply)
+      throw std::runtime_error(
+          "no \"" + sync::printable(node) +
+          "\" that changes settings while it runs answers; docs/settings.md says which settings are live, "
+          "scripts/attach watch which nodes there are");
+    if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
+    std::cout << sync::printable(reply->text) << std::endl;
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("set", e);
+}

@@ -1,0 +1,113 @@
+// simulation: asks the simulation of the running cluster for one thing, and says what became of it.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <stdexcept>
+
+#include "sync/bus/asking.h"
+#include "sync/bus/bus_arguments.h"
+#include "sync/node/node.h"
+#include "sync/text/printable.h"
+
+using namespace tactus;
+
+namespace {
+
+constexpr sync::Nanoseconds kPatience{
+    3'000'000'000};                                // an answer comes with the next step; a file may take a while
+constexpr std::size_t kMostValues = 6;
+
+// "steel_ball.mass": of what, and what of it.
+void split(const std::string& text, sim_command_t& c) {
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == text.size())
+    throw std::invalid_argument("\"" + sync::printable(text) +
+                                "\" names no property; write for example steel_ball.mass");
+  c.name = text.substr(0, dot);
+  c.property = text.substr(dot + 1);
+}
+
+struct Words {
+  std::string name;
+  int steps = 1;
+  std::vector<double> values, force_N, torque_N_m{0, 0, 0};
+  double seconds = 0.1;
+  bool to_file = false;
+};
+
+void add_commands(CLI::App& app, Words& w) {
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_subcommand("pause", "the world stands still; hands feel its surfaces, which do not yield");
+  app.add_subcommand("resume", "it goes on");
+  app.add_subcommand("step", "so many steps of 1 ms of a world that stands still")
+      ->add_option("N", w.steps)
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_subcommand("reset", "back to the first instant of the scene");
+  auto* set =
+      app.add_subcommand("set", "sets a property of a body, a joint or the world; docs/commands.md lists them");
+  set->add_option("NAME.PROPERTY", w.name, "for example steel_ball.mass, fan::axle.motor, world.gravity")
+      ->required();
+  set->add_option("VALUE", w.values, "in SI units")->required()->expected(1, kMostValues);
+  auto* push = app.add_subcommand("push", "a force on a body at its centre of mass");
+  push->add_option("BODY", w.name)->required();
+  push->add_option("FORCE", w.force_N, "FX FY FZ, N, along the axes of the world")->required()->expected(3);
+  push->add_option("--torque", w.torque_N_m, "TX TY TZ, N m")->expected(3);
+  push->add_option("--seconds", w.seconds, "for so long")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  auto* snapshot = app.add_subcommand("snapshot", "keeps the state of the world under a name");
+  snapshot->add_option("NAME", w.name)->required();
+  snapshot->add_flag("--to-file", w.to_file, "in a file of the run's folder too");
+  app.add_subcommand("restore", "puts a kept state back")->add_option("NAME", w.name)->required();
+}
+
+sim_command_t command_of(const std::string& verb, const Words& w) {
+  sim_command_t c{};
+  c.header.sim_time_ns = -1;
+  c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid
+  c.id = sync::question_id();
+  c.name = w.name;
+  constexpr const char* kVerbs[] = {"pause", "resume", "step", "reset", "set", "push", "snapshot", "restore"};
+  for (std::size_t i = 0; i < std::size(kVerbs); ++i)
+    if (verb == kVerbs[i]) c.kind = static_cast<std::int8_t>(i);
+  if (verb == "step") c.steps = w.steps;
+  if (verb == "set") {
+    split(w.name, c);
+    c.values = w.values;
+    c.count = static_cast<std::int8_t>(c.values.size());
+  }
+  if (verb == "push") {
+    c.force_N = {w.force_N[0], w.force_N[1], w.force_N[2]};
+    c.torque_N_m = {w.torque_N_m[0], w.torque_N_m[1], w.torque_N_m[2]};
+    c.duration_ns = sync::from_seconds(w.seconds).count();
+  }
+  c.to_file = w.to_file ? 1 : 0;
+  if (!valid(c))
+    throw std::invalid_argument(
+        "a name is too long or holds what cannot be printed, or a number is beyond all measure");
+  return c;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Asks the simulation of the running cluster for one thing, and says what became of it.");
+  sync::BusOptions bus_options;
+  std::int64_t run_id = 1;
+  Words words;
+  sync::add_bus_options(app, bus_options);
+  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  add_commands(app, words);
+  sync::parse_or_exit(app, "simulation", argc, argv);
+  sim_command_t command = command_of(app.get_subcommands().front()->get_name(), words);
+
+  sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
+  auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
+  const auto reply = sync::ask(bus, channels::kSimCommand, command, replies, kPatience);
+  if (!reply)
+    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
+  if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
+  std::cout << sync::printable(reply->text) << std::endl;
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("simulation", e);
+}

@@ -1,0 +1,41 @@
+// How regularly the messages of one sender on one channel come. Pure; bounded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "sync/time/time.h"
+
+namespace tactus::sync::spy {
+
+class Arrivals {
+ public:
+  // What is looked at: the last two seconds, of which so many messages (1 kHz).
+  static constexpr Nanoseconds kSpan{2'000'000'000};
+  static constexpr std::size_t kMost = 2048;
+
+  void add(HostTime arrival, std::size_t bytes);
+
+  // 1/s and bytes/s over the span; of more messages than are kept, over those. 0: fewer than two.
+  double rate_Hz(HostTime now) const;
+  double bytes_per_s(HostTime now) const;
+  // Deviation of the time between two messages from the middle one of these times, ms: the middle one of the
+  // deviations, and the one that 99 of 100 do not exceed. 0: fewer than three messages.
+  struct Jitter {
+    double p50_ms = 0, p99_ms = 0;
+  };
+  Jitter jitter(HostTime now) const;
+  HostTime newest() const { return kept_.empty() ? HostTime{} : kept_.back().arrival; }
+
+ private:
+  struct Kept {
+    HostTime arrival;
+    std::uint32_t bytes;
+  };
+  // The first that is within the span.
+  std::size_t first(HostTime now) const;
+  std::deque<Kept> kept_;
+};
+
+}  // namespace tactus::sync::spy

@@ -1,0 +1,68 @@
+// What a terminal shows of a bus: a table of its channels, the fields of one, or the variables that are tagged;
+// and what keys do. Pure: the program hands in what was heard and what was typed, and prints the lines.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sync/tools/spy/channels.h"
+#include "sync/tools/spy/spark.h"
+#include "sync/node/tag_table.h"
+
+namespace tactus::sync::spy {
+
+enum class Key { kNone, kUp, kDown, kPageUp, kPageDown, kEnter, kBack, kTags, kPause, kQuit };
+
+// Of bytes as a terminal sends them, all keys in order; an escape sequence that is not whole yet stays in `bytes`.
+std::vector<Key> take_keys(std::string& bytes);
+
+class Screen {
+ public:
+  // A course has a column each quarter of a second.
+  static constexpr Nanoseconds kColumn{250'000'000};
+  static constexpr std::size_t kMostTags = 4096;
+
+  void press(Key key);
+  bool over() const { return over_; }
+  bool paused() const { return paused_; }
+  // Variables are on the screen: only then they are worth to be asked for.
+  bool shows_tags() const { return page_ == Page::kTags; }
+
+  // The value of the marked field is followed from one look to the next.
+  void look(const Channels& channels, HostTime now);
+  void push(const tag_list_t& m) { table_.push(m); }
+  void push(const tag_values_t& m, HostTime arrival);
+
+  // The whole screen, `rows` lines of at most `columns` letters each; the marked line is number `marked()`.
+  std::vector<std::string> draw(const Channels& channels, HostTime now, std::size_t columns, std::size_t rows);
+  std::size_t marked() const { return marked_row_; }
+
+ private:
+  enum class Page { kChannels, kFields, kTags };
+  struct Row {
+    std::string name;  // what the cursor stays on while others come and go
+    std::string text;
+  };
+  struct Variable {
+    std::string unit;
+    double value = 0;
+    Spark spark{kColumn};
+  };
+  std::vector<Row> channel_rows(const Channels& channels, HostTime now, std::size_t columns) const;
+  std::vector<Row> field_rows(const Channels& channels, HostTime now, std::size_t columns) const;
+  std::vector<Row> tag_rows(HostTime now, std::size_t columns) const;
+  void move(const std::vector<Row>& rows, std::size_t visible);
+
+  Page page_ = Page::kChannels;
+  bool over_ = false, paused_ = false;
+  int wish_ = 0;  // lines that the cursor shall move
+  std::string marked_name_, channel_, channel_before_;
+  std::size_t cursor_ = 0, top_ = 0, marked_row_ = 0;
+  std::string followed_;  // path of the marked field
+  Spark course_{kColumn};
+  TagTable table_;
+  std::map<std::string, Variable> tags_;
+};
+
+}  // namespace tactus::sync::spy

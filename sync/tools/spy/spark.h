@@ -1,0 +1,38 @@
+// The course of a number in a line of text. Pure; bounded.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "sync/time/time.h"
+
+namespace tactus::sync::spy {
+
+class Spark {
+ public:
+  static constexpr std::size_t kMost = 240;  // columns of the widest terminal that is drawn for
+
+  // each: so much time is one column. The last value of a column is shown.
+  explicit Spark(Nanoseconds each) : each_(each) {}
+
+  void add(double value, HostTime at);
+  // The newest columns until now, at most so many, from the lowest to the highest value in them: " ▁▂▃▄▅▆▇█"; a
+  // blank where nothing came. UTF-8.
+  struct Drawn {
+    std::string text;
+    double lowest = 0, highest = 0;
+  };
+  Drawn draw(HostTime now, std::size_t columns) const;
+
+ private:
+  struct Column {
+    std::int64_t number;
+    double value;
+  };
+  std::int64_t number(HostTime t) const { return t.time_since_epoch() / each_; }
+
+  Nanoseconds each_;
+  std::deque<Column> columns_;
+};
+
+}  // namespace tactus::sync::spy

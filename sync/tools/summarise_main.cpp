@@ -1,0 +1,71 @@
+// summarise: says from the log of a run what it was like, and whether every owed contact event was accounted for.
+//
+//   in   LOG...
+//   out  the summary on stdout, and as JSON in a file
+//
+// A damaged log is read as far as it is intact.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "sync/log/log_reader.h"
+#include "sync/log/mapped_log.h"
+#include "sync/node/node.h"
+#include "sync/tools/summary/summary.h"
+
+using namespace tactus;
+
+namespace {
+
+std::map<std::string, std::int64_t> parse_restarts(const std::vector<std::string>& pairs) {
+  std::map<std::string, std::int64_t> out;
+  for (const std::string& pair : pairs) {
+    const auto equals = pair.find('=');
+    const std::string count = equals == std::string::npos ? "" : pair.substr(equals + 1);
+    if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
+      throw std::runtime_error("--restarts " + pair + " is not NODE=COUNT");
+    out[pair.substr(0, equals)] = std::stoll(count);
+  }
+  return out;
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text << std::flush;
+  if (!file) throw std::runtime_error("cannot write " + path + "; give --out a file in a folder that can be written");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Says from the log of a run what it was like."};
+  sync::SummaryOptions options;
+  std::vector<std::string> logs, restarts;
+  std::string out;
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
+  app.add_option("--out", out, "file for the summary as JSON");
+  app.add_option("--nodes", options.nodes, "nodes that must be alive at the end: a,b,c")->delimiter(',');
+  app.add_option("--seconds", options.seconds, "length of the run");
+  app.add_option("--scene", options.scene, "scene of the run");
+  app.add_option("--seed", options.seed, "seed of the run");
+  app.add_option("--git", options.git, "commit of the run");
+  app.add_option("--restarts", restarts, "NODE=COUNT as the supervisor counted; may be repeated");
+  app.add_option("--warning", options.warnings, "sentence about what was missing; may be repeated");
+  sync::parse_or_exit(app, "summarise", argc, argv);
+  options.restarts = parse_restarts(restarts);
+
+  sync::RunSummary summary(options);
+  for (const std::string& path : logs) {
+    const sync::MappedLog file(path);
+    sync::LogScanner scanner(file.bytes());
+    for (sync::LogEvent event; scanner.next(event);) summary.add(event);
+    summary.end_of_log(scanner.damaged_regions());
+  }
+  if (!out.empty()) write_file(out, sync::to_json(summary));
+  std::cout << sync::to_text(summary) << std::flush;
+  const std::string failure = summary.failure();
+  if (failure.empty()) return 0;
+  throw std::runtime_error(failure);
+} catch (const std::exception& e) {
+  return tactus::sync::fail("summarise", e);
+}

@@ -1,0 +1,156 @@
+// sync_node: agrees on time with the other hosts, and matches contact events with what each sense reports of them. One per
+// host. It coordinates; nobody needs it to run.
+//
+//   in   CLOCK_PROBE                              requests and replies, in a thread of its own
+//        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
+//        DEGRADATION, PLAYOUT_REQUEST             the profile and the policy that somebody puts in force
+//        PLAYOUT                                  of another host's sync_node: one speaks, the others listen
+//   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to each request
+//        CLOCK_MAP                                twice a second, likewise; one per clock of another host
+//        SYNC_REPORT                              once a second
+//        DEGRADATION                              again once a second, for who comes late
+//        PLAYOUT                                  ten times a second: when each sense presents an event
+//
+// Losing the probes' replies, its maps grow less certain and say so. Losing CONTACT_EVENTS or PRESENTED only leaves it less to
+// report; a sense that falls silent is named in the report.
+#include "sync/tools/sync_node.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include "sync/clock_sync/clock_agreement.h"
+#include "sync/clock_sync/clock_probe.h"
+#include "sync/degradation/profile_exchange.h"
+#include "sync/bus/identity.h"
+#include "sync/node/node.h"
+#include "sync/playout/coordinator.h"
+#include "sync/playout/exchange.h"
+#include "sync/playout/options.h"
+#include "sync/presentation/presentation_matcher.h"
+#include "sync/clock_sync/probe_thread.h"
+#include "sync/presentation/sync_report_pages.h"
+#include "sync/virtual_time/virtual_time.h"
+
+using namespace tactus;
+
+namespace {
+
+// One second of each at the most that they are sent.
+constexpr std::size_t kEventsQueue = 4096;
+constexpr std::size_t kReportsQueue = 4096;
+constexpr std::size_t kHealthQueue = 1024;
+constexpr sync::Nanoseconds kReportPeriod{1'000'000'000};
+// A process that has just started has the maps after so long (design: with the probes' first wave, less than a second in all).
+constexpr sync::Nanoseconds kMapPeriod{500'000'000};
+
+template <class Message>
+void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
+  while (const auto received = queue.pop()) matcher.observe(received->message, received->arrival);
+}
+
+// For the live table: how many clocks are known, and how well at the worst.
+std::string clocks_note(const std::vector<clock_map_t>& maps) {
+  if (maps.empty()) return "";
+  std::int64_t worst_ns = 0;
+  for (const clock_map_t& m : maps) worst_ns = std::max(worst_ns, m.uncertainty_ns);
+  return std::to_string(maps.size()) + " other clock" + (maps.size() == 1 ? "" : "s") + " known to " +
+         std::to_string((worst_ns + 999) / 1000) + " us";
+}
+
+}  // namespace
+
+int tactus::sync::run_sync_node(int argc, char** argv) try {
+  const sync::Declaration declaration{.node = "sync_node",
+                                      .modality = "",
+                                      .rate_Hz = 50,  // at the least: it wakes when something arrives
+                                      .fifo_priority = 40,
+                                      .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
+  // For tests only, hence not in --help: the clock that is compared with others drifts, and jumps once.
+  app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
+  app.add_option("--emulate-jump", jump_ms)->group("");
+  app.add_option("--emulate-jump-after", jump_after_s)->group("");
+  sync::PlayoutOptions playout_options;
+  playout_options.add_to(app, true);
+  sync::PlayoutPlan plan;
+  app.callback([&] { plan = playout_options.plan(); });  // also where only the arguments are checked
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+
+  sync::Node node(declaration, options);
+  auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);
+  auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, kEventsQueue);
+  auto& presented = node.bus().queue<presented_t>(channels::kPresented, kReportsQueue);
+  const sync::HostTime start = sync::host_now();
+  const sync::EmulatedClock clock{drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
+                                  jump_ms != 0 ? start + sync::from_seconds(jump_after_s) : sync::HostTime::max()};
+  std::cerr << options.name << ": clock " << node.bus().identity().clock << " at " << sync::to_ns(start) << " ns" << std::endl;
+  // In a virtual time there is one clock, and nobody to ask.
+  std::optional<sync::ProbeThread> probes;
+  if (!sync::VirtualTime::current()) probes.emplace(options.bus, node.bus().identity(), clock);
+  sync::ClockAgreement agreement(node.bus().identity().clock);
+  sync::PresentationMatcher matcher(node.bus().clocks());
+  auto& degraded = node.bus().queue<degraded_t>(channels::kDegraded, kReportsQueue);
+  auto& playouts = node.bus().queue<playout_t>(channels::kPlayout, kHealthQueue);
+  auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
+  sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
+  if (const auto kept = sync::kept_request(options.out, options.run_id); kept && playout.take(*kept))
+    std::cerr << options.name << ": goes on with what was asked for before: policy " << name_of(playout.plan().policy) << std::endl;
+  auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
+  sync::ProfileReceiver profiles;
+  std::optional<sync::ProfileInForce> profile;
+  if (const std::string& text = node.options().profile; !text.empty()) {
+    profile = {text, sync::fnv1a_64(text.data(), text.size()), 0, sync::SimTime{}};
+    profiles.set_generation(0);
+  }
+  if (auto kept = sync::kept_profile(options.out, options.run_id)) {
+    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
+    profiles.set_generation(kept->generation);
+    profile = std::move(kept);
+  }
+  node.set_state(node_health_t::RUNNING);
+
+  sync::HostTime next_report = start + kReportPeriod, next_maps = start + kMapPeriod;
+  while (node.running()) {
+    const sync::HostTime now = node.wait_for_event();
+    while (const auto wave = probes ? probes->pop() : std::nullopt) agreement.add(*wave);
+    if (now >= next_maps) {
+      std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
+      // As the probes: with many hosts each map comes less often.
+      const auto share = std::max<std::int64_t>(1, static_cast<std::int64_t>(maps.size() / sync::ClockProber::kFewClocks));
+      next_maps = std::max(next_maps + kMapPeriod * share, now);
+      for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);
+      node.set_state(node_health_t::RUNNING, clocks_note(maps));
+    }
+    feed(matcher, health);
+    feed(matcher, events);
+    feed(matcher, presented);
+    feed(matcher, degraded);
+    while (const auto m = degradations.pop())
+      if (m->message.header.run_id == options.run_id)
+        if (auto newer = profiles.take(m->message)) {
+          sync::keep_profile(options.out, *newer, options.run_id);
+          profile = std::move(newer);
+        }
+    matcher.advance(now);
+    while (const auto m = requests.pop())
+      if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);
+    while (const auto m = playouts.pop())
+      if (m->message.header.run_id == options.run_id) playout.take(m->message, now), matcher.observe(m->message, m->arrival);
+    for (const auto& [sense, waited_for] : matcher.senses()) playout.needs().know(sense, !waited_for);
+    for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
+    if (const auto m = playout.due(now))
+      for (playout_t& page : sync::pages_of(*m)) node.bus().publish(channels::kPlayout, page);
+    if (now < next_report) continue;
+    next_report = std::max(next_report + kReportPeriod, now);
+    for (sync_report_t& page : sync::report_pages(matcher)) node.bus().publish(channels::kSyncReport, page);
+    if (profile) sync::send_profile(node.bus(), *profile);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return tactus::sync::fail("sync_node", e);
+}

@@ -1,0 +1,310 @@
+#include "audio_node/excitation/impact.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "audio_node/spatial/pan.h"
+#include "audio_node/mixer/renderer.h"
+#include "lcmtypes/vectors.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using std::numbers::pi;
+
+namespace {
+
+material_def_t material(double E, double nu, double rho, double alpha, double beta) {
+  material_def_t m{};
+  m.youngs_modulus_Pa = E, m.poissons_ratio = nu, m.density_kg_m3 = rho;
+  m.rayleigh_alpha_1_s = alpha, m.rayleigh_beta_s = beta, m.restitution = 0.6;
+  return m;
+}
+
+void add(scene_t& scene, std::int8_t kind, Eigen::Vector3d size, double mass_kg, int material_index) {
+  body_def_t body{};
+  body.id = scene.body_count++;
+  body.tool = -1;
+  body.is_static = mass_kg == 0;
+  body.mass_kg = mass_kg;
+  shape_def_t shape{};
+  shape.body = body.id, shape.kind = kind, shape.size_m = to_vec3(size), shape.material = material_index;
+  scene.bodies.push_back(body);
+  scene.shapes.push_back(shape);
+  scene.shape_count++;
+}
+
+// A wooden floor, a steel bar, a steel ball, a rubber ball, a steel shell.
+scene_t scene() {
+  scene_t s{};
+  s.materials = {material(1.1e10, .25, 750, 60, 2e-6), material(2e11, .29, 7850, 5, 3e-8),
+                 material(5e6, .48, 1100, 60, 1e-4)};
+  s.material_count = 3;
+  add(s, shape_def_t::BOX, {6, 6, 0.2}, 0, 0);
+  add(s, shape_def_t::BOX, {0.3, 0.03, 0.005}, 0.353, 1);
+  add(s, shape_def_t::SPHERE, {0.03, 0, 0}, 0.888, 1);
+  add(s, shape_def_t::SPHERE, {0.05, 0, 0}, 0.576, 2);
+  add(s, shape_def_t::SPHERE, {0.15, 0, 0}, 4, 1);
+  s.listener.orientation.w = 1;
+  return s;
+}
+
+contact_event_t hit(int a, int b, float speed, float mass, float curvature = 30) {
+  contact_event_t e{};
+  e.event_id = 5, e.kind = contact_event_t::HIT, e.body_a = a, e.body_b = b, e.material_a = e.material_b = -1;
+  e.approach_speed_m_s = speed, e.effective_mass_kg = mass, e.curvature_1_m = curvature;
+  e.point_m.x = 1;
+  return e;
+}
+
+Impacts impacts(const Settings& settings = {}) {
+  return Impacts(
+      scene(), [](std::int64_t) { return std::nullopt; }, settings, 48000, 1);
+}
+
+}  // namespace
+
+TEST_CASE("The contact time is that of Hertz") {
+  // A steel ball of 10 mm radius (32.9 g) on a thick steel plate at 0.1 m/s: by E* = 1.0917e11, T = 2.87 (m^2 / (R
+  // E*^2 v))^(1/5).
+  const Elastic steel{2e11, 0.29, 7850, 5, 3e-8, 0.6};
+  const double e = 2e11 / (1 - 0.29 * 0.29) / 2;
+  CHECK(contact_time_s(0.0329, 100, 0.1, steel, steel) ==
+        Approx(2.87 * std::pow(0.0329 * 0.0329 / (0.01 * e * e * 0.1), 0.2)));
+  SECTION("and falls with speed to the fifth root") {
+    CHECK(contact_time_s(1, 10, 32, steel, steel) == Approx(contact_time_s(1, 10, 1, steel, steel) / 2));
+  }
+}
+
+TEST_CASE("The spectrum of the pulse is that of a raised cosine") {
+  for (const double f : {0., 100., 999.9, 1000., 1500., 2000., 7321.}) {
+    // Midpoint rule over 2000 steps of 1 ms: error (2 pi f dt)^2 / 24 < 1e-4 of the whole.
+    double re = 0, im = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double t = (i + 0.5) / 2000 * 1e-3, w = (1 - std::cos(2 * pi * t / 1e-3)) / 2000;
+      re += w * std::cos(2 * pi * f * t), im += w * std::sin(2 * pi * f * t);
+    }
+    CHECK(pulse_spectrum(f, 1e-3) == Approx(std::hypot(re, im)).margin(1e-4));
+  }
+}
+
+TEST_CASE("A source is heard where it is") {
+  Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // looks along +x
+  const auto heard = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
+  const auto left = heard({0, 2, 0}), right = heard({0, -2, 0}), ahead = heard({2, 0, 0}), far = heard({4, 0, 1});
+  CHECK(left.left == Approx(0.5));
+  CHECK(left.right == Approx(0).margin(1e-7));
+  CHECK(right.right == Approx(0.5));
+  CHECK(ahead.left == Approx(ahead.right));
+  CHECK(std::hypot(far.left, far.right) == Approx(1 / std::sqrt(17.0)));
+  CHECK(place_of(listener, {4, 0, 1}, 0.3).distance_m == Approx(std::sqrt(17.0)));
+  SECTION("and a turn of the listener turns it too") {
+    listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y
+    CHECK(heard({2, 0, 0}).right == Approx(0.5));
+  }
+  SECTION("and nearness does not make it infinite") { CHECK(heard({0, 0, 0}).left < 4); }
+}
+
+TEST_CASE(
+    "A blow is heard from where the ear is when it comes, and before anybody moves it from where the scene has "
+    "it") {
+  Impacts all = impacts();
+  const contact_event_t ahead = hit(0, 2, 1, 0.1f);  // at (1, 0, 0), which the scene's listener looks at
+  const auto place = [&] { return all.strike(ahead, {}).sides[0].place; };
+  CHECK(place().direction.isApprox(Eigen::Vector3f::UnitX()));
+  Eigen::Isometry3d ear = Eigen::Isometry3d::Identity();
+  ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y: it is to the right
+  all.hear_from(ear);
+  CHECK(place().direction.isApprox(-Eigen::Vector3f::UnitY()));
+  CHECK(place().distance_m == Approx(1));
+  ear.translation().x() = -1;  // twice as far
+  all.hear_from(ear);
+  CHECK(place().distance_m == Approx(2));
+}
+
+TEST_CASE("Bodies sound by their shape, size, mass and material") {
+  const Impacts all = impacts();
+  SECTION("a steel bar by bending, first at 288 Hz less the correction of its thickness") {
+    // (beta r)^2 (1 + 3.1) / 2 = 1.1e-3
+    REQUIRE_FALSE(all.body(1).modes.empty());
+    CHECK(all.body(1).modes[0].frequency_Hz == Approx(288.2).epsilon(1.5e-3));
+    CHECK(all.body(1).modes[0].damping_1_s == Approx(damping_1_s(all.body(1).material, 288)).epsilon(1e-2));
+  }
+  SECTION("a small steel ball has no audible mode and only clicks") {
+    CHECK(all.body(2).modes.empty());
+    CHECK(all.strike(hit(0, 2, 1, 0.8f), {}).sides[1].click > 0);
+  }
+  SECTION("a ball lighter than a solid one is a shell") {
+    const double expected = spherical_shell(all.body(4).material, 0.15, {16000, 1})[0].frequency_Hz;
+    CHECK(all.body(4).modes[0].frequency_Hz == Approx(expected));
+  }
+  SECTION("a floor by a patch of it, which does not move as a whole") {
+    REQUIRE_FALSE(all.body(0).modes.empty());
+    CHECK(all.body(0).mass_kg == Approx(0.5 * 0.5 * 0.03 * 750));
+    CHECK(all.strike(hit(0, 2, 1, 0.8f), {}).sides[0].click == 0);
+  }
+  SECTION("all within the audible range and the number that is allowed") {
+    for (int id = 0; id < 5; ++id) {
+      CHECK(all.body(id).modes.size() <= 64);
+      for (const Mode& m : all.body(id).modes) {
+        CHECK(m.frequency_Hz >= 40);
+        CHECK(m.frequency_Hz <= 16000);
+        CHECK(m.damping_1_s > 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it cannot be heard") {
+  const Impacts all = impacts();
+  const auto rendered_peak = [&](const contact_event_t& e) {
+    auto crossing = std::make_unique<Crossing>();
+    auto renderer = std::make_unique<Renderer>(*crossing, RendererDef{});
+    crossing->strikes.push(all.strike(e, sync::host_time(10'000'000)));
+    std::vector<float> x(2 * 4800);
+    renderer->render(x.data(), 4800, {});
+    float peak = 0;
+    for (const float s : x) peak = std::max(peak, std::abs(s));
+    return static_cast<double>(peak);
+  };
+  // Of the same spectrum (same contact time: speed 1 and mass 1 against mass 4 and speed 16, T ~ (m^2/v)^(1/5))
+  // the pressure is 64 times as much, the level 64^0.6 = 12.1 times.
+  const double weak = rendered_peak(hit(0, 1, 0.02f, 0.001f)), strong = rendered_peak(hit(0, 1, 0.32f, 0.004f));
+  CHECK(strong / weak == Approx(std::pow(64, 0.6)).epsilon(0.02));
+  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).heard_from > 1);
+  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).heard_from > 1);
+  SECTION("impacts of hard bodies at 0.5 m/s, heard from 1 m, peak between -26 and -3 dBFS (a shell)") {
+    for (const int id : {1, 2, 4}) {
+      const double peak = rendered_peak(hit(0, id, 0.5f, static_cast<float>(all.body(id).mass_kg), 100));
+      CAPTURE(id, peak);
+      CHECK(peak > 0.05);
+      CHECK(peak < 0.71);
+    }
+  }
+  SECTION(
+      "a rubber ball is softer by far: its blow is too long for modes, its own jerk is the least that is heard") {
+    const contact_event_t blow = hit(0, 3, 0.5f, static_cast<float>(all.body(3).mass_kg), 100);
+    const double length_s = all.strike(blow, {}).pulse[0].samples / 48000.0;
+    REQUIRE(length_s > 0.01);
+    // rho c v (1 + e) a (ka)^2 / 2 of an oscillating ball that is small beside the wave, k of 1 / T (80 Hz): 0.04
+    // Pa.
+    const double ka = 2 * pi / length_s * 0.05 / 343, jerk_Pa = 1.21 * 343 * 0.5 * 1.6 * 0.05 * ka * ka / 2;
+    const double least = 0.25 * std::pow(jerk_Pa / 10, 0.6);
+    CHECK(rendered_peak(blow) > least);
+    CHECK(rendered_peak(blow) < rendered_peak(hit(0, 2, 0.5f, 0.576f, 100)) / 4);
+  }
+}
+
+TEST_CASE("A tool sounds as what touches of it, not as a body of a size that nobody knows") {
+  scene_t s = scene();
+  body_def_t body{};
+  body.id = s.body_count++, body.tool = 0;
+  s.bodies.push_back(body);
+  tool_def_t tool{};
+  tool.body = body.id, tool.material = 1, tool.mass_kg = 0.1, tool.radius_m = 0.006;
+  s.tools = {tool}, s.tool_count = 1;
+  const auto sound = [&] {
+    return Impacts(
+               s, [](std::int64_t) { return std::nullopt; }, {}, 48000, 1)
+        .body(body.id);
+  };
+  // The lowest mode of a solid steel ball of 6 mm lies at 2.64 c_s / (2 pi a) = 220 kHz (modal.h).
+  CHECK(sound().modes.empty());
+  CHECK(sound().mass_kg == Approx(0.1));
+  CHECK(sound().radius_m == Approx(0.006));
+  SECTION("also a bar in the hand") {
+    s.tools[0].shape = tool_def_t::BOX;
+    s.tools[0].size_m.x = 0.3, s.tools[0].size_m.y = 0.03, s.tools[0].size_m.z = 0.005;
+    REQUIRE_FALSE(sound().modes.empty());
+    CHECK(sound().modes[0].frequency_Hz == Approx(impacts().body(1).modes[0].frequency_Hz));
+  }
+}
+
+TEST_CASE(
+    "A blow on a nodal line leaves the mode silent, and one whose place nobody knows sounds as the mean of all") {
+  const Impacts all = impacts();
+  const double length = 0.3;
+  contact_event_t blow = hit(0, 1, 0.5f, 0.353f);
+  blow.normal.z = 1;
+  // The bar lies with its middle at (1, 2, 3), turned about the vertical.
+  Eigen::Isometry3d lies = Eigen::Isometry3d::Identity();
+  lies.translation() = Eigen::Vector3d(1, 2, 3);
+  lies.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  const auto gains = [&](double x_of_length, double z_m = 0.0025) {
+    blow.point_m = to_vec3f(lies * Eigen::Vector3d((x_of_length - 0.5) * length, 0, z_m));
+    return all
+        .strike(blow, {},
+                [&](int body) -> std::optional<Eigen::Isometry3d> {
+                  return body == 1 ? std::optional(lies) : std::nullopt;
+                })
+        .sides[1]
+        .gains;
+  };
+  const PerMode end = gains(1), node = gains(0.2242), middle = gains(0.5);
+  // Fletcher and Rossing, The Physics of Musical Instruments, table 2.1: nodes of the lowest bending at 0.224 L.
+  CHECK(std::abs(node[0]) < 2e-3f * std::abs(end[0]));
+  CHECK(end[0] * middle[0] < 0);
+  const PerMode anywhere = all.gains(1, std::nullopt), somewhere = all.strike(blow, {}).sides[1].gains;
+  CHECK(somewhere[0] == anywhere[0]);
+  // The end of a free bar moves twice as much as the root of its mean square.
+  CHECK(std::abs(end[0]) == Approx(2 * anywhere[0]).epsilon(1e-3));
+  SECTION("also one beside the body counts as one on it") {
+    CHECK(gains(1, 0.1)[0] == Approx(end[0]));
+    CHECK(gains(1.5)[0] == Approx(end[0]));
+  }
+}
+
+TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their lowest modes. Soft ones do not") {
+  const Impacts all = impacts();
+  const auto humps = [](const Strike& s) {
+    return std::count_if(s.pulse.begin(), s.pulse.end(), [](const Hump& h) { return h.samples > 0; });
+  };
+  const Strike hard = all.strike(hit(1, 4, 1, 0.3f, 30), {}), soft = all.strike(hit(0, 3, 0.5f, 0.576f), {});
+  REQUIRE(humps(hard) == 5);
+  CHECK(humps(soft) == 1);
+  double share = 0;
+  for (const Hump& h : hard.pulse) share += static_cast<double>(h.share);
+  CHECK(share == Approx(1));
+  CHECK(hard.pulse[0].share == Approx(0.8));
+  for (std::size_t i = 1; i < hard.pulse.size(); ++i) {
+    CAPTURE(i, hard.pulse[i].begin);
+    CHECK(hard.pulse[i].begin <= 720);
+    // A period of one of the modes of the bar or the shell.
+    double nearest = 1e9;
+    for (const int id : {1, 4})
+      for (const Mode& m : all.body(id).modes)
+        nearest = std::min(nearest, std::abs(48000 / m.frequency_Hz - hard.pulse[i].begin));
+    CHECK(nearest <= 0.5);
+  }
+  SECTION("never, when a scene does not want it") {
+    Settings settings;
+    settings.micro_collisions = 0;
+    const Strike none = impacts(settings).strike(hit(1, 4, 1, 0.3f, 30), {});
+    CHECK(none.pulse[0].share == 1);
+  }
+}
+
+TEST_CASE("No event, however wild, makes a strike that is no number") {
+  const Impacts all = impacts();
+  std::mt19937 random(6);
+  const float wild[] = {0, 1e-30f, 1e30f, 1, 3e38f};
+  for (int i = 0; i < 2000; ++i) {
+    contact_event_t e = hit(static_cast<int>(random() % 9) - 2, static_cast<int>(random() % 9), wild[random() % 5],
+                            wild[random() % 5], wild[random() % 5]);
+    e.material_a = static_cast<int>(random() % 6) - 2;
+    e.point_m.x = wild[random() % 5], e.point_m.y = -wild[random() % 5];
+    const Strike s = all.strike(e, {});
+    CHECK(s.pulse[0].samples >= 1);
+    CHECK(s.pulse[0].samples <= 960);
+    CHECK(length_of(s.pulse) <= 960 + 720);
+    for (const StrikeSide& side : s.sides) {
+      CHECK(std::isfinite(side.impulse));
+      CHECK(std::isfinite(side.click));
+      CHECK(side.place.direction.allFinite());
+      CHECK(side.place.distance_m >= 0.3f);
+    }
+  }
+}

@@ -1,0 +1,220 @@
+#include "audio_node/mixer/recorded.h"
+
+#include <catch2/catch.hpp>
+#include <memory>
+#include <thread>
+
+#include "audio_node/mixer/library.h"
+#include "tests/audio_node/support/bench.h"
+#include "tests/audio_node/support/sounds.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using namespace tactus::audio::test;
+
+namespace {
+
+Strike strike_with(const Recording& r, std::int64_t database, std::int64_t at_ns) {
+  Strike s;
+  s.event_id = 1;
+  s.scheduled = sync::host_time(at_ns);
+  s.recorded.database = database;
+  s.recorded.shots[0] = {&r, 0.1f, 1};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("A database is kept while a strike of it waits or sounds, and let go of when none does any more") {
+  const Recording r{tone(300, 0.1), 0.5f, 0.35f};
+  auto bench = std::make_unique<Bench>();
+  RecordedCrossing& crossing = bench->crossing.recorded;
+  REQUIRE(crossing.databases.push(1));
+  bench->play(64);
+  CHECK(crossing.let_go == 1);
+  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns + 20'000'000)));
+  REQUIRE(crossing.databases.push(2));
+  bench->play(64);
+  CHECK(crossing.let_go == 1);  // it waits
+  bench->play(2400);
+  CHECK(crossing.let_go == 1);  // it sounds
+  bench->play(4800);
+  CHECK(crossing.let_go == 2);
+}
+
+TEST_CASE(
+    "A database is kept while a contact scrapes with it. One that is told later of the old one is not heard") {
+  Layers l;
+  l.by_speed.push_back({1, 1, {{tone(400, 0.5), 0.5f, 0.35f}}});
+  auto bench = std::make_unique<Bench>();
+  RecordedCrossing& crossing = bench->crossing.recorded;
+  REQUIRE(crossing.databases.push(1));
+  Rub rub;
+  rub.contact = 3, rub.database = 1, rub.layers = &l, rub.speed_m_s = 1, rub.level = 0.1f;
+  rub.at = sync::host_time(kStart_ns);
+  REQUIRE(crossing.rubs.push(rub));
+  bench->play(480);
+  CHECK(bench->renderer.recorded() == 1);
+  rub.at = sync::host_time(kStart_ns + 1'000'000'000);  // still in the queue when the next database comes
+  REQUIRE(crossing.rubs.push(rub));
+  REQUIRE(crossing.databases.push(2));
+  bench->play(480);
+  CHECK(crossing.let_go == 1);
+  for (int i = 0; i < 30; ++i) bench->play(480);
+  CHECK(bench->renderer.recorded() == 0);
+  CHECK(crossing.let_go == 2);
+}
+
+TEST_CASE("A renderer that ends lets go of all") {
+  const Recording r{tone(300, 1), 0.5f, 0.35f};
+  auto bench = std::make_unique<Bench>();
+  RecordedCrossing& crossing = bench->crossing.recorded;
+  REQUIRE(crossing.databases.push(1));
+  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns)));
+  bench->play(480);
+  REQUIRE(crossing.databases.push(2));
+  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns + 500'000'000)));
+  bench->renderer.abandon();
+  CHECK(crossing.let_go == 2);
+  CHECK(bench->renderer.recorded() == 0);
+}
+
+TEST_CASE("The library reads what the settings ask for, once, and gives back what nobody plays any more") {
+  const SoundFolder one, two;
+  one.write("oak/impact/1.wav", tone(300, 0.1));
+  two.write("steel/impact/1.wav", tone(300, 0.1));
+  RecordedCrossing crossing;
+  Recorded callback(crossing, 48000);
+  const Scheduler none(1);
+  Library library(crossing);
+  Settings settings;
+  settings.sounds = one.path();
+  library.configure(settings);
+  CHECK(library.step().empty());
+  CHECK_FALSE(library.database());  // by modes alone nothing is read
+  const auto read = [&](std::int64_t number) {
+    std::vector<Library::Shared> unread;
+    for (int i = 0; i < 10000 && library.number() < number; ++i) {
+      for (auto& gone : library.step()) unread.push_back(gone);
+      std::this_thread::yield();
+    }
+    return unread;
+  };
+  settings.method = "samples";
+  library.configure(settings);
+  for (std::int64_t spins = 0; library.number() < 1 && spins < 200'000'000; ++spins) read(1);
+  REQUIRE(library.database());
+  CHECK(library.database()->find("oak", "oak", Interaction::kImpact).any());
+  CHECK(library.news().size() == 1);
+  CHECK(library.news().empty());
+  callback.take_databases();
+  callback.let_go(none);
+  settings.sounds = two.path();
+  library.configure(settings);
+  for (std::int64_t spins = 0; library.number() < 2 && spins < 200'000'000; ++spins) read(2);
+  CHECK(library.database()->find("steel", "steel", Interaction::kImpact).any());
+  CHECK(library.step().empty());  // the callback has not been told yet
+  callback.take_databases();
+  callback.let_go(none);
+  CHECK(library.step().size() == 1);
+}
+
+namespace {
+
+// A library and a callback that is called by hand, with one folder of recordings, or two by turns.
+struct Lent {
+  SoundFolder one, two;
+  RecordedCrossing crossing;
+  Recorded callback{crossing, 48000};
+  Scheduler none{1};
+  Library library{crossing};
+  std::size_t given_back = 0;
+  Lent() {
+    one.write("oak/impact/1.wav", tone(300, 0.1));
+    two.write("oak/impact/1.wav", tone(300, 0.1));
+  }
+  // Until all that is to be read has been.
+  void read(bool heard = true) {
+    for (std::int64_t spins = 0; library.reading() && spins < 2'000'000'000; ++spins) {
+      given_back += library.step(heard).size();
+      std::this_thread::yield();
+    }
+    REQUIRE_FALSE(library.reading());
+    given_back += library.step(heard).size();
+  }
+  void want(const std::string& method, const SoundFolder& folder) {
+    Settings settings;
+    settings.method = method, settings.sounds = folder.path();
+    library.configure(settings);
+  }
+  void call() {
+    callback.take_databases();
+    callback.let_go(none);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("When contacts are computed again the recordings are given back, and read again when they are wanted") {
+  Lent l;
+  l.want("samples", l.one);
+  l.read();
+  l.call();
+  REQUIRE(l.library.database());
+  l.want("modal", l.one);
+  CHECK(l.library.step().empty());  // the callback may still play them
+  CHECK_FALSE(l.library.database());
+  l.call();
+  CHECK(l.library.step().size() == 1);
+  l.want("both", l.one);
+  l.read();
+  CHECK(l.library.database());
+
+  SECTION("and so are some that are still being read then") {
+    l.want("both", l.two);
+    l.library.step();
+    l.want("modal", l.two);
+    for (std::int64_t spins = 0; l.library.reading() && spins < 2'000'000'000; ++spins) {
+      l.given_back += l.library.step().size();
+      l.call();
+    }
+    l.call();
+    l.given_back += l.library.step().size();
+    CHECK_FALSE(l.library.database());
+    CHECK(l.given_back == 2);
+  }
+}
+
+TEST_CASE("Without a card recordings are given back as soon as others replace them") {
+  Lent l;
+  for (std::size_t i = 0; i < 40; ++i) {
+    l.want("samples", i % 2 ? l.two : l.one);
+    l.read(false);
+    REQUIRE(l.library.database());
+    CHECK(l.given_back == i);
+  }
+  // A callback that comes then plays the newest.
+  Recorded callback(l.crossing, 48000);
+  callback.take_databases();
+  callback.let_go(l.none);
+  l.want("modal", l.one);
+  l.library.step();
+  callback.take_databases();
+  callback.let_go(l.none);
+  CHECK(l.library.step().size() == 1);
+}
+
+TEST_CASE("A callback that stands still makes no more than four databases wait") {
+  Lent l;
+  for (std::size_t i = 0; i < 20; ++i) {
+    l.want("samples", i % 2 ? l.two : l.one);
+    l.read();
+  }
+  // Two that it might play, one that is told, one that is next.
+  CHECK(l.given_back == 16);
+  CHECK(l.library.number() == 3);
+  l.call();
+  CHECK(l.library.step().size() == 2);
+  l.library.step();
+  CHECK(l.library.number() == 4);
+}

@@ -1,0 +1,239 @@
+// Surfaces that scenes leave behind, and a callback that may still read them: they go once it has let go of them,
+// and never before.
+#include "audio_node/mixer/scrape_line.h"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "tests/audio_node/support/bench.h"
+#include "tests/audio_node/support/waves.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+using namespace tactus::audio::test;
+
+namespace {
+
+// What is heard of them is not louder; and what is heard of freed ones is.
+constexpr float kLoudest = 0.1f;
+
+// As the surfaces of a scene; freed they become so steep that a callback which reads them is heard.
+ScrapeLine::Surfaces poisoned_when_freed() {
+  auto* surfaces = new HeardSurfaces;
+  auto relief = std::make_shared<ReliefLevels>(make_relief(waves(), rough()));
+  surfaces->by_material.push_back({relief, nullptr});
+  static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never used again
+  return {surfaces, [relief](const HeardSurfaces* gone) {
+            for (Eigen::Vector2f& slope : const_cast<Relief&>(relief->finest()).slopes) slope.setConstant(1e6f);
+            graveyard.push_back(relief);
+            delete gone;
+          }};
+}
+
+// Slides along the waves of a relief at 0.1 m/s, over a body with a mode of 300 Hz.
+Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, float strength) {
+  Scrape s;
+  s.id = id;
+  s.at = sync::host_time(at_ns);
+  s.slide = strength;
+  s.place.direction = Eigen::Vector3f::UnitY();
+  const Strike struck = strike_of(0, 0, 300, 50, 0);
+  ScrapeSide& side = s.sides[0];
+  side.voice = id;
+  side.resonators = struck.sides[0].resonators, side.gains = struck.sides[0].gains;
+  side.known = true;
+  side.relief = relief;
+  side.velocity_m_s.x() = 0.1, side.slides.x() = 1;
+  return s;
+}
+
+// A loop and a callback in one thread, by turns.
+struct Line {
+  std::unique_ptr<Bench> bench = std::make_unique<Bench>();
+  ScrapeLine line{bench->crossing};
+
+  // Of the contact `id`, heard from now, or so much later.
+  bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
+    return line.submit(over(surfaces->by_material[0].relief.get(), id,
+                            bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)), 1e-4f));
+  }
+  // Something was heard, and nothing of what was freed.
+  bool sound() const {
+    float loudest = 0;
+    for (const float x : bench->left) loudest = std::max(loudest, std::abs(x));
+    return loudest > 0 && loudest < kLoudest;
+  }
+};
+
+constexpr int kBlock = 128;
+
+}  // namespace
+
+TEST_CASE("Surfaces of a scene that is over go when their last scrape has died away, and not before") {
+  Line l;
+  auto first = poisoned_when_freed();
+  const std::weak_ptr<const HeardSurfaces> watched = first;
+  l.line.change(first);
+  REQUIRE(l.scrape(first));
+  first.reset();
+  l.bench->play(kBlock);
+  l.line.change(nullptr);
+  int blocks = 0;
+  while (l.bench->renderer.scraping() && blocks++ < 1000) {
+    CHECK(l.line.take_unread().empty());
+    REQUIRE_FALSE(watched.expired());
+    l.bench->play(kBlock);
+  }
+  CHECK(blocks > 10);  // it was heard for 30 ms at least
+  CHECK(l.line.take_unread().size() == 1);
+  CHECK(watched.expired());
+  CHECK(l.sound());
+}
+
+TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time") {
+  Line l;
+  const auto first = poisoned_when_freed(), second = poisoned_when_freed();
+  l.line.change(first);
+  REQUIRE(l.scrape(first, 1, 4800));  // heard in 100 ms
+  l.line.change(second);
+  REQUIRE(l.scrape(second, 2, 4800));  // waits behind it
+  l.line.change(nullptr);
+  for (int n = 0; n < 4800; n += kBlock) {
+    l.bench->play(kBlock);
+    REQUIRE(l.line.take_unread().empty());
+  }
+  for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
+  CHECK(l.line.take_unread().size() == 2);
+  CHECK(l.sound());
+}
+
+TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at once, the one before it later") {
+  Line l;
+  const auto first = poisoned_when_freed(), second = poisoned_when_freed(), third = poisoned_when_freed();
+  l.line.change(first);
+  REQUIRE(l.scrape(first));
+  l.bench->play(kBlock);
+  l.line.change(second);
+  l.line.change(third);
+  const auto unread = l.line.take_unread();
+  REQUIRE(unread.size() == 1);
+  CHECK(unread[0] == second);
+  // The same contact goes on in the new scene: its voice then reads the new surfaces alone.
+  REQUIRE(l.scrape(third));
+  l.bench->play(kBlock);
+  const auto later = l.line.take_unread();
+  REQUIRE(later.size() == 1);
+  CHECK(later[0] == first);
+}
+
+TEST_CASE(
+    "While the callback stands still nothing that it may read goes, and what waits is bounded by the queue") {
+  Line l;
+  const auto heard = poisoned_when_freed();
+  l.line.change(heard);
+  REQUIRE(l.scrape(heard));
+  l.bench->play(kBlock);
+  std::size_t freed = 0;
+  for (int scene = 0; scene < 3000; ++scene) {
+    auto next = poisoned_when_freed();
+    l.line.change(next);
+    l.scrape(next, scene);
+    freed += l.line.take_unread().size();
+  }
+  // All but those with a scrape in the queue, the one that sounds and the present one.
+  CHECK(freed == 3000 + 1 - l.bench->crossing.scrapes.capacity() - 1 - 1);
+  SECTION("until it goes on") {
+    l.line.change(nullptr);
+    for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
+    freed += l.line.take_unread().size();
+    CHECK(freed == 3001);
+    CHECK(l.sound());
+  }
+  SECTION("or its stream is given up, and another goes on where it was") {
+    l.line.change(nullptr);
+    l.bench->renderer.abandon();
+    freed += l.line.take_unread().size();
+    CHECK(freed == 3001);
+    const auto fresh = poisoned_when_freed();
+    l.line.change(fresh);
+    REQUIRE(l.scrape(fresh));
+    l.line.change(nullptr);
+    auto another = std::make_unique<Renderer>(l.bench->crossing, RendererDef{});
+    std::vector<float> block(2 * kBlock);
+    another->render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(l.bench->left.size())), {}, {}});
+    CHECK(l.line.take_unread().empty());
+    another->abandon();
+    CHECK(l.line.take_unread().size() == 1);
+  }
+}
+
+TEST_CASE(
+    "Whatever loop and callback do, in two threads, nothing that is freed is heard, and all is freed in the end") {
+  Line l;
+  std::atomic<bool> done{false};
+  std::atomic<std::size_t> played{0};
+  float loudest = 0;
+  std::thread callback([&] {
+    std::vector<float> block(2 * kBlock);
+    // Until long after the last scrape.
+    for (int quiet = 0; quiet < 100; quiet = done ? quiet + 1 : 0, played += kBlock) {
+      l.bench->renderer.render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(played)), {}, {}});
+      for (const float x : block) loudest = std::max(loudest, std::abs(x));
+      std::this_thread::yield();
+    }
+  });
+  std::mt19937 random(6);
+  std::size_t freed = 0;
+  constexpr std::size_t kScenes = 400;
+  for (std::size_t scene = 0; scene < kScenes; ++scene) {
+    auto surfaces = poisoned_when_freed();
+    l.line.change(surfaces);
+    const ReliefLevels* relief = surfaces->by_material[0].relief.get();
+    surfaces.reset();
+    for (int i = 0; i < 50; ++i) {
+      const auto id = static_cast<std::int64_t>(random() % 5);
+      l.line.submit(over(relief, id, l.bench->time_ns(played + random() % 1000), 1e-4f));
+      freed += l.line.take_unread().size();
+      std::this_thread::yield();
+    }
+  }
+  l.line.change(nullptr);
+  done = true;
+  callback.join();
+  CHECK(loudest > 0);
+  CHECK(loudest < kLoudest);
+  CHECK(freed + l.line.take_unread().size() == kScenes);
+}
+
+TEST_CASE(
+    "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
+    "counted") {
+  auto crossing = std::make_unique<Crossing>();
+  ScrapeLine line(*crossing);
+  const auto tell = [&](std::int64_t id, bool ends) {
+    Scrape s;
+    s.id = id, s.ends = ends;
+    return line.submit(s);
+  };
+  while (tell(1, false)) continue;
+  CHECK(line.lost() == 1);
+  CHECK_FALSE(tell(1, true));
+  CHECK_FALSE(tell(2, true));
+  CHECK_FALSE(tell(2, false));  // it goes on
+  CHECK(line.lost() == 2);
+  line.tell_ends();  // there is no room yet
+  std::int64_t next = 0;
+  for (Scrape s; crossing->scrapes.pop(s);) CHECK(s.number == next++);
+  line.tell_ends();
+  line.tell_ends();
+  Scrape end;
+  REQUIRE(crossing->scrapes.pop(end));
+  CHECK(end.ends);
+  CHECK(end.id == 1);
+  CHECK(end.number == next);
+  CHECK_FALSE(crossing->scrapes.pop(end));
+}

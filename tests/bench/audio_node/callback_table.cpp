@@ -1,0 +1,116 @@
+// What a block costs in the card's callback when 100 bodies of 100 modes ring, each struck again and again:
+// median, 99th percentile and most, as a share of the block's own time, with each set of instructions that this
+// machine has.
+//
+//   bin/callback_table [--bodies N] [--modes N] [--frames N] [--seconds S] [--json FILE]
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "audio_node/mixer/renderer.h"
+#include "audio_node/spatial/space_of.h"
+
+using namespace tactus;
+using namespace tactus::audio;
+
+namespace {
+
+constexpr double kRate_Hz = 48000;
+constexpr double kStrikes_Hz = 200;  // of all bodies together
+
+Strike strike_of(int body, int modes, sync::HostTime at, std::mt19937& random) {
+  std::uniform_real_distribution<float> any(0, 1);
+  Strike s;
+  s.scheduled = at;
+  s.pulse = one_hump(20);
+  StrikeSide& side = s.sides[0];
+  side.voice = body;
+  for (int i = 0; i < modes; ++i) {
+    const ModeStep step = mode_step(100 + 15000.0 * i / modes + body, 0.5, kRate_Hz);
+    side.resonators.add(step);
+    side.gains[static_cast<std::size_t>(i)] = step.unit_gain;
+  }
+  side.impulse = 1e-4f;
+  const float angle = 2 * std::numbers::pi_v<float> * any(random);
+  side.place = {{std::cos(angle), std::sin(angle), 0}, 1 + any(random)};
+  return s;
+}
+
+double at(const std::vector<double>& sorted, double share) {
+  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int bodies = 100, modes = 100, frames = 64;
+  double seconds = 10;
+  std::string json;
+  CLI::App app{"What a block costs in the card's callback when many bodies ring."};
+  app.add_option("--bodies", bodies, "that ring")->check(CLI::Range(1, kQualities[0].voices));
+  app.add_option("--modes", modes, "of each")->check(CLI::Range(1, kMaxModes));
+  app.add_option("--frames", frames, "of a block")->check(CLI::Range(1, 4096));
+  app.add_option("--seconds", seconds, "of sound")->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--json", json, "also write the figures there");
+  CLI11_PARSE(app, argc, argv);
+
+  const double period_s = frames / kRate_Hz;
+  std::printf("%d bodies of %d modes, blocks of %d frames (%.2f ms), %.0f strikes a second\n", bodies, modes,
+              frames, 1e3 * period_s, kStrikes_Hz);
+  const Settings settings;
+  const std::array<std::pair<const char*, Space>, 2> spaces{
+      {{"pair", {}}, {"ears", space_of(settings, kRate_Hz)}}};
+  std::printf("%-12s %-6s %8s %8s %8s %10s\n", "instructions", "heard", "p50 %", "p99 %", "most %", "ringing");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Instructions use : available_instructions())
+    for (const auto& [heard, space] : spaces) {
+      std::mt19937 random(1);
+      RendererDef def;
+      def.period_frames = frames;
+      def.instructions = use;
+      def.space = space;
+      auto crossing = std::make_unique<Crossing>();
+      auto renderer = std::make_unique<Renderer>(*crossing, def);
+      Orders all;
+      all.quality = 0;
+      crossing->orders.push(all);
+      std::vector<float> stereo(2 * static_cast<std::size_t>(frames));
+      std::vector<double> shares;
+      const auto blocks = static_cast<int>(seconds / period_s);
+      double due = 0;
+      for (int k = 0; k < blocks; ++k) {
+        const sync::HostTime time = sync::host_time(std::llround(1e9 * k * period_s));
+        for (int i = 0; k == 0 && i < bodies; ++i) crossing->strikes.push(strike_of(i, modes, time, random));
+        for (due += kStrikes_Hz * period_s; due >= 1; --due)
+          crossing->strikes.push(
+              strike_of(static_cast<int>(random() % static_cast<unsigned>(bodies)), modes, time, random));
+        const auto begin = std::chrono::steady_clock::now();
+        renderer->render(stereo.data(), frames, {time, {}, {}});
+        const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        shares.push_back(100 * took_s / period_s);
+        for (presentation_t r; crossing->reports.pop(r);) continue;
+      }
+      const int rang = renderer->sounding();
+      std::sort(shares.begin(), shares.end());
+      std::printf("%-12s %-6s %8.1f %8.1f %8.1f %10s\n", name(use), heard, at(shares, 0.5), at(shares, 0.99),
+                  shares.back(), std::to_string(rang).c_str());
+      rows.push_back({{"instructions", name(use)},
+                      {"heard", heard},
+                      {"p50_percent", at(shares, 0.5)},
+                      {"p99_percent", at(shares, 0.99)},
+                      {"most_percent", shares.back()},
+                      {"ringing", rang}});
+    }
+  if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";
+  return 0;
+}

@@ -1,0 +1,165 @@
+// What a contact that slides or rolls costs the callback, per block of 64 frames, and the node's loop, per tick.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "audio_node/mixer/scrapes.h"
+#include "audio_node/excitation/sliding.h"
+#include "lcmtypes/vectors.h"
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+using namespace tactus;
+using namespace tactus::audio;
+
+namespace {
+
+constexpr double kRate_Hz = 48000;
+constexpr int kFrames = kMaxBlock;
+
+// A relief of 512 x 512 pixels of 0.2 mm, and a friction map of the same.
+HeightMap heights() {
+  HeightMap map{512, 512, 65535, {}};
+  for (int i = 0; i < 512 * 512; ++i) map.levels.push_back(static_cast<std::uint16_t>((i * 2654435761u) >> 16));
+  return map;
+}
+
+struct Row {
+  std::string what;
+  int contacts;
+  bool mapped, friction, rolls;
+};
+
+// Median and 99th percentile, us.
+std::pair<double, double> figures(std::vector<double> us) {
+  std::sort(us.begin(), us.end());
+  return {us[us.size() / 2], us[us.size() * 99 / 100]};
+}
+
+scene_t floor_and_balls(int balls) {
+  scene_t s{};
+  s.materials.resize(1), s.material_count = 1;
+  s.materials[0].friction_dynamic = 0.5;
+  for (int i = 0; i <= balls; ++i) {
+    body_def_t body{};
+    body.id = i, body.tool = -1, body.is_static = i == 0, body.mass_kg = 1;
+    body.pose = to_pose(Eigen::Isometry3d::Identity());
+    shape_def_t shape{};
+    shape.body = i, shape.kind = shape_def_t::BOX, shape.pose = body.pose;
+    shape.size_m = i == 0 ? to_vec3({0.5, 0.5, 0.03}) : to_vec3({0.2, 0.03, 0.02});
+    s.bodies.push_back(body), s.shapes.push_back(shape);
+  }
+  s.body_count = s.shape_count = balls + 1;
+  s.listener = to_pose(Eigen::Isometry3d::Identity());
+  return s;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string json;
+  int blocks = 4000;
+  CLI::App app{"What contacts that slide and roll cost the audio callback and the loop of its node."};
+  app.add_option("--blocks", blocks, "of 64 frames, of each row")->check(CLI::Range(100, 1'000'000));
+  app.add_option("--json", json, "also write the figures there");
+  CLI11_PARSE(app, argc, argv);
+#if defined(__SSE__)
+  _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback
+#endif
+  material_def_t m{};
+  m.bump_size_u_m = m.bump_size_v_m = m.friction_size_u_m = m.friction_size_v_m = 0.1024;
+  m.bump_height_m = 1e-4, m.friction_black = 0.5, m.friction_white = 2;
+  const ReliefLevels relief(make_relief(heights(), m));
+  const FrictionMap friction(heights(), m);
+  const scene_t scene = floor_and_balls(Scrapes::kMost);
+  const Impacts impacts(
+      scene, [](std::int64_t) { return std::nullopt; }, Settings{}, kRate_Hz, 1);
+  const double period_us = 1e6 * kFrames / kRate_Hz;
+  nlohmann::json rows = nlohmann::json::array();
+
+  std::printf("%-34s %9s %12s %12s %12s\n", "callback, block of 64", "contacts", "median us", "p99 us",
+              "% / contact");
+  for (const Row& row :
+       {Row{"none", 0, false, false, false}, Row{"scrape, roughness", 1, false, false, false},
+        Row{"scrape, relief", 1, true, false, false}, Row{"scrape, relief and friction map", 1, true, true, false},
+        Row{"roll, relief", 1, true, false, true}, Row{"scrape, relief", 16, true, false, false},
+        Row{"scrape, relief and friction map", 16, true, true, false}}) {
+    auto scrapes = std::make_unique<Scrapes>(kRate_Hz);
+    auto voices = std::make_unique<Voices>(64, kRate_Hz, ring(available_instructions().back()));
+    std::vector<double> took_us;
+    for (int b = 0; b < blocks; ++b) {
+      const double t = b * kFrames / kRate_Hz;
+      const sync::HostTime now = sync::host_time(static_cast<std::int64_t>(1e9 * (1 + t)));
+      for (int i = 0; i < row.contacts; ++i) {
+        Scrape s;
+        s.id = i, s.at = now, s.cutoff_Hz = 3000;
+        (row.rolls ? s.roll : s.slide) = 1e-4f;
+        for (std::size_t k = 0; k < 2; ++k) {
+          ScrapeSide& side = s.sides[k];
+          const int body = k == 0 ? 0 : i + 1;
+          side.voice = body, side.known = true;
+          side.resonators = impacts.resonators(body), side.gains = impacts.gains(body, std::nullopt);
+          if (row.mapped) side.relief = &relief;
+          if (row.friction && k == 0) side.friction = &friction;
+          side.roughness = {3e-6, row.mapped ? relief.texel_m() : 0};
+          const double speed = k == 0 || row.rolls ? 0.1 : 0;
+          side.place_m.x() = speed * t + 0.01 * i, side.velocity_m_s.x() = speed;
+          if (speed > 0) side.slides.x() = side.rolls.x() = 1;
+        }
+        scrapes->take(s);
+      }
+      float stereo[2 * kFrames] = {};
+      const auto begin = std::chrono::steady_clock::now();
+      scrapes->drive(*voices, kFrames, now);
+      voices->render(stereo, kFrames);
+      took_us.push_back(
+          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    }
+    const auto [median, p99] = figures(took_us);
+    const double share = row.contacts ? 100 * median / period_us / row.contacts : 0;
+    std::printf("%-34s %9d %12.2f %12.2f %12.2f\n", row.what.c_str(), row.contacts, median, p99, share);
+    rows.push_back({{"of", "callback"},
+                    {"what", row.what},
+                    {"contacts", row.contacts},
+                    {"median_us", median},
+                    {"p99_us", p99},
+                    {"period_us", period_us},
+                    {"percent_a_contact", share}});
+  }
+
+  std::printf("%-34s %9s %12s %12s\n", "loop, tick of 1 ms", "contacts", "median us", "p99 us");
+  for (const int count : {1, 16, 50}) {
+    auto surfaces = std::make_shared<HeardSurfaces>();
+    const sync::BodyHistory bodies(1);
+    Sliding sliding(scene, surfaces, bodies, impacts, Settings{}, kRate_Hz);
+    std::vector<double> took_us;
+    for (int tick = 0; tick < blocks; ++tick) {
+      sync::Contacts contacts;
+      for (int i = 0; i < count; ++i) {
+        contact_t c{};
+        c.contact_id = i, c.body_b = i % Scrapes::kMost + 1, c.tool = -1, c.kind = contact_t::SURFACE;
+        c.normal.z = 1, c.normal_force_N = 1, c.sliding_velocity_m_s.x = 0.1f;
+        c.points.resize(1), c.point_count = 1;
+        c.points[0].a_body_m.x = c.points[0].a_world_m.x = 1e-4f * static_cast<float>(tick);
+        contacts.push_back(c);
+      }
+      const auto begin = std::chrono::steady_clock::now();
+      sliding.scrapes(contacts, sync::sim_time(1'000'000LL * tick), sync::host_time(1'000'000LL * tick), 0.001);
+      took_us.push_back(
+          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    }
+    const auto [median, p99] = figures(took_us);
+    std::printf("%-34s %9d %12.2f %12.2f\n", "contacts that slide", count, median, p99);
+    rows.push_back({{"of", "loop"}, {"contacts", count}, {"median_us", median}, {"p99_us", p99}});
+  }
+  if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";
+  return 0;
+}

@@ -1,0 +1,227 @@
+// Does touch give a hand and a body more energy than they gave? Hands of three sizes press on walls and bodies,
+// tap on them and push bodies along, while the touch model is late, thin, lossy or frozen; and what is left of
+// touch then.
+//
+//   bin/passivity_table [--check] [--all] [--seeds N | --seed N] [--json FILE]
+//
+// A row is one surface with one touch model; each figure the worst of all hands and, where messages are lost by
+// chance, of all seeds; energy also of pressing, tapping and pushing along (tests/haptic_node/support/episode.h):
+//   generated   the most that device port and body port gave together, over what they had taken in, in an episode
+//   told        the most that the observer of the renderer told of it
+//   without     generated, with the controller switched off
+//   cycle       the force sways to and fro at the end of the hold, by more than 0.05 N rms, and does not die away
+//   of ideal    mean force of the hold over that of springs in a row: hand, surface and what holds the body
+//   of design   the same, with the stiffness that the rules of the coupling leave to a mass at that delay
+//   K           force over depth
+//   factor      the lowest that the controller chose
+// --all prints every episode. --check: exit 1 where generated > 1 mJ, a cycle, or touch that amounts to none: a
+// wall whose force is off by more than 25 %; a body with less than half of the force of the design (after losses
+// and a gap, which are softer than the mean age tells: a fifth), or that is pushed along by less than half of the
+// way.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <vector>
+
+#include "haptic_node/rendering/coupling.h"
+#include "tests/haptic_node/support/episode.h"
+
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+constexpr Network kNetworks[] = {{"as it is"},
+                                 {"1 ms late", 1},
+                                 {"5 ms late", 5},
+                                 {"10 ms late", 10},
+                                 {"25 ms late", 25},
+                                 {"50 ms late", 50},
+                                 {"30 Hz", 0, 30},
+                                 {"30 % lost in bursts", 0, 1000, true},
+                                 {"frozen 0.5 s", 0, 1000, false, true},
+                                 {"25 ms late, 30 Hz", 25, 30},
+                                 {"25 ms late, bursts", 25, 1000, true},
+                                 {"10 ms late, frozen", 10, 1000, false, true}};
+constexpr const char* kActs[] = {"press", "tap", "push"};
+constexpr double kMostGenerated_mJ = 1;
+
+struct SurfaceKind {
+  double mass_kg, stiffness_N_m;  // 0: a wall
+  std::string name() const {
+    char text[32];
+    if (mass_kg > 0)
+      std::snprintf(text, sizeof text, "body %g kg", mass_kg);
+    else
+      std::snprintf(text, sizeof text, "wall %g N/m", stiffness_N_m);
+    return text;
+  }
+};
+constexpr SurfaceKind kSurfaces[] = {{0, 200},    {0, 1000},   {0, 5000},   {0.05, 1000},
+                                     {0.1, 1000}, {0.2, 1000}, {0.5, 1000}, {1, 1000}};
+
+// The stiffness that the rules of the coupling leave at the mean age of the touch model.
+double design_N_m(const EpisodeDef& def) {
+  const Settings& s = def.settings;
+  const double age_s = 1e-3 * def.network.delay_ms + (def.network.rate_Hz < 1000 ? 0.5 / def.network.rate_Hz : 0);
+  return coupling_gains(
+             def.stiffness_N_m, 0, def.mass_kg > 0 ? def.mass_kg : 1e10, age_s + 0.002, 1e-3,
+             {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m})
+      .stiffness_N_m;
+}
+// The force of the hold with it, and how far a body is pushed along.
+double design_N(const EpisodeDef& def, double ideal_N) {
+  return kPress_m / (kPress_m / ideal_N - 1 / def.stiffness_N_m + 1 / design_N_m(def));
+}
+double design_m(const EpisodeDef& def, double friction_N) {
+  return std::max(0.0, kPush_m - friction_N / design_N_m(def) - friction_N / def.hand.stiffness_N_m);
+}
+
+// An episode with the controller, and what it generates without.
+struct Pair {
+  EpisodeResult with;
+  double without_mJ = 0;
+};
+Pair with_and_without(EpisodeDef def) {
+  Pair pair{run_episode(def)};
+  def.settings.generated_limit_J = 1e9;
+  pair.without_mJ = run_episode(def).generated_mJ;
+  return pair;
+}
+
+// Where nothing is lost by chance, one is as good as all.
+std::vector<unsigned> seeds_of(const Network& network, unsigned seeds) {
+  std::vector<unsigned> all(network.bursts ? seeds : 1);
+  std::iota(all.begin(), all.end(), 1u);
+  return all;
+}
+
+struct Row {
+  double generated_mJ = 0, told_mJ = 0, without_mJ = 0, of_ideal = 1e9, most_of_ideal = 0, of_design = 1e9,
+         K_N_m = 1e9, factor = 1, pushed = 1e9;
+  bool cycle = false;
+  bool good = true;
+
+  void take(const EpisodeDef& def, const Pair& pair) {
+    const EpisodeResult& r = pair.with;
+    generated_mJ = std::max(generated_mJ, r.generated_mJ);
+    told_mJ = std::max(told_mJ, r.observed_mJ);
+    without_mJ = std::max(without_mJ, pair.without_mJ);
+    factor = std::min(factor, r.least_coupling);
+    if (def.act == Act::kPress) {
+      cycle = cycle || r.cycles();
+      of_ideal = std::min(of_ideal, r.force_N / r.ideal_N);
+      most_of_ideal = std::max(most_of_ideal, r.force_N / r.ideal_N);
+      of_design = std::min(of_design, r.force_N / design_N(def, r.ideal_N));
+      K_N_m = std::min(K_N_m, r.stiffness_N_m);
+    }
+    if (def.act == Act::kPush) pushed = std::min(pushed, r.pushed_m - 0.5 * design_m(def, r.ideal_N));
+  }
+};
+
+void print(const char* hand, const EpisodeDef& def, const EpisodeResult& r) {
+  std::printf(
+      "  %-10s %-6s seed %2u generated %8.3f told %8.3f factor %5.3f sway %7.4f force %7.3f of ideal %6.3f peak "
+      "%6.2f step %5.3f pushed %6.3f%s\n",
+      hand, kActs[static_cast<int>(def.act)], def.seed, r.generated_mJ, r.observed_mJ, r.least_coupling, r.sway_N,
+      r.force_N, r.force_N / r.ideal_N, r.peak_N, r.largest_step_N, r.pushed_m,
+      def.act == Act::kPress && r.cycles() ? "  cycles" : "");
+}
+
+nlohmann::json as_json(const SurfaceKind& surface, const char* hand, const EpisodeDef& def, const Pair& pair) {
+  const EpisodeResult& r = pair.with;
+  return {{"surface", surface.name()},
+          {"touch_model", def.network.name},
+          {"hand", hand},
+          {"act", kActs[static_cast<int>(def.act)]},
+          {"seed", def.seed},
+          {"generated_mJ", r.generated_mJ},
+          {"told_mJ", r.observed_mJ},
+          {"without_mJ", pair.without_mJ},
+          {"factor", r.least_coupling},
+          {"sway_N", r.sway_N},
+          {"force_N", r.force_N},
+          {"ideal_N", r.ideal_N},
+          {"peak_N", r.peak_N},
+          {"largest_step_N", r.largest_step_N},
+          {"pushed_m", r.pushed_m}};
+}
+
+bool good(const SurfaceKind& surface, const Network& network, const Row& r) {
+  if (r.generated_mJ > kMostGenerated_mJ || r.cycle) return false;
+  if (surface.mass_kg <= 0) return r.of_ideal > 0.75 && r.most_of_ideal < 1.25;
+  return r.of_design >= (network.bursts || network.freezes ? 0.2 : 0.5) && r.pushed >= 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string json;
+  bool check = false, all = false;
+  unsigned seed = 0, seeds = 8;
+  CLI::App app{"Does touch give a hand and a body more energy than they gave?"};
+  app.add_option("--json", json, "also write the figures there");
+  app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
+  app.add_option("--seeds", seeds, "losses are drawn with the seeds 1 to this")->check(CLI::Range(1, 10000));
+  app.add_option("--seed", seed, "losses are drawn with this seed alone")->excludes("--seeds");
+  app.add_flag("--all", all, "print every episode");
+  CLI11_PARSE(app, argc, argv);
+  std::printf("%-14s %-20s %9s %9s %9s %6s %9s %10s %8s %7s\n", "surface", "touch model", "gen. mJ", "told mJ",
+              "without", "cycle", "of ideal", "of design", "K N/m", "factor");
+  nlohmann::json rows = nlohmann::json::array(), episodes = nlohmann::json::array();
+  bool everything_good = true;
+  for (const SurfaceKind& surface : kSurfaces)
+    for (const Network& network : kNetworks) {
+      Row row;
+      for (const HandKind& hand : hand_kinds())
+        for (const Act act : {Act::kPress, Act::kTap, Act::kPush}) {
+          if (act == Act::kPush && surface.mass_kg <= 0) continue;
+          for (const unsigned drawn : seed ? std::vector{seed} : seeds_of(network, seeds)) {
+            EpisodeDef def;
+            def.act = act, def.mass_kg = surface.mass_kg, def.stiffness_N_m = surface.stiffness_N_m;
+            def.network = network, def.hand = hand.impedance, def.seed = drawn;
+            const Pair pair = with_and_without(def);
+            row.take(def, pair);
+            if (all) print(hand.name, def, pair.with);
+            episodes.push_back(as_json(surface, hand.name, def, pair));
+          }
+        }
+      row.good = good(surface, network, row);
+      everything_good = everything_good && row.good;
+      std::printf("%-14s %-20s %9.3f %9.3f %9.2f %6s %9.3f %10.3f %8.1f %7.3f%s\n", surface.name().c_str(),
+                  network.name, row.generated_mJ, row.told_mJ, row.without_mJ, row.cycle ? "yes" : "no",
+                  row.of_ideal, row.of_design, row.K_N_m, row.factor, row.good ? "" : "  <- beyond its limits");
+      rows.push_back({{"surface", surface.name()},
+                      {"touch_model", network.name},
+                      {"delay_ms", network.delay_ms},
+                      {"plain_delay", network.rate_Hz == 1000 && !network.bursts && !network.freezes},
+                      {"generated_mJ", row.generated_mJ},
+                      {"told_mJ", row.told_mJ},
+                      {"without_mJ", row.without_mJ},
+                      {"cycle", row.cycle},
+                      {"of_ideal", row.of_ideal},
+                      {"of_design", row.of_design},
+                      {"stiffness_N_m", row.K_N_m},
+                      {"factor", row.factor},
+                      {"good", row.good}});
+    }
+  // What the disturbances cost the servo loop.
+  std::printf("\n%-20s %10s %10s\n", "touch model", "median us", "p99 us");
+  nlohmann::json ticks = nlohmann::json::array();
+  for (const Network& network : kNetworks) {
+    EpisodeDef def;
+    def.mass_kg = 0.2, def.network = network;
+    std::vector<double> us = run_episode(def, true).tick_us;
+    std::sort(us.begin(), us.end());
+    const double median = us[us.size() / 2], p99 = us[us.size() * 99 / 100];
+    std::printf("%-20s %10.2f %10.2f\n", network.name, median, p99);
+    ticks.push_back({{"touch_model", network.name}, {"median_us", median}, {"p99_us", p99}});
+  }
+  if (!json.empty())
+    std::ofstream(json) << nlohmann::json{{"rows", rows}, {"episodes", episodes}, {"ticks", ticks}}.dump(1)
+                        << "\n";
+  return check && !everything_good ? 1 : 0;
+}

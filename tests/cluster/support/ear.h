@@ -1,0 +1,79 @@
+// What a test hears of the cluster on the bus: the newest health of each node, and some channels as they arrive.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <vector>
+
+#include "sync/bus/bus.h"
+
+namespace tactus::cluster {
+
+class Ear {
+ public:
+  // Hears only messages of this run: a replayed log speaks of nodes of the same names.
+  explicit Ear(std::int64_t run_id);
+
+  // Takes in what has arrived until the condition holds; false when it does not within so many seconds.
+  bool wait_until(const std::function<bool()>& condition, double at_most_s);
+  // Takes in what arrives for so long.
+  void listen(double seconds);
+
+  // The newest health of a node; null when it has been silent for 1.5 s.
+  const node_health_t* health(const std::string& node) const;
+  bool in_state(const std::string& node, std::int8_t state) const;
+  // Ticks that a node has done and events that it has presented, as it last said; 0: it never spoke.
+  std::int64_t ticks(const std::string& node) const;
+  std::int64_t rendered(const std::string& node) const;
+  // Rejected messages, over all inputs of a node.
+  std::int64_t bad(const std::string& node) const;
+  // Times that a node was heard with another incarnation than before.
+  std::int64_t rejoined(const std::string& node) const;
+
+  const tool_state_t* tool_state() const { return tool_ ? &*tool_ : nullptr; }
+  // N, of the newest TOOL_STATE; -1: none came.
+  double force_N() const;
+  // Ids of the live contacts, as the newest complete snapshots of both groups say; and of the simulation that sent them.
+  std::set<std::int64_t> contact_ids() const;
+  // Number of hits told so far.
+  std::int64_t hits() const { return static_cast<std::int64_t>(hits_.size()); }
+
+  // Events presented or dropped so far, by modality and event.
+  const std::map<std::string, std::map<std::int64_t, presentation_t>>& presented() const { return presented_; }
+  sync::Bus& bus() { return bus_; }
+
+ private:
+  struct Heard {
+    node_health_t health;
+    sync::HostTime arrival;
+    std::int64_t incarnations = 0;
+  };
+  struct Snapshot {
+    std::int64_t incarnation = 0, sim_time_ns = -1;
+    int pages = 0;
+    std::map<int, std::vector<std::int64_t>> ids;  // by page
+  };
+  void take_in();
+  void take(const contact_frame_t& page);
+
+  std::int64_t run_id_;
+  sync::Bus bus_;
+  sync::Queue<node_health_t>& health_queue_;
+  sync::Queue<tool_state_t>& tool_queue_;
+  sync::Queue<contact_frame_t>& contact_queue_;
+  sync::Queue<contact_events_t>& event_queue_;
+  sync::Queue<presented_t>& presented_queue_;
+  std::map<std::string, Heard> heard_;
+  std::optional<tool_state_t> tool_;
+  Snapshot snapshots_[3];           // newest complete one of each group
+  std::map<int, Snapshot> partial_;  // by group
+  std::set<std::int64_t> hits_;
+  std::map<std::string, std::map<std::int64_t, presentation_t>> presented_;
+};
+
+}  // namespace tactus::cluster

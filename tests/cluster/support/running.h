@@ -1,0 +1,77 @@
+// A whole cluster that runs the small scene, and a test that listens to it.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "tests/cluster/support/ear.h"
+#include "tests/cluster/support/processes.h"
+
+namespace tactus::cluster {
+
+// Long enough for a loaded machine: liveness is asserted, not speed.
+constexpr double kPatience_s = 40;
+
+struct Running {
+  static constexpr std::int64_t kRunId = 4711;
+
+  Folder folder;
+  Processes processes{folder.path(), kRunId};
+  Ear ear{kRunId};
+
+  bool state(const std::string& node, std::int8_t wanted) const { return ear.in_state(node, wanted); }
+  bool lives(const std::string& node) const { return state(node, node_health_t::RUNNING); }
+  bool all_live(const std::vector<std::string>& nodes) const {
+    return std::all_of(nodes.begin(), nodes.end(), [&](const auto& n) { return lives(n); });
+  }
+  // Starts everything and waits until all senses have rendered something.
+  void start() {
+    processes.start_all(tapping_scene());
+    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
+    UNSCOPED_INFO(words());
+    REQUIRE(alive);
+  }
+  // Ticks per second over a while, by node.
+  std::map<std::string, double> rates(double seconds) {
+    std::map<std::string, std::pair<std::int64_t, std::int64_t>> before;
+    for (const std::string& n : kNodes)
+      if (const node_health_t* h = ear.health(n)) before[n] = {h->ticks, h->header.publish_time_ns};
+    ear.listen(seconds);
+    std::map<std::string, double> out;
+    for (const auto& [n, b] : before) {
+      const node_health_t* h = ear.health(n);
+      const double span_s = h ? static_cast<double>(h->header.publish_time_ns - b.second) * 1e-9 : 0;
+      out[n] = span_s > 0 ? static_cast<double>(h->ticks - b.first) / span_s : 0;
+    }
+    return out;
+  }
+  // Rates hold within a factor of two, in the best of three spans: other work on the machine comes and goes, but
+  // who is held back, or runs away, is so in all of them.
+  void check_rates_hold(const std::map<std::string, double>& before, double seconds,
+                        const std::string& except = "") {
+    std::map<std::string, double> left = before;
+    left.erase(except);
+    std::map<std::string, double> now;
+    for (int span = 0; span < 3 && !left.empty(); ++span) {
+      now = rates(seconds);
+      std::erase_if(left, [&](const auto& b) {
+        const auto at = now.find(b.first);
+        return at != now.end() && at->second > b.second / 2 && at->second < b.second * 2;
+      });
+    }
+    for (const auto& [node, rate] : left)
+      FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
+  }
+  // The last words of every process, for the report of a failure.
+  std::string words() const {
+    std::string all;
+    for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
+      const node_health_t* h = ear.health(n);
+      all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->note + ")" : " silent") +
+             ": " + processes.said(n) + "\n";
+    }
+    return all;
+  }
+};
+
+}  // namespace tactus::cluster

@@ -1,0 +1,95 @@
+// What a test of a running cluster sees: the newest picture of visual_node, as grey values, and what it answers to
+// changes of its settings.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/cluster/support/running.h"
+
+namespace tactus::cluster {
+
+using Grey = std::vector<unsigned char>;
+
+// Mean difference of two pictures, of 255.
+inline double apart(const Grey& a, const Grey& b) {
+  REQUIRE(a.size() == b.size());
+  REQUIRE(!a.empty());
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+struct Seeing : Running {
+  std::filesystem::path snapshot = folder.path() / "now.png";
+  int asked = 0;
+
+  // As options of visual_node: pictures of 640 x 480, ten a second.
+  std::vector<std::string> snapshots() const {
+    return {"--no-video", "--snapshot", snapshot, "--snapshot-every", "0.1"};
+  }
+  // A cluster whose visual_node has these options and is started as the words before it say.
+  void start_with(const std::vector<std::string>& options, const std::vector<std::string>& before = {}) {
+    processes.start("sync_node");
+    for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
+    start_vision(options, before);
+    processes.start("sim_node", {tapping_scene()});
+    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
+    UNSCOPED_INFO(words());
+    REQUIRE(alive);
+  }
+  void start_vision(const std::vector<std::string>& options, const std::vector<std::string>& before = {}) {
+    std::vector<std::string> command{"env"};
+    command.insert(command.end(), before.begin(), before.end());
+    command.insert(command.end(),
+                   {programs() / "visual_node", "--run-id", std::to_string(kRunId), "--out", folder.path()});
+    command.insert(command.end(), options.begin(), options.end());
+    processes.spawn("visual_node", command);
+  }
+  // As ffmpeg reads it.
+  Grey grey(const std::string& input) {
+    const auto raw = folder.path() / "now.raw";
+    const std::string command =
+        "ffmpeg -v error -y " + input + " -frames:v 1 -f rawvideo -pix_fmt gray " + quoted(raw);
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::ifstream file(raw, std::ios::binary);
+    return Grey(std::istreambuf_iterator<char>(file), {});
+  }
+  Grey picture() { return grey("-i " + quoted(snapshot)); }
+  // One that a few frames later than now is drawn.
+  Grey later_picture() {
+    const std::int64_t before = ear.ticks("visual_node");
+    CHECK(ear.wait_until([&] { return ear.ticks("visual_node") > before + 12; }, kPatience_s));
+    ear.listen(0.5);
+    return picture();
+  }
+  // What the program `set` says: a line for each change, one when it is refused.
+  std::string set(const std::vector<std::string>& words, int wanted_status = 0) {
+    const std::string name = "set" + std::to_string(++asked);
+    std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId), "visual_node"};
+    command.insert(command.end(), words.begin(), words.end());
+    processes.spawn(name, command);
+    const int status = processes.wait_for_exit(name, kPatience_s);
+    const std::string said = processes.said(name);
+    INFO(said);
+    CHECK(status == wanted_status);
+    CHECK(std::count(said.begin(), said.end(), '\n') == (status == 0 ? static_cast<long>(words.size()) : 1));
+    return said;
+  }
+  bool goes_on(const std::string& node) {
+    const std::int64_t before = ear.ticks(node);
+    return ear.wait_until([&] { return lives(node) && ear.ticks(node) > before + 5; }, kPatience_s);
+  }
+  // Without vision: touch, sound and warmth live, and blows are told.
+  bool others_live() {
+    const std::int64_t hits = ear.hits();
+    return ear.wait_until(
+        [&] {
+          return ear.hits() > hits && all_live({"sim_node", "haptic_node", "audio_node", "thermal_node"});
+        },
+        kPatience_s);
+  }
+};
+
+}  // namespace tactus::cluster

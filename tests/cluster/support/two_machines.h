@@ -1,0 +1,112 @@
+// Two machines, as far as programs can tell: the namespaces of the test and a second network with a cable in
+// between, where the system allows it with a clock that is an hour ahead. Touch and the simulation run here,
+// sound, picture and heat there.
+#pragma once
+
+#include <signal.h>
+
+#include <fstream>
+#include <optional>
+#include <tactus/sync_report_t.hpp>
+
+#include "tests/cluster/support/running.h"
+
+namespace tactus::cluster {
+
+inline const std::vector<std::string> kThere{"audio_node", "visual_node", "thermal_node"};
+
+// Made before anything listens: who joined a group on the old route would not hear what comes over the cable.
+class Cable {
+ public:
+  Cable() : processes_(folder_.path(), 1) {
+    // One namespace of time for all over there: each would be a clock of its own.
+    std::vector<std::string> machine{"unshare", "--net"};
+    clock_ = run("unshare --time --monotonic 3600 --fork true");
+    if (clock_) machine.insert(machine.end(), {"--time", "--monotonic", "3600", "--fork", "--kill-child"});
+    machine.insert(machine.end(), {"sh", "-c", "echo $$ > " + number() + "; exec sleep 100000"});
+    processes_.spawn("machine", machine);
+    const bool up = run("for i in $(seq 500); do [ -s " + number() + " ] && exit 0; sleep 0.01; done; exit 1");
+    if (!up) return;
+    std::ifstream(number()) >> pid_;
+    made_ = run(
+        "set -e; ip link add cable type veth peer name cable_there; ip link set cable_there netns " +
+        std::to_string(pid_) +
+        "; ip addr add 10.77.0.1/24 dev cable; ip link set cable up; ip route replace 224.0.0.0/4 dev cable; " +
+        "nsenter --net=" + space("net") +
+        " sh -ec 'ip link set lo up; ip addr add 10.77.0.2/24 dev cable_there; ip link set cable_there up; "
+        "ip route add 224.0.0.0/4 dev cable_there'");
+  }
+  ~Cable() { run("ip link del cable; ip route replace 224.0.0.0/4 dev lo"); }
+
+  bool made() const { return made_; }
+  // In front of a command that is to run over there, and that takes the place of this one.
+  std::vector<std::string> there() const {
+    std::vector<std::string> words{"nsenter", "--net=" + space("net")};
+    if (clock_) words.push_back("--time=" + space("time"));
+    return words;
+  }
+
+ private:
+  std::string number() const { return folder_.path() / "number"; }
+  std::string space(const std::string& kind) const { return "/proc/" + std::to_string(pid_) + "/ns/" + kind; }
+  bool run(const std::string& commands) {
+    const std::string name = "command" + std::to_string(++commands_);
+    processes_.spawn(name, {"sh", "-c", "PATH=$PATH:/usr/sbin:/sbin; " + commands});
+    return processes_.wait_for_exit(name, 20) == 0;
+  }
+
+  Folder folder_;
+  Processes processes_;
+  int commands_ = 0;
+  bool made_ = false, clock_ = false;
+  pid_t pid_ = 0;
+};
+
+struct TwoMachines {
+  Cable cable;
+  std::optional<Running> running;
+  sync::Queue<sync_report_t>* reports = nullptr;
+
+  // Starts everything and waits until all senses have rendered something. False where the system allows no such
+  // thing.
+  bool start() {
+    if (!cable.made()) {
+      WARN("skipped: this system allows no second network with a cable to it");
+      return false;
+    }
+    running.emplace();
+    reports = &ear().bus().queue<sync_report_t>(channels::kSyncReport, 256);
+    start_node("sync_node");
+    start_there("sync_node", "sync_node_there");
+    for (const std::string& node : kNodes) start_node(node);
+    const bool alive = ear().wait_until(
+        [&] {
+          return running->all_live(kNodes) && ear().hits() > 0 &&
+                 std::all_of(kSenses.begin(), kSenses.end(), [&](const auto& n) { return ear().rendered(n) > 0; });
+        },
+        kPatience_s);
+    UNSCOPED_INFO(running->words());
+    REQUIRE(alive);
+    return true;
+  }
+  Ear& ear() { return running->ear; }
+  // Where it belongs.
+  void start_node(const std::string& node) {
+    if (std::find(kThere.begin(), kThere.end(), node) != kThere.end()) return start_there(node, node);
+    std::vector<std::string> options{"--ttl", "1"};
+    if (node == "sim_node") options.push_back(tapping_scene());
+    running->processes.start(node, options);
+  }
+
+ private:
+  void start_there(const std::string& program, const std::string& name) {
+    std::vector<std::string> command = cable.there();
+    command.insert(command.end(),
+                   {(programs() / program).string(), "--name", name, "--run-id", std::to_string(Running::kRunId),
+                    "--out", running->folder.path().string(), "--ttl", "1"});
+    if (program == "audio_node") command.insert(command.end(), {"--audio-device", "virtual"});
+    running->processes.spawn(name, command);
+  }
+};
+
+}  // namespace tactus::cluster

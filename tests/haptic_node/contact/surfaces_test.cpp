@@ -1,0 +1,154 @@
+#include "haptic_node/contact/surfaces.h"
+
+#include <catch2/catch.hpp>
+
+#include "haptic_node/contact/proxy.h"
+#include "tests/haptic_node/support/world.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+constexpr double kDt = 1e-3;
+sync::SimTime sim_ms(double ms) { return sync::sim_time(static_cast<std::int64_t>(ms * 1e6)); }
+
+// Surfaces and proxy together, the device held still.
+struct Touch {
+  explicit Touch(double radius_m = 0) : surfaces(radius_m, SurfaceLimits{}) { proxy.reset(Vector3d(0, 0, 0.01)); }
+  void tick(double ms, const Vector3d& device, const touch_model_t* fresh) {
+    surfaces.step(fresh, sim_ms(ms), proxy.position(), kDt);
+    proxy.step(surfaces.list(), device, kDt);
+  }
+  Surfaces surfaces;
+  Proxy proxy;
+};
+
+}  // namespace
+
+TEST_CASE("A plane keeps the centre of the tool a radius away") {
+  Touch touch(0.005);
+  const auto m = model(0, {plane(7, {0, 0, 1}, Vector3d::UnitZ())});
+  touch.proxy.reset({0, 0, 1.1});
+  touch.tick(0, {0, 0, 1.1}, &m);
+  touch.tick(1, {0, 0, 0.9}, nullptr);
+  CHECK(touch.proxy.position().z() == Approx(1.005));
+}
+
+TEST_CASE("Between messages a plane moves on with its velocity, but not for ever") {
+  Surfaces surfaces(0, SurfaceLimits{});
+  auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+  p.velocity_m_s = to_vec3f(Vector3d(0, 0, -0.2));
+  const auto m = model(0, {p});
+  surfaces.step(&m, sim_ms(0), {0, 0, 1}, kDt);
+  CHECK(surfaces.list()[0].offset_m == Approx(0).margin(1e-12));
+  surfaces.step(nullptr, sim_ms(5), {0, 0, 1}, kDt);
+  CHECK(surfaces.list()[0].offset_m == Approx(-0.001).epsilon(1e-6));
+  surfaces.step(nullptr, sim_ms(500), {0, 0, 1}, kDt);
+  CHECK(surfaces.list()[0].offset_m == Approx(-0.2 * 0.02).epsilon(1e-6));
+}
+
+TEST_CASE("Between messages a plane turns with its body") {
+  Surfaces surfaces(0, SurfaceLimits{});
+  auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+  p.angular_velocity_rad_s = to_vec3f(Vector3d(0, 2, 0));
+  const auto m = model(0, {p});
+  surfaces.step(&m, sim_ms(0), {0, 0, 1}, kDt);
+  surfaces.step(nullptr, sim_ms(10), {0, 0, 1}, kDt);
+  // Right-handed about y: z turns towards x.
+  CHECK((surfaces.list()[0].normal - Vector3d(std::sin(0.02), 0, std::cos(0.02))).norm() < 1e-6);
+}
+
+TEST_CASE("A jump of a pressed surface is spread over the recovery time") {
+  Touch touch;
+  const Vector3d device(0, 0, -0.002);
+  const auto before = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  touch.tick(0, {0, 0, 0.01}, &before);
+  for (int ms = 1; ms <= 30; ++ms) touch.tick(ms, device, nullptr);
+  CHECK(touch.proxy.position().z() == Approx(0).margin(1e-9));
+  const double jump = GENERATE(0.006, -0.0018);
+  const auto after = model(31, {plane(7, {0, 0, jump}, Vector3d::UnitZ())});
+  double last = touch.proxy.position().z();
+  for (int ms = 31; ms <= 50; ++ms) {
+    touch.tick(ms, device, ms == 31 ? &after : nullptr);
+    const double z = touch.proxy.position().z();
+    // A step lasts 15 ticks, or is 0.1 mm when that is faster.
+    CHECK(std::abs(z - last) < std::max(std::abs(jump) / 15, 1e-4) * 1.001 + 1e-9);
+    last = z;
+  }
+  CHECK(last == Approx(jump).margin(1e-9));
+}
+
+TEST_CASE("A surface that changes slowly is followed without a lag") {
+  Touch touch;
+  for (int ms = 0; ms < 100; ++ms) {
+    const double z = 0.00009 * ms;  // 0.09 m/s, unannounced
+    const auto m = model(ms, {plane(7, {0, 0, z}, Vector3d::UnitZ())});
+    touch.tick(ms, {0, 0, z - 0.002}, &m);
+    CHECK(touch.proxy.position().z() == Approx(z).margin(1e-9));
+  }
+}
+
+TEST_CASE("A surface that is left out while it is pressed lets the hand down within the recovery time") {
+  Touch touch;
+  const Vector3d device(0, 0, -0.003);
+  const auto with = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  touch.tick(0, {0, 0, 0.01}, &with);
+  for (int ms = 1; ms <= 20; ++ms) touch.tick(ms, device, nullptr);
+  const auto without = model(21, {});
+  double last = touch.proxy.position().z();
+  for (int ms = 21; ms <= 38; ++ms) {
+    touch.tick(ms, device, ms == 21 ? &without : nullptr);
+    CHECK(last - touch.proxy.position().z() < 0.003 / 15 * 1.05);
+    CHECK(touch.proxy.position().z() <= last + 1e-12);
+    last = touch.proxy.position().z();
+  }
+  CHECK(last == Approx(device.z()).margin(1e-9));
+  CHECK(touch.surfaces.list().empty());
+}
+
+TEST_CASE("A surface that appears over the proxy lifts it gently") {
+  Touch touch;
+  const Vector3d device(0, 0, 0);
+  touch.tick(0, device, nullptr);
+  const auto m = model(1, {plane(7, {0, 0, 0.015}, Vector3d::UnitZ())});
+  double last = 0;
+  for (int ms = 1; ms <= 20; ++ms) {
+    touch.tick(ms, device, ms == 1 ? &m : nullptr);
+    CHECK(touch.proxy.position().z() - last < 0.015 / 15 * 1.001 + 1e-9);
+    last = touch.proxy.position().z();
+  }
+  CHECK(last == Approx(0.015));
+}
+
+TEST_CASE("A pressed surface that turns sharply turns within the recovery time, about the proxy") {
+  Touch touch;
+  const auto flat = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  touch.tick(0, {0, 0, 0.01}, &flat);
+  const Vector3d device(0, 0, -0.001);
+  for (int ms = 1; ms < 20; ++ms) touch.tick(ms, device, nullptr);
+  const auto steep = model(20, {plane(7, Vector3d::Zero(), Vector3d::UnitX())});
+  Vector3d last = touch.surfaces.list()[0].normal;
+  for (int ms = 20; ms < 40; ++ms) {
+    touch.tick(ms, device, ms == 20 ? &steep : nullptr);
+    if (touch.surfaces.list().empty()) break;
+    const Vector3d n = touch.surfaces.list()[0].normal;
+    CHECK(std::acos(std::min(1.0, n.dot(last))) < M_PI / 2 / 15 * 1.001 + 1e-9);
+    last = n;
+  }
+  CHECK((last - Vector3d::UnitX()).norm() < 1e-6);
+}
+
+TEST_CASE("No more surfaces are kept than can be solved for, however fast they change") {
+  Touch touch;
+  for (int ms = 0; ms < 100; ++ms) {
+    std::vector<touch_plane_t> planes;
+    for (int i = 0; i < 60; ++i)
+      planes.push_back(plane(100 * ms + i, {0, 0, 0.001 * (i % 3)}, Vector3d(0.1 * (i % 5), 0.1 * (i % 7), 1)));
+    const auto m = model(ms, planes);
+    touch.tick(ms, {0, 0, -0.01}, &m);
+    REQUIRE(touch.surfaces.list().size() <= kMaxHalfSpaces);
+    REQUIRE(touch.proxy.position().allFinite());
+  }
+}

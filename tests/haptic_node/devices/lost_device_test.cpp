@@ -1,0 +1,134 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "haptic_node/session.h"
+#include "tests/haptic_node/support/world.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+// Presses `depth` below z = 0 while it answers.
+struct Fickle : Device {
+  DeviceState read(sync::HostTime) override {
+    DeviceState s;
+    s.position = at;
+    s.lost = lost;
+    if (lost) s.velocity = Vector3d(9, 9, 9);  // nobody may believe it
+    return s;
+  }
+  using Device::write;
+  void write(const Wrench& wrench) override { force = wrench.force_N; }
+  Vector3d at = Vector3d(0, 0, 0.002);  // the tool has a radius of 5 mm: 3 mm deep
+  Vector3d force = Vector3d::Zero();
+  bool lost = false;
+};
+
+struct Rig {
+  Rig() : choice(choose(world, "", {})), safety(safety_limits(choice.settings)) {
+    auto made = std::make_unique<Fickle>();
+    device = made.get();
+    session.emplace(world, choice, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
+  }
+  // One tick of 1 ms with a new touch model of a floor.
+  tool_state_t& tick() {
+    touch_model_t m = model(ms, {plane(3, Vector3d::Zero(), Vector3d::UnitZ())});
+    m.header.publish_time_ns = m.clock.host_ns;
+    session->push(m, host_ms(ms));
+    return session->step(host_ms(ms++)).state;
+  }
+  double push() { return device->force.norm(); }
+
+  scene_t world = scene();
+  Choice choice;
+  Safety safety;
+  Fickle* device;
+  std::optional<Session> session;
+  int ms = 1;
+};
+
+}  // namespace
+
+TEST_CASE("A device that stops answering is pushed no more, within the fade, and is told so") {
+  Rig r;
+  for (int i = 0; i < 200; ++i) r.tick();
+  const double before = r.push();
+  REQUIRE(before > 0.5);
+  r.device->lost = true;
+  double last = before;
+  for (int i = 0; i < 20; ++i) {
+    const tool_state_t& s = r.tick();
+    CHECK(r.push() <= last + 1e-9);
+    CHECK(s.device_velocity_m_s.x == 0);
+    last = r.push();
+  }
+  for (int i = 0; i < 500; ++i) {
+    const tool_state_t& s = r.tick();
+    CHECK(r.push() == 0);
+    CHECK(s.fade == 0);
+    for (const tool_constraint_t& c : s.constraints) CHECK(c.force_N.z == 0);  // nor does the world feel it
+  }
+  CHECK(r.session->device_lost());
+  CHECK_FALSE(r.session->lost());  // touch itself is there
+}
+
+TEST_CASE("A device that answers again is felt again, as slowly, wherever it has come back") {
+  Rig r;
+  for (int i = 0; i < 200; ++i) r.tick();
+  const double before = r.push();
+  r.device->lost = true;
+  for (int i = 0; i < 100; ++i) r.tick();
+  r.device->lost = false;
+  SECTION("in the wall where it was") {
+    double last = 0;
+    for (int i = 0; i < 300; ++i) {
+      r.tick();
+      CHECK(std::abs(r.push() - last) <= 2.0 + 1e-9);  // the slew limit, and far below it in fact
+      CHECK(r.push() < 1.5 * before + 0.1);
+      last = r.push();
+    }
+    CHECK(r.session->device_lost() == false);
+    CHECK(r.push() == Approx(before).epsilon(0.05));
+  }
+  SECTION("elsewhere, in the air: without a blow") {
+    r.device->at = Vector3d(0.5, 0.2, 0.3);
+    for (int i = 0; i < 300; ++i) {
+      r.tick();
+      CHECK(r.push() < 1e-9);
+    }
+  }
+  SECTION("through the floor: it is where it is") {
+    r.device->at = Vector3d(0.5, 0.2, -0.3);
+    for (int i = 0; i < 300; ++i) {
+      r.tick();
+      CHECK(r.push() <= 8 + 1e-9);
+    }
+  }
+}
+
+TEST_CASE("A device that never answered is not pushed until it does") {
+  Rig r;
+  r.device->lost = true;
+  for (int i = 0; i < 200; ++i) {
+    r.tick();
+    CHECK(r.push() == 0);
+  }
+  r.device->lost = false;
+  for (int i = 0; i < 200; ++i) r.tick();
+  CHECK(r.push() > 0.5);
+}
+
+TEST_CASE("A device that comes and goes with every tick never gets a blow") {
+  Rig r;
+  for (int i = 0; i < 200; ++i) r.tick();
+  double last = r.push();
+  for (int i = 0; i < 1000; ++i) {
+    r.device->lost = i % 2 == 0;
+    r.tick();
+    CHECK(std::abs(r.push() - last) <= 2.0 + 1e-9);
+    last = r.push();
+  }
+}

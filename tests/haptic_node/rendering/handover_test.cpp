@@ -1,0 +1,97 @@
+#include "haptic_node/rendering/handover.h"
+
+#include <catch2/catch.hpp>
+
+#include "haptic_node/contact/proxy.h"
+#include "tests/haptic_node/support/world.h"
+
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+constexpr double kDt = 1e-3, kRecovery_s = 0.015, kAtOnce_N_s = 200;
+
+Surface bound(std::int64_t id, double depth_m = 0.001) {
+  Surface s;
+  s.contact_id = id;
+  s.depth_m = depth_m;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("The force of the surfaces goes over to that of others within the recovery time, in even steps") {
+  const double dt = GENERATE(1e-3, 0.5e-3, 0.25e-3);
+  Handover handover(kRecovery_s, kAtOnce_N_s);
+  const std::vector<Surface> before{bound(1), bound(2, 0)}, after{bound(1, 0), bound(2)};
+  const Vector3d old(0, 0, 3), next(2, 0, 3);
+  for (int i = 0; i < 5; ++i) CHECK(handover.step(before, old, dt) == old);
+  Vector3d last = old;
+  double t = 0;
+  for (; t < kRecovery_s - 1e-9; t += dt) {
+    const Vector3d force = handover.step(after, next, dt);
+    // Its share, and what is let through in the tick of the change.
+    CHECK((force - last).norm() <= std::max(kAtOnce_N_s * dt, 2 * dt / kRecovery_s) + 1e-12);
+    CHECK((force - old).norm() > (last - old).norm() - 1e-12);
+    last = force;
+  }
+  handover.step(after, next, dt);
+  CHECK((handover.step(after, next, dt) - next).norm() < 1e-12);
+}
+
+TEST_CASE("The first touch, the release and all that happens on the same surfaces pass as they are") {
+  Handover handover(kRecovery_s, kAtOnce_N_s);
+  const std::vector<Surface> free{bound(1, 0)}, one{bound(1)};
+  CHECK(handover.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(handover.step(one, {0, 0, 4}, kDt) == Vector3d(0, 0, 4));
+  CHECK(handover.step(one, {0, 3, 1}, kDt) == Vector3d(0, 3, 1));
+  CHECK(handover.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(handover.step(one, {5, 0, 0}, kDt) == Vector3d(5, 0, 0));
+}
+
+TEST_CASE("What is left of the old surfaces does not hold a hand that has left them all") {
+  Handover handover(kRecovery_s, kAtOnce_N_s);
+  handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
+  handover.step(std::vector{bound(2)}, {3, 0, 0}, kDt);
+  CHECK(handover.step(std::vector{bound(2, 0)}, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(handover.step(std::vector{bound(2)}, {1, 0, 0}, kDt) == Vector3d(1, 0, 0));
+}
+
+TEST_CASE("A small change of the surfaces passes at once") {
+  Handover handover(kRecovery_s, kAtOnce_N_s);
+  handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
+  CHECK(handover.step(std::vector{bound(1), bound(2)}, {0.1, 0, 3}, kDt) == Vector3d(0.1, 0, 3));
+}
+
+TEST_CASE("Sliding from one facet over a shallow groove onto the next, friction does not break off") {
+  // Facets that meet at 10 degrees in x = 0; the hand goes over them at 0.1 m/s, 3 mm deep.
+  const double lean = 5 * M_PI / 180, speed = 0.1;
+  std::vector<Surface> groove(2);
+  for (int i = 0; i < 2; ++i) {
+    Surface& s = groove[static_cast<std::size_t>(i)];
+    s.contact_id = i;
+    s.normal = Vector3d((i == 0 ? 1 : -1) * std::sin(lean), 0, std::cos(lean));
+    s.friction_static = s.friction_dynamic = 0.3;
+  }
+  Proxy proxy;
+  proxy.reset({-0.02, 0, 0.01});
+  Vector3d last = Vector3d::Zero();
+  bool both = false;
+  double largest_m = 0;
+  for (int ms = 0; ms < 400; ++ms) {
+    const double x = -0.02 + speed * ms * 1e-3;
+    const Vector3d device(x, 0, std::abs(x) * std::tan(lean) - 0.003);
+    proxy.step(groove, device, kDt);
+    const Vector3d stretch = proxy.position() - device;
+    both = both || (groove[0].depth_m > 0 && groove[1].depth_m > 0);
+    if (ms > 50) largest_m = std::max(largest_m, (stretch - last).norm());
+    last = stretch;
+    // Nothing but the dynamic cone of friction leans back, whichever facets bind.
+    if (ms > 50) CHECK(proxy.shift().x() < -0.2 * 0.003);
+  }
+  REQUIRE(both);
+  // No step is longer than the hand's own: what it moves in a tick and the turn of the normal spread over the
+  // groove.
+  CHECK(largest_m < 2 * speed * kDt);
+}

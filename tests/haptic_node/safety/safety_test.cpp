@@ -1,0 +1,122 @@
+#include "haptic_node/safety/safety.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+
+#include "tests/haptic_node/support/world.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+constexpr double kDt = 1e-3;
+}
+
+TEST_CASE("Whatever is wanted, the force keeps its size and its slew") {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, 1);
+  const SafetyLimits limits;
+  Safety safety(limits);
+  Vector3d last = Vector3d::Zero();
+  for (int k = 0; k < 20000; ++k) {
+    const double size = std::pow(10.0, 6 * normal(random));
+    Vector3d wanted = size * Vector3d(normal(random), normal(random), normal(random));
+    if (k % 50 == 0) wanted.x() = std::numeric_limits<double>::quiet_NaN();
+    if (k % 70 == 0) wanted.y() = std::numeric_limits<double>::infinity();
+    const Vector3d force = safety.limit(wanted, 1e-3 * Vector3d(normal(random), 0, 0), kDt);
+    REQUIRE(force.allFinite());
+    REQUIRE(force.norm() <= limits.force_N + 1e-9);
+    REQUIRE((force - last).norm() <= limits.slew_N_s * kDt + 1e-9);
+    last = force;
+  }
+}
+
+TEST_CASE("The slew of a late tick is not paid back by a jump") {
+  Safety safety(SafetyLimits{});
+  CHECK(safety.limit({100, 0, 0}, Vector3d::Zero(), 0.02).norm() == Approx(4));  // 2 N/ms for 2 ms
+}
+
+TEST_CASE("A force that follows the hand gives it no more than the allowance and the small power") {
+  const SafetyLimits limits;
+  Safety safety(limits);
+  Vector3d moved = Vector3d::Zero();
+  double given = 0;
+  Vector3d force = Vector3d::Zero();
+  for (int k = 1; k <= 10000; ++k) {
+    given += force.dot(moved);
+    force = safety.limit({8, 0, 0}, moved, kDt);
+    moved = {1e-3, 0, 0};  // the hand runs away at 1 m/s with the force
+    // Beyond: the force of the very tick that emptied the tank, 8 N times 1 mm.
+    REQUIRE(given <= limits.energy_J + limits.power_W * k * kDt + 0.008 + 1e-9);
+  }
+  CHECK(safety.energy_J() == Approx(given));
+  CHECK(force.norm() == Approx(limits.power_W / 1.0).epsilon(0.01));  // lastingly 1 W at 1 m/s: 1 N
+}
+
+TEST_CASE("A wall that only takes what it was given is not limited") {
+  Safety safety(SafetyLimits{});
+  double x = 0;
+  for (int k = 0; k < 20000; ++k) {
+    // Pressing 7 mm into 1 N/mm and out again, three times a second.
+    const double next = -0.007 * std::abs(std::sin(M_PI * 3 * k * kDt));
+    const double wanted = -1000 * next;
+    const Vector3d force = safety.limit({wanted, 0, 0}, {next - x, 0, 0}, kDt);
+    x = next;
+    REQUIRE(force.x() == Approx(wanted).margin(1e-9));
+  }
+}
+
+TEST_CASE("A device that jumps does no work") {
+  Safety safety(SafetyLimits{});
+  safety.limit({8, 0, 0}, Vector3d::Zero(), kDt);
+  safety.limit({8, 0, 0}, {1, 0, 0}, kDt);
+  CHECK(safety.energy_J() == 0);
+}
+
+TEST_CASE("Limits that are exchanged again and again give the hand no more than the wider ones do") {
+  const SafetyLimits wide, narrow{3, 500, 0.05, 0.1};
+  Safety safety(wide);
+  Vector3d moved = Vector3d::Zero(), force = Vector3d::Zero();
+  double given = 0;
+  for (int k = 1; k <= 10000; ++k) {
+    if (k % 20 == 0) safety.set_limits(k % 40 == 0 ? wide : narrow);
+    given += force.dot(moved);
+    const Vector3d next = safety.limit({8, 0, 0}, moved, kDt);
+    REQUIRE((next - force).norm() <= wide.slew_N_s * kDt + 1e-9);
+    force = next;
+    moved = {1e-3, 0, 0};
+    REQUIRE(given <= wide.energy_J + wide.power_W * k * kDt + 0.008 + 1e-9);
+  }
+}
+
+TEST_CASE("After the watchdog of the device has let go the force begins at none") {
+  Safety safety(SafetyLimits{});
+  const auto press = [&](double ms) {
+    safety.begin_tick(host_ms(ms));
+    return safety.limit({8, 0, 0}, Vector3d::Zero(), kDt).x();
+  };
+  CHECK(press(0) == Approx(2));
+  CHECK(press(1) == Approx(4));
+  CHECK(press(21) == Approx(6));
+  CHECK(press(42) == Approx(2));
+}
+
+TEST_CASE("The force of a lost touch model fades from 50 to 70 ms after the last one, and comes back in 20 ms") {
+  Fade fade(0.05, 0.02);
+  CHECK(fade.step(host_ms(0), std::nullopt, kDt) == 0);
+  CHECK(fade.lost());
+  for (int ms = 1; ms <= 20; ++ms) CHECK(fade.step(host_ms(ms), host_ms(ms), kDt) == Approx(ms / 20.0));
+  // The last one arrives at 20 ms.
+  for (int ms = 21; ms <= 70; ++ms) {
+    CHECK(fade.step(host_ms(ms), host_ms(20), kDt) == 1);
+    CHECK_FALSE(fade.lost());
+  }
+  for (int ms = 71; ms <= 90; ++ms) {
+    CHECK(fade.step(host_ms(ms), host_ms(20), kDt) == Approx(1 - (ms - 70) / 20.0).margin(1e-12));
+    CHECK(fade.lost());
+  }
+  CHECK(fade.step(host_ms(500), host_ms(20), kDt) == 0);
+  for (int ms = 501; ms <= 520; ++ms) CHECK(fade.step(host_ms(ms), host_ms(ms), kDt) == Approx((ms - 500) / 20.0));
+}

@@ -1,0 +1,152 @@
+#include "haptic_node/safety/unseen_work.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <deque>
+#include <functional>
+
+using namespace tactus::haptic;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kDt = 1e-3, kMost_N = 8;
+
+// A body that a hand pushes down and others hold with a force of their own, and the estimate of what it was given,
+// from what is told of it some milliseconds late until nothing is told any more.
+struct Pushed {
+  double mass_kg;
+  std::function<double(double t_s, double down_m_s)> others_N;  // upwards
+  std::size_t late_ms = 0;
+  int told_until_ms = 1'000'000;
+  double down_m_s = 0;
+
+  double work_J = 0, impulse_N_s = 0;
+  int ms = 0, age_ms = 0;
+  UnseenWork unseen{};
+  struct News {
+    UnseenWork::Told told;
+    double work_J;
+  };
+  std::deque<News> on_the_way{};
+  double told_J = 0;
+
+  // What was estimated over what it really was given since it was told, J.
+  double step(double push_N) {
+    const double before = down_m_s;
+    double next = before + (push_N - others_N(kDt * ms, before)) / mass_kg * kDt;
+    if (before >= 0 && next < 0 && stops) next = 0;
+    down_m_s = next;
+    work_J += push_N * 0.5 * (before + next) * kDt;
+    impulse_N_s += push_N * kDt;
+    unseen.give({0, 0, -push_N}, kDt);
+    ++ms;
+    on_the_way.push_back(
+        {{ms * 1'000'000, mass_kg, Vector3d::UnitZ(), {0, 0, -down_m_s}, {0, 0, -impulse_N_s}}, work_J});
+    ++age_ms;
+    if (on_the_way.size() > late_ms) {
+      if (ms <= told_until_ms) {
+        unseen.tell(on_the_way.front().told, kMost_N);
+        told_J = on_the_way.front().work_J;
+        age_ms = static_cast<int>(late_ms);
+      }
+      on_the_way.pop_front();
+    }
+    return unseen.energy_J(1e-3 * age_ms, kMost_N) - (work_J - told_J);
+  }
+  bool stops = false;  // as friction does
+};
+
+double nothing(double, double) { return 0; }
+
+}  // namespace
+
+TEST_CASE("Of a free body the estimate is exact, however late it is told of and however the push goes") {
+  const std::size_t late_ms = GENERATE(1, 5, 25, 38);
+  const double first_m_s = GENERATE(0.0, 0.2, -0.2);
+  Pushed body{0.2, nothing, late_ms};
+  body.down_m_s = first_m_s;
+  CAPTURE(late_ms, first_m_s);
+  for (int ms = 0; ms < 400; ++ms) {
+    const double off_J = body.step(1 + std::sin(0.05 * ms));
+    if (ms > static_cast<int>(late_ms)) CHECK(std::abs(off_J) < 1e-6);
+  }
+}
+
+TEST_CASE("What holds a body is learnt, and counts for a while after it was told of last") {
+  // A slider that rubs with 0.5 N is pushed along with 0.6 N.
+  Pushed body{0.05, [](double, double) { return 0.5; }, 2, 300};
+  body.stops = true;
+  double off_J = 0;
+  for (int ms = 0; ms < 340; ++ms) {
+    off_J = body.step(0.6);
+    if (ms > 100) CHECK(std::abs(off_J) < 0.05 * 0.6 * body.down_m_s * 0.04);
+  }
+  SECTION("then it counts as free: too much is taken for given, never too little") {
+    for (int ms = 0; ms < 60; ++ms) {
+      const double next_J = body.step(0.6);
+      CHECK(next_J >= off_J - 1e-9);
+      off_J = next_J;
+    }
+    CHECK(off_J > 1e-3);
+  }
+}
+
+TEST_CASE("A push that fades finds the body as fast as the pushes before have made it") {
+  // Half of its impulse is over when what holds the body has done a quarter of its own: halves of both would say
+  // that it was given less.
+  for (const double held_N : {0.5, 1.0, 2.0}) {
+    Pushed body{1, [&](double, double) { return held_N; }, 2, 200};
+    body.stops = true;
+    for (int ms = 0; ms < 200; ++ms) body.step(held_N);
+    for (int ms = 0; ms < 60; ++ms) {
+      const double off_J = body.step(4 * std::max(0.0, 1 - ms / 40.0));
+      CHECK(off_J >= -1e-6);
+      if (ms < 38) CHECK(off_J < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("Who is drawn away from the hand while it pushes is given more than a free body") {
+  // A swing on its way back: 2 N draw it down.
+  Pushed body{1, [](double, double) { return -2.0; }, 2, 200};
+  for (int ms = 0; ms < 200; ++ms) body.step(0.5);
+  for (int ms = 0; ms < 38; ++ms) CHECK(std::abs(body.step(2)) < 2e-5);
+  // Also when nothing has been told of it for long.
+  for (int ms = 38; ms < 70; ++ms) CHECK(body.step(2) > -2e-5);
+}
+
+TEST_CASE("A body that comes gives no more than its motion") {
+  // A spring drives it on towards the hand: that is not known to go on.
+  Pushed body{0.5, [](double, double) { return 3.0; }, 2, 200};
+  body.down_m_s = 0;
+  for (int ms = 0; ms < 200; ++ms) body.step(2);
+  REQUIRE(body.down_m_s < -0.1);
+  const double motion_J = 0.5 * 0.5 * body.down_m_s * body.down_m_s;
+  for (int ms = 0; ms < 100; ++ms) {
+    const double off_J = body.step(2);
+    CHECK(off_J >= 0);
+    CHECK(body.unseen.energy_J(1e-3 * body.age_ms, kMost_N) >= -motion_J);
+  }
+}
+
+TEST_CASE("One that came may swing, and counts as on its way back when nothing was told of it for a while") {
+  Pushed body{0.2, nothing, 1, 3};
+  body.down_m_s = -0.2;
+  double off_J = 0;
+  for (int ms = 0; ms < 65; ++ms) {
+    off_J = body.step(0.5);
+    if (ms > 1 && ms < 35) CHECK(std::abs(off_J) < 1e-6);
+  }
+  // 0.5 N on a body that is 0.4 m/s faster, for the last 20 ms at least.
+  CHECK(off_J > 0.004);
+}
+
+TEST_CASE("A push that was never applied does not stay unseen for ever") {
+  Pushed body{0.2, nothing, 2};
+  for (int ms = 0; ms < 100; ++ms) body.step(1);
+  body.impulse_N_s -= 0.5;  // from now on the simulation tells of less
+  for (int ms = 0; ms < 100; ++ms) body.step(0);
+  CHECK(body.unseen.energy_J(0.002, kMost_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
+}

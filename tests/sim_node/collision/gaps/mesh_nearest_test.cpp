@@ -1,0 +1,149 @@
+// Two meshes, nearest first: held against all their contacts, of which a tool keeps the nearest of each place and
+// direction.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "sim_node/collision/detector.h"
+#include "sim_node/collision/nearest_first.h"
+#include "sim_node/scene/meshes/mesh_file.h"
+#include "tests/sim_node/support/meshes.h"
+
+using namespace tactus::sim;
+using namespace tactus::sim::test;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// As a tool does.
+struct Kept : NearestFirst {
+  bool known(const PointPair& p) const override {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& q) {
+      return q.normal.dot(p.normal) > std::cos(0.1745) && (q.on_a_m - p.on_a_m).norm() < 0.002;
+    });
+  }
+  bool take(const PointPair& p) override {
+    pairs.push_back(p);
+    return pairs.size() < most;
+  }
+  std::vector<PointPair> pairs;
+  std::size_t most = 10'000;
+};
+
+struct Scene {
+  std::string name;
+  Soup a, b;
+  double away_m;  // poses of a are so far from b at most
+  bool straight;  // and parallel to it, or turned by a right angle
+  double reach_m = 0.003;
+};
+
+Soup soup_of(const std::string& file) {
+  const TriangleMesh m = read_mesh(TACTUS_SOURCE_DIR "/sim_node/scenes/" + file, "", false, {1, 1, 1});
+  return {m.vertices, m.indices};
+}
+
+std::vector<Scene> scenes() {
+  Soup table = box({0.1, 0.1, 0.02});
+  table.add(plate(0.1, 0.1, 9, 7), Isometry3d(Eigen::Translation3d(0, 0, 0.02)));
+  return {
+      {"lumpy spheres", lumpy_sphere(2, 0.015, 1), lumpy_sphere(3, 0.05, 2), 0.07, false, 0.009},
+      {"lumpy spheres, fine and near", lumpy_sphere(3, 0.012, 3), lumpy_sphere(4, 0.05, 4), 0.065, false},
+      {"peg and hole", soup_of("peg.obj"), soup_of("hole_plate.obj"), 0.03, false},
+      {"peg and hole, upright", soup_of("peg.obj"), soup_of("hole_plate.obj"), 0.001, true, 0.006},
+      {"peg and bowl", soup_of("peg.obj"), soup_of("bowl.obj"), 0.08, false, 0.006},
+      {"combs", comb(4, 0.06), comb(5, 0.06), 0.04, false, 0.006},
+      {"combs, straight", comb(4, 0.06), comb(3, 0.06), 0.04, true, 0.006},
+      {"comb on a table", comb(3, 0.05), table, 0.05, true, 0.006},
+      {"a box of four on a table", box({0.03, 0.03, 0.03}), table, 0.04, true, 0.009},
+      {"doubled and reversed", doubled_and_reversed(lumpy_sphere(1, 0.03, 5)), doubled_and_reversed(comb(2, 0.1)),
+       0.07, false, 0.006},
+      {"degenerate", with_degenerate(lumpy_sphere(1, 0.03, 6)), with_degenerate(comb(2, 0.1)), 0.07, false, 0.006},
+      {"slivers", slivers(30, 0.05, 3), slivers(40, 0.05, 4), 0.05, false, 0.004}};
+}
+
+Isometry3d pose(const Scene& s, Random& random) {
+  Isometry3d p = random_pose(random, 0.1);
+  if (s.straight) {
+    p.linear() = Eigen::AngleAxisd(M_PI / 2 * static_cast<double>(random() % 4),
+                                   Vector3d::Unit(static_cast<int>(random() % 3)))
+                     .toRotationMatrix();
+    // On a grid of half a millimetre, so that edges lie over edges and corners over corners.
+    for (int k = 0; k < 3; ++k)
+      p.translation()[k] = 5e-4 * std::round(uniform(random, -s.away_m, s.away_m) / 5e-4);
+  } else {
+    p.translation() = uniform(random, 0.2, 1) * s.away_m * direction(random);
+  }
+  return p;
+}
+
+// How many of x have none of the same place, direction and gap in y.
+int missing(const Kept& x, const Kept& y) {
+  int count = 0;
+  for (const PointPair& p : x.pairs)
+    count += std::none_of(y.pairs.begin(), y.pairs.end(), [&](const PointPair& q) {
+      return (p.on_a_m - q.on_a_m).norm() < 1e-6 && (p.on_b_m - q.on_b_m).norm() < 1e-6 &&
+             (p.normal - q.normal).norm() < 1e-4 && std::abs(p.gap_m - q.gap_m) < 1e-8;
+    });
+  return count;
+}
+
+ShapeDef mesh_shape(int mesh) {
+  ShapeDef s;
+  s.kind = ShapeKind::kMesh;
+  s.mesh = mesh;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("Two meshes nearest first are the contacts that a tool would keep of all, to within rounding") {
+  for (const Scene& s : scenes()) {
+    WorldDef world;
+    world.meshes = {{s.a.vertices, {}, s.a.indices}, {s.b.vertices, {}, s.b.indices}};
+    const auto detector = make_gaps_detector({});
+    const int a = detector->add(mesh_shape(0), world), b = detector->add(mesh_shape(1), world);
+    prepare_nearest_first(*detector, a, b);
+    Random random(17);
+    std::vector<PointPair> room;
+    int touching = 0;
+    for (int i = 0; i < 60; ++i) {
+      const Isometry3d at_a = pose(s, random), at_b = Isometry3d::Identity();
+      Kept all, nearest;
+      nearest_first_of_all(*detector, a, at_a, b, at_b, s.reach_m, all, room);
+      nearest_first(*detector, a, at_a, b, at_b, s.reach_m, nearest, room);
+      INFO(s.name << ", pose " << i);
+      CHECK(nearest.pairs.size() == all.pairs.size());
+      CHECK(missing(all, nearest) == 0);
+      CHECK(missing(nearest, all) == 0);
+      touching += !all.pairs.empty();
+    }
+    INFO(s.name);
+    CHECK(touching > 10);
+  }
+}
+
+TEST_CASE("Two meshes nearest first come in order, the same ones for any limit, and the same to the bit again") {
+  const Soup x = lumpy_sphere(3, 0.012, 1), y = lumpy_sphere(4, 0.05, 2);
+  WorldDef world;
+  world.meshes = {{x.vertices, {}, x.indices}, {y.vertices, {}, y.indices}};
+  const auto detector = make_gaps_detector({});
+  const int a = detector->add(mesh_shape(0), world), b = detector->add(mesh_shape(1), world);
+  prepare_nearest_first(*detector, a, b);
+  const Isometry3d at_a(Eigen::Translation3d(0.055, 0.02, 0.01));
+  std::vector<PointPair> room;
+  Kept all, again, few;
+  few.most = 3;
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, all, room);
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, few, room);
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, again, room);
+  REQUIRE(all.pairs.size() > 3);
+  REQUIRE(few.pairs.size() == 3);
+  REQUIRE(again.pairs.size() == all.pairs.size());
+  for (std::size_t i = 0; i < all.pairs.size(); ++i) {
+    if (i > 0) CHECK(all.pairs[i].gap_m >= all.pairs[i - 1].gap_m);
+    CHECK(again.pairs[i].on_a_m == all.pairs[i].on_a_m);
+    CHECK(again.pairs[i].gap_m == all.pairs[i].gap_m);
+    if (i < 3) CHECK(few.pairs[i].on_b_m == all.pairs[i].on_b_m);
+  }
+}

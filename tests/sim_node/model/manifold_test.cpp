@@ -1,0 +1,69 @@
+#include "sim_node/model/manifold.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "sim_node/collision/gaps/choose.h"
+#include <random>
+#include <vector>
+
+using namespace tactus::sim;
+
+TEST_CASE("The points that are kept span the patch: the deepest and its corners") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (int round = 0; round < 50; ++round) {
+    std::vector<ManifoldPoint> found;
+    for (const double x : {0.0, 1.0})
+      for (const double y : {0.0, 1.0}) found.push_back({{x, y, 0}, {0, 0, 1}, 1e-4 * u(random)});
+    for (int i = 0; i < 30; ++i) found.push_back({{0.2 + 0.6 * u(random), 0.2 + 0.6 * u(random), 0}, {0, 0, 1}, 1e-4 * u(random)});
+    std::shuffle(found.begin(), found.end(), random);
+    Manifold m;
+    reduce_points(found, m);
+    REQUIRE(m.count == 4);
+    double deepest = 0;
+    for (const ManifoldPoint& p : found) deepest = std::max(deepest, p.depth_m);
+    CHECK(m.points[0].depth_m == deepest);
+    // At least three of the four are corners; the fourth is the deepest.
+    int corners = 0;
+    for (const ManifoldPoint& p : m.used()) corners += (p.point_m.x() == 0 || p.point_m.x() == 1);
+    CHECK(corners >= 3);
+  }
+}
+
+TEST_CASE("Duplicates count once, but two normals at one place are a corner") {
+  Manifold m;
+  reduce_points(std::vector<ManifoldPoint>(20, ManifoldPoint{{1, 2, 3}, {0, 0, 1}, 1e-3}), m);
+  CHECK(m.count == 1);
+  reduce_points(std::vector<ManifoldPoint>{{{1, 2, 3}, {0, 0, 1}, 1e-3}, {{1, 2, 3}, {0, 1, 0}, 1e-3}}, m);
+  CHECK(m.count == 2);
+  reduce_points({}, m);
+  CHECK(m.count == 0);
+}
+
+TEST_CASE("Of points that are still apart a step needs the near ones, and one of every wall") {
+  const auto point = [](double x, double y, double gap, const Eigen::Vector3d& n) {
+    ManifoldPoint p;
+    p.point_m = {x, y, 0};
+    p.depth_m = -gap;
+    p.normal = n;
+    return p;
+  };
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), aside = Eigen::Vector3d::UnitX();
+  Manifold m;
+  // The four lower corners of a tilted box, and far ones high above.
+  std::vector<ManifoldPoint> found{point(0, 0, 0, up),        point(0.1, 0, 1e-3, up),   point(0, 0.1, 1e-3, up),
+                                   point(0.1, 0.1, 2e-3, up), point(0.2, 0, 0.08, up),   point(0.2, 0.2, 0.09, up),
+                                   point(0, 0.2, 0.1, up),    point(-0.2, -0.2, 0.2, up)};
+  gaps::choose_points(found, m);
+  REQUIRE(m.count == 4);
+  for (const ManifoldPoint& p : m.used()) CHECK(-p.depth_m < 0.01);
+  // Its corners on a floor, two of them at a wall too.
+  found = {point(0, 0, 0, up),   point(0.1, 0, 0, up),       point(0, 0.1, 0, up),
+           point(0.1, 0.1, 0, up), point(0.1, 0, 1e-5, aside), point(0.1, 0.1, 1e-5, aside)};
+  gaps::choose_points(found, m);
+  REQUIRE(m.count == 4);
+  CHECK(std::count_if(m.used().begin(), m.used().end(), [&](const ManifoldPoint& p) { return p.normal == up; }) == 3);
+  gaps::choose_points({}, m);
+  CHECK(m.count == 0);
+}

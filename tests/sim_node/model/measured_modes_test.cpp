@@ -1,0 +1,68 @@
+// Measured modes: the attribute of <tactus:material> that names them, and their way into the scene.
+#include "sim_node/model/measured_modes.h"
+
+#include "tests/sim_node/support/scene_file.h"
+
+using namespace tactus;
+using namespace tactus::sim;
+
+namespace {
+
+// As scripts/analyse_modes writes it; an empty cell where one of its two ways found nothing.
+const std::string kTable =
+    "frequency_Hz,damping_1_s,amplitude,decay_frequency_Hz,decay_damping_1_s,agrees\n"
+    "900.25,5,0.4,,,0\r\n440.5,3.5,0.2,440.4,3.4,1\n";
+
+SceneFile scene(const std::string& table, const std::string& materials =
+                                              "<tactus:material name='bell' base='copper' modes='bell.csv'/>"
+                                              "<tactus:material name='dark' base='bell' density='900'/>") {
+  return SceneFile(world(materials), {{"bell.csv", {table.begin(), table.end()}}});
+}
+
+const material_def_t& material(const WorldDef& w, const std::string& name) {
+  for (const auto& m : w.materials)
+    if (m.name == name) return m;
+  FAIL("no material " + name);
+  return w.materials.front();
+}
+
+}  // namespace
+
+TEST_CASE("A material with measured modes has those of the table, ascending, and hands them on") {
+  SceneFile file = scene(kTable);
+  const WorldDef w = file.load();
+  for (const char* name : {"bell", "dark"}) {
+    const material_def_t& m = material(w, name);
+    REQUIRE(m.mode_count == 2);
+    REQUIRE(m.modes.size() == 2);
+    CHECK(m.modes[0].frequency_Hz == 440.5);
+    CHECK(m.modes[0].damping_1_s == 3.5);
+    CHECK(m.modes[0].amplitude == 0.2);
+    CHECK(m.modes[1].frequency_Hz == 900.25);
+  }
+  CHECK(material(w, "copper").mode_count == 0);
+}
+
+TEST_CASE("A table of modes that cannot be is refused with the line of the scene and the row") {
+  const auto refused = [](const std::string& table, const std::string& because) {
+    SceneFile file = scene(table);
+    CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") &&
+                                   Catch::Contains("modes \"bell.csv\", which cannot be read: " + because));
+  };
+  const std::string header = "frequency_Hz,damping_1_s,amplitude\n";
+  refused("", "it has no modes");
+  refused(header, "it has no modes");
+  refused("frequency_Hz,amplitude\n440,1\n", "row 1: column damping_1_s is missing");
+  refused(header + "440,3,1\n440,3\n", "row 3: amplitude is missing");
+  refused(header + "440,3,loud\n", "row 2: amplitude: ");
+  refused(header + "10,3,1\n", "row 2: frequency_Hz is not between 20 and 20000");
+  refused(header + "440,-3,1\n", "row 2: damping_1_s is not above 0");
+  refused(header + "440,3000,1\n", "row 2: damping_1_s is not above 0 and below critical damping");
+  refused(header + "440,3,0\n", "row 2: amplitude is not above 0");
+  refused(header + "nan,3,1\n", "row 2: frequency_Hz");
+  std::string many = header;
+  for (int i = 0; i < 129; ++i) many += "440,3,1\n";
+  refused(many, "it has more than 128 modes");
+  SceneFile absent(world("<tactus:material name='bell' base='copper' modes='nowhere.csv'/>"));
+  CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("not found"));
+}

@@ -1,0 +1,140 @@
+// Includes, and files that are no scenes.
+#include <sstream>
+
+#include <iostream>
+
+#include "tests/sim_node/support/scene_file.h"
+#include "sim_node/scene/sdf/sdf_files.h"
+
+using namespace tactus::sim;
+
+namespace {
+std::string ball(const std::string& name, const std::string& more = "") {
+  return "<sdf version=\"1.6\">\n<model name=\"" + name + "\"><link name=\"l\">" +
+         collision("<sphere><radius>0.1</radius></sphere>") + "</link>\n" + more + "</model>\n</sdf>\n";
+}
+}  // namespace
+
+TEST_CASE("Includes are found beside the file, in its models folder, by name and by model.config") {
+  SceneFile file(world("<include><uri>ball.sdf</uri><name>a</name><pose>0 0 1 0 0 0</pose></include>"
+                       "<include><uri>model://deep</uri><pose>0 0 2 0 0 0</pose></include>"
+                       "<include><uri>model://deep</uri><name>again</name></include>"));
+  file.write("ball.sdf", ball("ball"));
+  file.write("models/deep/model.config", "<model><sdf version='1.5'>old.sdf</sdf><sdf version='1.6'>new.sdf</sdf></model>");
+  file.write("models/deep/new.sdf", ball("deep_ball"));
+  const WorldDef w = file.load();
+  REQUIRE(w.bodies.size() == 3);
+  CHECK(w.bodies[0].name == "a::l");
+  CHECK(w.bodies[0].pose.translation().z() == 1);
+  CHECK(w.bodies[1].name == "deep_ball::l");
+  CHECK(w.bodies[1].pose.translation().z() == 2);
+  CHECK(w.bodies[2].name == "again::l");
+  CHECK(file.warnings.empty());
+}
+
+TEST_CASE("An include inside an included model, and its mesh, are looked for beside that model") {
+  SceneFile file(world("<include><uri>models/outer/model.sdf</uri></include>"));
+  file.write("models/outer/model.sdf",
+             "<sdf version='1.9'><model name='outer'><link name='l'><visual name='v'><geometry><mesh><uri>tri.obj</uri></mesh>"
+             "</geometry></visual></link><include><uri>part.sdf</uri></include></model></sdf>");
+  file.write("models/outer/part.sdf", ball("part"));
+  file.write("models/outer/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const WorldDef w = file.load();
+  REQUIRE(w.bodies.size() == 2);
+  CHECK(w.bodies[1].name == "outer::part::l");
+  CHECK(w.meshes.size() == 1);
+}
+
+TEST_CASE("A warning inside an included file names that file and its line") {
+  SceneFile file(world("<include><uri>ball.sdf</uri></include>"));
+  file.write("ball.sdf", ball("ball", "<plugin name='p' filename='p.so'/>\n<tactus:bogus/>"));
+  file.load();
+  REQUIRE(file.warnings.size() == 2);
+  CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("ball.sdf:3: "));
+  CHECK_THAT(file.short_warnings()[1], Catch::StartsWith("ball.sdf:4: "));
+}
+
+TEST_CASE("An include that is missing, empty, circular or wrong inside is refused with its line") {
+  SceneFile file(world("\n<include><uri>ball.sdf</uri></include>"));
+  CHECK(file.refusal() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
+  file.write("ball.sdf", ball("ball", "<include><uri>ball.sdf</uri></include>"));
+  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  file.write("ball.sdf", ball("ball", "<include><uri>scene.sdf</uri></include>"));
+  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  file.write("ball.sdf", "<sdf version='1.6'><model name='m'><link name='l'></model></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:1: ") && Catch::Contains("XML"));
+  file.write("ball.sdf", "<sdf version='1.6'>\n<model name='m'><link name='l'/><joint name='j'\n type='revolute'/></model></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:"));
+  file.write("scene.sdf", world("<include><uri/></include>"));
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its <uri>"));
+  file.write("scene.sdf", world("<include/>"));
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: "));
+}
+
+TEST_CASE("Two files of one name in two folders are refused instead of mixed up") {
+  SceneFile file(world("<include><uri>sub/outer.sdf</uri></include><include><uri>ball.sdf</uri></include>"));
+  file.write("ball.sdf", ball("ball"));
+  file.write("sub/ball.sdf", ball("other_ball"));
+  file.write("sub/outer.sdf", "<sdf version='1.9'><model name='outer'><link name='l'/><include><uri>ball.sdf</uri></include></model></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("sub/outer.sdf:1: ") && Catch::Contains("exists twice"));
+}
+
+TEST_CASE("What every Gazebo brings is stood in for, and nothing is downloaded") {
+  SceneFile file(world("<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>\n"
+                       "<include><uri>https://fuel.example/box</uri></include>"));
+  const WorldDef w = file.load();
+  CHECK(w.lights.size() == 1);
+  REQUIRE(w.bodies.size() == 1);
+  CHECK(w.bodies[0].is_static);
+  CHECK(w.shapes[0].kind == ShapeKind::kPlane);
+  REQUIRE(file.warnings.size() == 3);
+  CHECK_THAT(file.short_warnings()[2], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("nothing is downloaded"));
+}
+
+TEST_CASE("A file that is no scene is refused in one sentence") {
+  SceneFile file;
+  CHECK_THAT(file.refusal(), Catch::Contains("cannot be read"));
+  file.write("scene.sdf", "");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+  file.write("scene.sdf", "<sdf version='1.9'>\n<world name='w'>\n</sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:2: ") || Catch::StartsWith("scene.sdf:3: "));
+  file.write("scene.sdf", "<robot name='r'/>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("<sdf version"));
+  file.write("scene.sdf", "<sdf><world name='w'/></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("version"));
+  file.write("scene.sdf", "<sdf version='99'><world name='w'/></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+  file.write("scene.sdf", "<sdf version='1.11'><world name='w'/></sdf>");
+  CHECK(file.refusal() == "");
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.warnings[0], Catch::Contains("newer than 1.9"));
+  file.write("scene.sdf", "<sdf version='1.9'></sdf>");
+  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+}
+
+TEST_CASE("libsdformat's own message comes with the line, and nothing is printed") {
+  std::ostringstream heard;
+  std::streambuf* before = std::cerr.rdbuf(heard.rdbuf());
+  SceneFile file(world("<model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>"
+                       "<child>nobody</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
+  const std::string joint = file.refusal();
+  file.write("scene.sdf", link("<inertial><mass>heavy</mass></inertial>"));
+  const std::string mass = file.refusal();
+  file.write("scene.sdf", model("<link name='a'/>\n<link name='a'/>"));
+  const std::string twice = file.refusal();
+  file.write("scene.sdf", world("<model>\n</model>"));
+  const std::string nameless = file.refusal();
+  std::cerr.rdbuf(before);
+  CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("nobody"));
+  CHECK_THAT(mass, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("heavy"));
+  CHECK_THAT(twice, Catch::StartsWith("scene.sdf:") && Catch::Contains("a"));
+  CHECK_THAT(nameless, Catch::StartsWith("scene.sdf:3: "));
+  CHECK(heard.str() == "");
+}
+
+TEST_CASE("A file that holds a model alone is a world of one model") {
+  SceneFile file(ball("ball"));
+  const WorldDef w = file.load();
+  CHECK(w.name == "ball");
+  CHECK(w.bodies.size() == 1);
+}

@@ -1,0 +1,31 @@
+#include "sync/bus/message_batch.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus::sync;
+
+TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") {
+  constexpr HostTime kStart{};
+  const auto bytes = [](std::size_t n) { return std::vector<std::uint8_t>(n, 7); };
+  // What each takes beside its bytes.
+  MessageBatch one;
+  REQUIRE(one.add(kStart, {"A", bytes(50)}, 1000));
+  const std::size_t beside = one.bytes() - 51, kMost = 100 + 2 * beside;
+  CHECK(beside > 0);
+  MessageBatch batch;
+  CHECK(batch.add(kStart, {"A", bytes(50)}, kMost));
+  CHECK_FALSE(batch.add(kStart, {"A", bytes(60)}, kMost));
+  CHECK(batch.add(kStart + Nanoseconds(1), {"BB", bytes(47), false}, kMost));
+  REQUIRE(batch.size() == 2);
+  CHECK(batch.bytes() == kMost);
+  CHECK(batch[0].channel == "A");
+  CHECK(batch[0].data.size() == 50);
+  CHECK(batch[0].whole);
+  CHECK(batch[1].channel == "BB");
+  CHECK(batch[1].data.size() == 47);
+  CHECK_FALSE(batch[1].whole);
+  CHECK(batch[1].arrival == kStart + Nanoseconds(1));
+  batch.clear();
+  CHECK(batch.size() == 0);
+  CHECK(batch.bytes() == 0);
+}

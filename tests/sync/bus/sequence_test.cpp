@@ -1,0 +1,138 @@
+#include "sync/bus/sequence.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+#include <set>
+#include <vector>
+
+using namespace tactus;
+using sync::Arrival;
+using sync::SequenceTracker;
+
+namespace {
+header_t message(std::int64_t seq, std::int64_t publish_ms, std::int64_t incarnation = 7,
+                 std::int32_t source = 1) {
+  header_t h{};
+  h.seq = seq;
+  h.publish_time_ns = publish_ms * 1'000'000;
+  h.incarnation = incarnation;
+  h.source = source;
+  return h;
+}
+}  // namespace
+
+TEST_CASE("What is missing in the numbering is counted") {
+  SequenceTracker t;
+  CHECK(t.observe(message(10, 0)) == Arrival::kNewIncarnation);  // joined late: no gap
+  CHECK(t.observe(message(11, 1)) == Arrival::kNew);
+  CHECK(t.observe(message(15, 5)) == Arrival::kNew);
+  CHECK(t.gaps() == 3);
+  CHECK(t.messages() == 3);
+}
+
+TEST_CASE("A late message closes the gap that it left, a repeated one does not") {
+  SequenceTracker t;
+  t.observe(message(0, 0));
+  t.observe(message(3, 3));
+  REQUIRE(t.gaps() == 2);
+  CHECK(t.observe(message(1, 1)) == Arrival::kOld);
+  CHECK(t.gaps() == 1);
+  SECTION("repeated") {
+    CHECK(t.observe(message(1, 1)) == Arrival::kOld);
+    CHECK(t.observe(message(0, 0)) == Arrival::kOld);
+    CHECK(t.observe(message(3, 3)) == Arrival::kOld);
+    CHECK(t.gaps() == 1);
+  }
+}
+
+TEST_CASE("A restart is no gap") {
+  SequenceTracker t;
+  t.observe(message(1000, 0, 7));
+  CHECK(t.observe(message(0, 1, 8)) == Arrival::kNewIncarnation);
+  CHECK(t.observe(message(1, 2, 8)) == Arrival::kNew);
+  CHECK(t.gaps() == 0);
+}
+
+TEST_CASE("A clock that falls back by more than a second within an incarnation is a new epoch") {
+  SequenceTracker t;
+  t.observe(message(500, 60'000));
+  CHECK(t.observe(message(499, 59'500)) == Arrival::kOld);
+  CHECK(t.observe(message(3, 100)) == Arrival::kNewEpoch);
+  CHECK(t.observe(message(4, 101)) == Arrival::kNew);
+  CHECK(t.gaps() == 0);
+}
+
+TEST_CASE("One message with a number far ahead silences nobody") {
+  SequenceTracker t;
+  t.observe(message(10, 10));
+  SECTION("beyond the longest loss its followers are heard at once") {
+    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(11, 11)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(12, 12)) == Arrival::kNew);
+    CHECK(t.gaps() == 0);
+  }
+  SECTION("nearer they are heard when three of them contradict it") {
+    CHECK(t.observe(message(1'000'000, 11)) == Arrival::kNew);
+    CHECK(t.observe(message(11, 12)) == Arrival::kOld);
+    CHECK(t.observe(message(12, 13)) == Arrival::kOld);
+    CHECK(t.observe(message(13, 14)) == Arrival::kNewEpoch);
+    CHECK(t.observe(message(14, 15)) == Arrival::kNew);
+  }
+  SECTION("stamped ahead as well, within a second") {
+    CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
+    int old = 0;
+    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == Arrival::kOld;
+    CHECK(old <= 903);
+  }
+}
+
+TEST_CASE("A burst that the network repeats is old, however long it is") {
+  SequenceTracker t;
+  for (int i = 0; i < 500; ++i) t.observe(message(i, i));
+  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == Arrival::kOld);
+  CHECK(t.observe(message(500, 500)) == Arrival::kNew);
+}
+
+TEST_CASE("Of too many senders the one not heard for longest is forgotten, and counted") {
+  SequenceTracker t;
+  t.observe(message(1, 1, 7, -1));
+  for (std::int32_t source = 0; source < 300; ++source) {
+    t.observe(message(1, 1, 7, source));
+    if (source == 200) t.observe(message(2, 2, 7, -1));
+  }
+  CHECK(t.forgotten() == 45);
+  CHECK(t.observe(message(3, 3, 7, -1)) == Arrival::kNew);
+  CHECK(t.observe(message(2, 2, 7, 0)) == Arrival::kNewIncarnation);
+}
+
+TEST_CASE("Sources on one channel are numbered apart") {
+  SequenceTracker t;
+  for (int i = 0; i < 10; ++i)
+    for (std::int32_t source = 1; source <= 3; ++source) t.observe(message(i, i, 7, source));
+  CHECK(t.gaps() == 0);
+  CHECK(t.messages() == 30);
+}
+
+TEST_CASE("Whatever order and repetition the network chooses, gaps are what never came") {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<std::int64_t> sent, arrived;
+    for (int i = 0; i < 200; ++i) sent.push_back(i);
+    std::set<std::int64_t> lost;
+    for (const std::int64_t seq : sent) {
+      if (seq > 0 && seq < 199 && random() % 10 == 0) {
+        lost.insert(seq);
+        continue;
+      }
+      arrived.push_back(seq);
+      if (random() % 10 == 0) arrived.push_back(seq);
+    }
+    // Overtaking by up to five places; the first and the last keep theirs.
+    for (std::size_t i = 1; i + 6 < arrived.size(); ++i) std::swap(arrived[i], arrived[i + random() % 5]);
+    SequenceTracker t;
+    for (const std::int64_t seq : arrived) t.observe(message(seq, seq));
+    REQUIRE(t.gaps() == static_cast<std::int64_t>(lost.size()));
+  }
+}

@@ -1,0 +1,68 @@
+#include "sync/clocks/clock_maps.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <random>
+
+#include "tests/sync/support/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+clock_map_t line(std::int32_t of, std::int32_t to, std::int64_t at, std::int64_t offset, double drift, std::int64_t seq = 0,
+                 std::int64_t incarnation = 1) {
+  clock_map_t m{};
+  m.header = header_of("sync_node", incarnation, seq, at);
+  m.of_clock = of, m.to_clock = m.header.clock = to;
+  m.at_ns = at, m.offset_ns = offset, m.drift = drift, m.uncertainty_ns = 50'000;
+  return m;
+}
+}  // namespace
+
+TEST_CASE("A line and its inverse agree to the nanosecond, however far apart the clocks are") {
+  std::mt19937_64 random(1);
+  const auto any = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  for (int i = 0; i < 10000; ++i) {
+    const auto at = static_cast<std::int64_t>(any(0, 1e17)), offset = static_cast<std::int64_t>(any(-1e17, 1e17));
+    const ClockLine map(line(1, 2, at, offset, any(-0.002, 0.002)));
+    const HostTime to = host_time(at + static_cast<std::int64_t>(any(-1e12, 1e12)));
+    const HostTime back = map.from_of(map.to_of(to).time).time;
+    REQUIRE(std::abs((back - to).count()) <= 2);
+    REQUIRE(map.to_of(to).uncertainty > Nanoseconds(50'000));
+  }
+}
+
+TEST_CASE("A time is read through the map in either direction, and not at all without one") {
+  ClockMaps maps(7);
+  CHECK_FALSE(maps.read(host_time(5), 1, 2));
+  CHECK(maps.read(host_time(5), 2, 2)->time == host_time(5));
+  maps.observe(line(1, 2, 100 * kSecond, 40 * kSecond, 0), host_time(0));
+  CHECK(maps.read(host_time(140 * kSecond), 1, 2)->time == host_time(100 * kSecond));
+  CHECK(maps.read(host_time(100 * kSecond), 2, 1)->time == host_time(140 * kSecond));
+  CHECK_FALSE(maps.read(host_time(5), 1, 3));
+  for (const std::int64_t wild : {std::int64_t{-1}, INT64_MIN, INT64_MAX}) CHECK_FALSE(maps.read(host_time(wild), 1, 2));
+}
+
+TEST_CASE("Maps of another run are ignored and counted") {
+  ClockMaps maps(7);
+  clock_map_t m = line(1, 2, 0, 0, 0);
+  m.header.run_id = 8;
+  maps.observe(m, host_time(0));
+  CHECK(maps.foreign() == 1);
+  CHECK_FALSE(maps.read(host_time(5), 1, 2));
+}
+
+TEST_CASE("Of two publishers of one map the first is heeded until it falls silent. An overtaken map changes nothing") {
+  ClockMaps maps(7);
+  const auto offset = [&] { return maps.read(host_time(0), 2, 1)->time; };
+  maps.observe(line(1, 2, 0, 100, 0, 5, 1), host_time(0));
+  maps.observe(line(1, 2, 0, 200, 0, 9, 2), host_time(kSecond));
+  CHECK(offset() == host_time(100));
+  maps.observe(line(1, 2, 0, 300, 0, 4, 1), host_time(kSecond));
+  CHECK(offset() == host_time(100));
+  maps.observe(line(1, 2, 0, 200, 0, 10, 2), host_time(3 * kSecond));
+  CHECK(offset() == host_time(200));
+}

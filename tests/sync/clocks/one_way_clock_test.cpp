@@ -1,0 +1,105 @@
+#include "sync/clocks/one_way_clock.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+#include <vector>
+
+using namespace tactus::sync;
+
+namespace {
+
+constexpr double kSecond = 1e9;
+
+// A sender whose clock is `offset` ahead and gains `drift` seconds a second.
+struct Sender {
+  double offset_ns, drift;
+  std::int64_t stamp(double host_ns) const {
+    return static_cast<std::int64_t>(host_ns + offset_ns + drift * host_ns);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("The bias is never negative and at most the smallest latency plus the drift since") {
+  std::mt19937 random(1);
+  for (const double drift : {-200e-6, -50e-6, 0.0, 50e-6, 200e-6}) {
+    for (const double offset_s : {-5000.0, 0.5, 90000.0}) {
+      const Sender sender{offset_s * kSecond, drift};
+      std::exponential_distribution<double> latency_ns(1 / 3e6);
+      OneWayClock clock;
+      std::vector<std::pair<double, double>> heard;  // when, latency
+      double now = 10 * kSecond;
+      for (int i = 0; i < 3000; ++i) {
+        now += 20e6;
+        const double latency = 50e3 + latency_ns(random);
+        heard.emplace_back(now, latency);
+        REQUIRE_FALSE(
+            clock.observe(sender.stamp(now - latency), host_time(static_cast<std::int64_t>(now))));
+        const double bias = static_cast<double>(to_ns(
+                                clock.to_host(sender.stamp(now), host_time(static_cast<std::int64_t>(now))))) -
+                            now;
+        double bound = 1e18;
+        for (const auto& [when, l] : heard)
+          bound = std::min(bound, l + 2 * OneWayClock::kMaxDrift * (now - when + l));
+        INFO("drift " << drift << ", step " << i);
+        // Each of the two conversions rounds by a nanosecond.
+        REQUIRE(bias >= -2);
+        REQUIRE(bias <= bound + 2);
+      }
+    }
+  }
+}
+
+TEST_CASE("An unknown clock maps to itself") { CHECK(OneWayClock().to_host(77, host_time(5)) == host_time(77)); }
+
+TEST_CASE("A clock that jumps is noticed and learned anew at once") {
+  OneWayClock clock;
+  const auto now = [](double s) { return host_time(static_cast<std::int64_t>(s * kSecond)); };
+  clock.observe(5 * 1'000'000'000LL, now(100));
+  for (const double jump_s : {+3600.0, -3600.0, +2.5, -2.5}) {
+    OneWayClock c = clock;
+    const auto stamp = static_cast<std::int64_t>((6 + jump_s) * kSecond);
+    CHECK(c.observe(stamp, now(101)));
+    CHECK(c.to_host(stamp, now(101)) == now(101));
+  }
+  SECTION("but a delay of less than two seconds is none") {
+    CHECK_FALSE(clock.observe(5 * 1'000'000'000LL, now(101.9)));
+    CHECK(clock.to_host(5 * 1'000'000'000LL, now(101.9)) - now(100) < Nanoseconds(1'000'000));
+  }
+}
+
+TEST_CASE("A clock that was put back by less than two seconds is noticed within the window, or relaxed away in 25 s") {
+  std::mt19937 random(2);
+  for (const double back_ms : {1.0, 4.0, 6.0, 20.0, 300.0, 1900.0}) {
+    for (const double rate_Hz : {10.0, 1000.0}) {
+      OneWayClock clock;
+      std::exponential_distribution<double> latency_ns(1 / 0.5e6);
+      double now = 0, noticed_s = -1;
+      const double jump_at = 20 * kSecond;
+      while (now < 60 * kSecond) {
+        now += kSecond / rate_Hz;
+        const double offset = 7 * kSecond - (now >= jump_at ? back_ms * 1e6 : 0);
+        const double latency = 100e3 + latency_ns(random);
+        clock.observe(static_cast<std::int64_t>(now - latency + offset), host_time(static_cast<std::int64_t>(now)));
+        const double error = static_cast<double>(to_ns(clock.to_host(static_cast<std::int64_t>(now + offset),
+                                                                     host_time(static_cast<std::int64_t>(now))))) - now;
+        // Before and after the estimate is late by a latency; between, by the jump too early.
+        if (now >= jump_at && noticed_s < 0 && error > -0.2e6) noticed_s = (now - jump_at) / kSecond;
+      }
+      INFO(back_ms << " ms back at " << rate_Hz << " Hz");
+      CHECK(noticed_s >= 0);
+      CHECK(noticed_s <= (back_ms > 6 ? 2.6 : 31));
+    }
+  }
+}
+
+TEST_CASE("A network that is slow for a while is no jump, if now and then a message is quick") {
+  OneWayClock clock;
+  for (int i = 0; i < 600; ++i) {
+    const std::int64_t now = (i + 1) * 100'000'000LL;
+    const std::int64_t latency = i < 10 || i % 15 == 0 ? 200'000 : 40'000'000;
+    REQUIRE_FALSE(clock.observe(now - latency, host_time(now)));
+  }
+  CHECK(clock.to_host(60'000'000'000, host_time(60'000'000'000)) - host_time(60'000'000'000) < Nanoseconds(1'000'000));
+}

@@ -1,0 +1,116 @@
+#include "sync/clocks/sender_clock.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/sync/support/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000, kMs = 1'000'000;
+constexpr std::int64_t kRun = 7, kAhead = 5'000 * kSecond;
+constexpr std::int32_t kOurs = 1, kTheirs = 2;
+
+header_t stamped(std::int64_t publish_ns, std::int32_t clock, std::int64_t run = kRun) {
+  header_t h = header_of("sim_node", 1, 0, publish_ns, run);
+  h.clock = clock;
+  return h;
+}
+
+clock_map_t map_of(std::int64_t offset_ns, std::int64_t at_ns, std::int64_t seq, std::int32_t epoch = 0) {
+  clock_map_t m{};
+  m.header = header_of("sync_node", 1, seq, at_ns, kRun);
+  m.of_clock = kTheirs, m.to_clock = m.header.clock = kOurs;
+  m.at_ns = at_ns, m.offset_ns = offset_ns, m.uncertainty_ns = 100'000, m.uncertainty_drift = 20e-6, m.epoch = epoch;
+  return m;
+}
+
+struct Fixture {
+  ClockMaps maps{kRun};
+  SenderClock clock{OwnClock(kRun, kOurs, &maps)};
+};
+
+}  // namespace
+
+TEST_CASE("Nobody's clock is unknown, and maps to itself") {
+  Fixture f;
+  CHECK_FALSE(f.clock.known());
+  CHECK(f.clock.to_host(77, host_time(5)) == host_time(77));
+  CHECK(f.clock.read(77, host_time(5)).how == SenderClock::How::kUnknown);
+}
+
+TEST_CASE("A sender of our own run and clock is read as it is") {
+  Fixture f;
+  CHECK_FALSE(f.clock.observe(stamped(1000, kOurs), host_time(999'999)));
+  CHECK(f.clock.to_host(1234, host_time(5'000'000)) == host_time(1234));
+  CHECK(f.clock.read(1234, host_time(5'000'000)).uncertainty == Nanoseconds(0));
+}
+
+TEST_CASE("A sender of another clock is read through the map of it, with its uncertainty. Without one by arrival") {
+  Fixture f;
+  const HostTime now = host_time(100 * kSecond);
+  f.clock.observe(stamped(to_ns(now) + kAhead - 3 * kMs, kTheirs), now);
+  CHECK(f.clock.read(to_ns(now) + kAhead, now).how == SenderClock::How::kOneWay);
+  CHECK(f.clock.read(to_ns(now) + kAhead, now).time - now == Nanoseconds(3 * kMs));
+  CHECK(f.clock.read(to_ns(now) + kAhead, now).uncertainty == Nanoseconds(-1));
+  f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
+  const auto mapped = f.clock.read(to_ns(now) + kAhead, now);
+  CHECK(mapped.how == SenderClock::How::kMapped);
+  CHECK(mapped.time == now);
+  CHECK(mapped.uncertainty >= Nanoseconds(100'000));
+  CHECK(mapped.uncertainty < Nanoseconds(101'000));
+
+  SECTION("a map that nobody renews grows less certain, and is given up for the arrivals") {
+    const HostTime later = now + Nanoseconds(10 * kSecond);
+    CHECK(f.clock.read(to_ns(later) + kAhead, later).uncertainty >= Nanoseconds(300'000));
+    const HostTime much_later = now + Nanoseconds(2'000 * kSecond);
+    f.clock.observe(stamped(to_ns(much_later) + kAhead - kMs, kTheirs), much_later);
+    CHECK(f.clock.read(to_ns(much_later) + kAhead, much_later).how == SenderClock::How::kOneWay);
+  }
+}
+
+TEST_CASE("A replayed log is read by arrival, though its clock is mapped, or ours") {
+  Fixture f;
+  const HostTime now = host_time(100 * kSecond);
+  f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
+  for (const std::int32_t clock : {kOurs, kTheirs}) {
+    SenderClock replayed{OwnClock(kRun, kOurs, &f.maps)};
+    replayed.observe(stamped(5 * kSecond, clock, kRun + 1), now);
+    CHECK(replayed.read(5 * kSecond, now).how == SenderClock::How::kOneWay);
+    CHECK(replayed.to_host(5 * kSecond, now) == now);
+  }
+}
+
+TEST_CASE("A map that the stamps contradict is not believed until the probes have noticed the jump") {
+  Fixture f;
+  const HostTime now = host_time(100 * kSecond);
+  f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
+  const auto sent = [&](HostTime t, std::int64_t jump) { return stamped(to_ns(t) + kAhead + jump - kMs, kTheirs); };
+  REQUIRE_FALSE(f.clock.observe(sent(now, 0), now));
+  SECTION("forward: the first message after it has not been sent yet, says the map") {
+    const std::int64_t jump = 50 * kMs;
+    const HostTime t = now + Nanoseconds(kSecond);
+    CHECK(f.clock.observe(sent(t, jump), t));
+    CHECK(f.clock.read(to_ns(t) + kAhead + jump, t).how == SenderClock::How::kOneWay);
+    CHECK(f.clock.to_host(to_ns(t) + kAhead + jump, t) - t <= Nanoseconds(kMs));
+    const HostTime later = t + SenderClock::kDistrust;
+    f.maps.observe(map_of(kAhead + jump, to_ns(later), 5, 1), later);
+    CHECK(f.clock.read(to_ns(later) + kAhead + jump, later).how == SenderClock::How::kMapped);
+    CHECK(f.clock.to_host(to_ns(later) + kAhead + jump, later) == later);
+  }
+  SECTION("but old messages that come late, as after a stall of ours, are no reason") {
+    const HostTime t = now + Nanoseconds(5 * kSecond);
+    CHECK_FALSE(f.clock.observe(sent(now, 0), t));
+    CHECK(f.clock.read(to_ns(t) + kAhead, t).how == SenderClock::How::kMapped);
+    CHECK(f.clock.to_host(to_ns(t) + kAhead, t) == t);
+  }
+  SECTION("back: it looks like latency until the map of the new epoch is there") {
+    const std::int64_t jump = -500 * kMs;
+    const HostTime t = now + Nanoseconds(3 * kSecond);
+    CHECK_FALSE(f.clock.observe(sent(t, jump), t));
+    f.maps.observe(map_of(kAhead + jump, to_ns(t), 5, 1), t);
+    CHECK(f.clock.to_host(to_ns(t) + kAhead + jump, t) == t);
+  }
+}

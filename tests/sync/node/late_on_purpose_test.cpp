@@ -1,0 +1,83 @@
+#include <catch2/catch.hpp>
+
+#include "sync/presentation/presentation_matcher.h"
+#include "tests/sync/presentation/presentation_matcher_fixture.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+constexpr int kHit = node_health_t::OWES_HIT;
+constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
+}  // namespace
+
+TEST_CASE("A sense that is late on purpose is not called lost before it could present") {
+  MatcherFixture f;
+  f.healths("audio_node", "audio", kHit, 0, 9000);
+  f.healths("visual_node", "visual", kBoth, 0, 9000);
+  f.event(1, 1000);
+  f.presented("visual_node", "visual", 1, 1020);
+  const bool by_policy = GENERATE(true, false);
+  if (by_policy) {
+    playout_t m{};
+    m.header = MatcherFixture::health_message("sync_node", "", 0, -70'000).header;
+    m.entries = {{"audio", 3'000'000'000, 0, -1}};
+    m.count = 1;
+    f.matcher.observe(m, f.at(-70'000));
+    for (double ms = -70'000; ms < 1000; ms += 500) f.matcher.advance(f.at(ms));  // a minute to slew it in
+  }
+  if (!by_policy) {
+    degraded_t m{};
+    m.header = MatcherFixture::health_message("audio_node", "audio", 0, 1010).header;
+    m.modality = "audio";
+    decision_t d{};
+    d.key = 1, d.is_event = 1, d.held_ns = 3'000'000'000;
+    m.decisions = {d};
+    m.count = 1;
+    f.matcher.observe(m, f.at(1010));
+  }
+  f.matcher.advance(f.at(3400));
+  CHECK(f.tally("audio").owed == 0);
+  SECTION("it presents, and there is an asynchrony") {
+    f.presented("audio_node", "audio", 1, 4010);
+    f.matcher.advance(f.at(5100));
+    CHECK(f.tally("audio").presented == 1);
+    CHECK(f.tally("audio").lost == 0);
+    CHECK(f.matcher.late_reports() == 0);
+    CHECK(f.matcher.pairs().at({"audio", "visual"}).count() == 1);
+  }
+  SECTION("it says nothing, and is lost all the same") {
+    f.matcher.advance(f.at(4900));
+    CHECK(f.tally("audio").owed == 0);  // 1 s and 3 s have not passed
+    f.matcher.advance(f.at(5100));
+    CHECK(f.tally("audio").lost == 1);
+  }
+  SECTION("the log ends before its time, and it owes nothing") {
+    f.matcher.finish(f.at(3500));
+    CHECK(f.tally("audio").owed == 0);
+    CHECK(f.tally("visual").presented == 1);
+  }
+  CHECK(f.tally("visual").lost == 0);
+}
+
+TEST_CASE("When a long delay is taken back, events are settled as soon as before once it is out again") {
+  MatcherFixture f;
+  const auto say = [&](double ms, double delay_ms) {
+    playout_t m{};
+    m.header = MatcherFixture::health_message("sync_node", "", 0, ms).header;
+    m.entries = {{"audio", static_cast<std::int64_t>(delay_ms * 1e6), 0, -1}};
+    m.count = 1;
+    f.matcher.observe(m, f.at(ms));
+  };
+  const auto pass = [&](double from, double to) {
+    for (double ms = from; ms < to; ms += 100) f.matcher.advance(f.at(ms));
+  };
+  f.healths("audio_node", "audio", kHit, 0, 300'000);
+  say(0, 20'000);
+  pass(0, 10'000);  // half a second of it by now
+  say(10'000, 0);
+  pass(10'000, 25'000);
+  f.event(1, 25'000);
+  f.matcher.advance(f.at(26'100));
+  CHECK(f.tally("audio").owed == 1);
+}

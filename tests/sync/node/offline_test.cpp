@@ -1,0 +1,185 @@
+#include "sync/node/offline.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/sync/support/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+using Catch::Contains;
+
+namespace {
+
+constexpr std::int64_t kBegin_ns = 5'000'000'000, kOffset_ns = 1'700'000'000'000'000'000;
+constexpr double kRate_Hz = 100;
+
+struct Folder {
+  Folder() {
+    char name[] = "/tmp/tactus_offline_XXXXXX";
+    if (mkdtemp(name)) path = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string file(const std::string& name) const { return path + "/" + name; }
+  std::string path;
+};
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Two profiles and 0.1 s of nothing else.
+std::string log_in(const Folder& folder) {
+  LogWriter writer(std::make_unique<FileSink>(folder.file("run.lcmlog")));
+  const auto write = [&](const char* channel, const auto& m, std::int64_t after_us) {
+    writer.write((kBegin_ns + kOffset_ns) / 1000 + after_us, channel, encode(m));
+  };
+  log_info_t info{};
+  info.header = header_of("recorder", 1, 0, kBegin_ns, 77);
+  info.header.clock = 4711;
+  info.realtime_offset_ns = kOffset_ns;
+  write(channels::kLogInfo, info, 0);
+  for (int i = 0; i < 2; ++i) {
+    degradation_t m{};
+    m.header = header_of("sync_node", 5, i, kBegin_ns, 77);
+    m.pages = 1;
+    write(channels::kDegradation, m, 100'000 * i);
+  }
+  writer.flush();
+  return folder.file("run.lcmlog");
+}
+
+OfflineOptions of(const std::string& log) {
+  OfflineOptions options;
+  options.log = log;
+  return options;
+}
+
+// How many profiles a node with these options hears.
+int profiles_heard(const std::string& log, NodeOptions options, bool as_recorded = false) {
+  OfflineOptions of_log = of(log);
+  of_log.as_recorded = as_recorded;
+  Offline offline(of_log, {}, kRate_Hz, HostTime{});
+  offline.adapt(options);
+  CHECK(options.run_id == 77);
+  CHECK(options.bus.memory);
+  CHECK(options.realtime == "off");
+  Bus bus(Identity::fresh("audio_node", options.run_id), options.bus);
+  auto& heard = bus.queue<degradation_t>(channels::kDegradation, 8);
+  while (!offline.over()) offline.next(bus);
+  int n = 0;
+  while (heard.pop()) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("Of a log the profiles of the run hold only when they are asked for, and then no other does") {
+  const Folder folder;
+  const std::string log = log_in(folder);
+  NodeOptions none, own, logged;
+  own.degrade = "own.xml", logged.degrade = "logged";
+  CHECK(profiles_heard(log, none) == 0);
+  CHECK(profiles_heard(log, own) == 0);
+  CHECK(profiles_heard(log, logged) == 2);
+  CHECK(profiles_heard(log, none, true) == 2);
+
+  SECTION("nor does that of the scene") {
+    Offline offline(of(log), {}, kRate_Hz, HostTime{});
+    offline.adapt(none);
+    CHECK(none.profile == "<profile/>");
+    offline.adapt(own);
+    CHECK(own.degrade == "own.xml");
+    CHECK(own.profile.empty());
+    offline.adapt(logged);
+    CHECK(logged.degrade.empty());
+    CHECK(logged.profile.empty());
+  }
+}
+
+TEST_CASE("A rendering that is stopped before its log is over leaves no file, one that is not leaves them whole") {
+  const Folder folder;
+  OfflineOptions options = of(log_in(folder));
+  options.presented = folder.file("p.csv");
+  presentation_t report{};
+  report.event_id = 4, report.presented_ns = 9, report.scheduled_ns = 8;
+  for (const bool stopped : {true, false}) {
+    {
+      Offline offline(options, {}, kRate_Hz, HostTime{});
+      Bus bus(Identity::fresh("audio_node", 77), offline.feed().bus());
+      offline.note("audio", report);
+      offline.next(bus);
+      if (stopped) CHECK_THROWS_WITH(offline.finish(1, HostTime{}), Contains("stopped before"));
+      while (!stopped && !offline.over()) offline.next(bus);
+      if (!stopped) CHECK_THAT(offline.finish(1, host_time(500'000'000)), Contains("0.5 s (2 times as fast as time)"));
+    }
+    CHECK(std::filesystem::exists(options.presented) != stopped);
+    CHECK_FALSE(std::filesystem::exists(options.presented + ".part"));
+  }
+  CHECK_THAT(text_of(options.presented), Contains("audio,4,whole,8,9,0,presented\n"));
+}
+
+TEST_CASE("Nothing is written where the log is, by whatever name, and ticks at another rate are refused") {
+  const Folder folder;
+  const std::string log = log_in(folder), before = text_of(log);
+  std::filesystem::create_symlink(log, folder.file("link.csv"));
+  for (const std::string& path : {log, folder.file("link.csv")}) {
+    CHECK_THROWS_WITH(Offline(of(log), {{path, "--trace"}}, kRate_Hz, HostTime{}),
+                      Contains("is the log itself") && Contains("--trace"));
+    OfflineOptions options = of(log);
+    options.presented = path;
+    CHECK_THROWS_WITH(Offline(options, {}, kRate_Hz, HostTime{}), Contains("--presented"));
+  }
+  CHECK(text_of(log) == before);
+  const Offline offline(of(log), {}, kRate_Hz, HostTime{});
+  CHECK_NOTHROW(offline.expect_rate(kRate_Hz));
+  CHECK_THROWS_WITH(offline.expect_rate(50), Contains("--set rate=50"));
+}
+
+TEST_CASE("How far a log is rendered is said once a second") {
+  const Folder folder;
+  Offline offline(of(log_in(folder)), {}, kRate_Hz, HostTime{});
+  Bus bus(Identity::fresh("audio_node", 77), offline.feed().bus());
+  CHECK(offline.progress(host_time(900'000'000)) == std::nullopt);
+  for (int i = 0; i < 6; ++i) offline.next(bus);  // ticks at 0, 10, ... 50 ms
+  CHECK(offline.progress(host_time(1'100'000'000)) == "50 % of the log");
+  CHECK(offline.progress(host_time(1'200'000'000)) == std::nullopt);
+  SECTION("and what is over earlier ends there") {
+    offline.end_at(offline.now());
+    CHECK(offline.over());
+    CHECK_NOTHROW(offline.finish(1, HostTime{}));
+  }
+}
+
+TEST_CASE("A file bears its name only when it is whole") {
+  const Folder folder;
+  const std::string path = folder.file("a.csv");
+  {
+    WholeFile file(path, "--trace");
+    file.write("x,y\n");
+    CHECK_FALSE(std::filesystem::exists(path));
+    CHECK_THROWS_WITH(WholeFile(path, "--trace"), Contains("another program is writing"));
+  }
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+  const std::string much(200'000, 'z');
+  WholeFile file(path, "--trace");
+  file.write("x,y\n");
+  file.write(much);
+  file.finish();
+  CHECK((text_of(path) == "x,y\n" + much));
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+
+  SECTION("one that cannot be made says which option to choose anew, one that does not fit says so") {
+    CHECK_THROWS_WITH(WholeFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
+    WholeFile full("/dev/full", "--trace");
+    full.write("x");
+    CHECK_THROWS_WITH(full.finish(), Contains("free some disk"));
+  }
+}

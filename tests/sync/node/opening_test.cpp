@@ -1,0 +1,45 @@
+#include "sync/node/opening.h"
+
+#include <catch2/catch.hpp>
+#include <future>
+#include <stdexcept>
+
+using tactus::sync::Opening;
+
+namespace {
+
+template <class T>
+void wait_for(const Opening<T>& opening) {
+  while (!opening.done()) std::this_thread::yield();
+}
+
+}  // namespace
+
+TEST_CASE("What opens is handed over once it is done") {
+  Opening<int> opening([] { return std::make_unique<int>(7); });
+  wait_for(opening);
+  const auto made = opening.take();
+  REQUIRE(made);
+  CHECK(*made == 7);
+}
+
+TEST_CASE("What cannot be opened says why") {
+  Opening<int> opening([]() -> std::unique_ptr<int> { throw std::runtime_error("no card"); });
+  wait_for(opening);
+  CHECK_THROWS_WITH(opening.take(), "no card");
+}
+
+TEST_CASE("A card that never starts holds nobody, neither while it is waited for nor after that") {
+  std::promise<void> never, ended;
+  std::shared_future<void> gate = never.get_future();
+  {
+    Opening<int> opening([gate, &ended] {
+      gate.wait();
+      ended.set_value();
+      return std::make_unique<int>(1);
+    });
+    CHECK_FALSE(opening.done());
+  }
+  never.set_value();
+  ended.get_future().wait();
+}

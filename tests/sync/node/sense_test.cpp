@@ -1,0 +1,48 @@
+#include "sync/node/sense.h"
+
+#include <catch2/catch.hpp>
+#include <tactus/contact_frame_t.hpp>
+
+#include "sync/bus/decode.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr Nanoseconds kMs{1'000'000};
+
+NodeOptions in_memory() {
+  NodeOptions o;
+  o.bus.memory = true;
+  o.realtime = "off";
+  return o;
+}
+
+contact_frame_t frame(Identity& sender, std::int64_t seq, HostTime at) {
+  contact_frame_t m{};
+  m.header = {seq * 1'000'000, to_ns(at), sender.clock, sender.run_id, sender.source, sender.incarnation, seq};
+  m.clock = {seq * 1'000'000, to_ns(at), 1};
+  m.pages = 1;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("What arrives while a turn is held up in its reading is not kept until the next") {
+  Node node({.node = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."},
+            in_memory());
+  Sense sense(node);
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 64);
+  Identity sender = Identity::fresh("sim_node", 1);
+  const HostTime turn = host_now();
+  // Sent before the turn, and while it was reading: sync/bus/bus.cpp stamps what it reads late with when that was.
+  for (const std::int64_t ms : {-1, 3, 7}) {
+    const auto bytes = encode(frame(sender, 10 + ms, turn + ms * kMs));
+    node.bus().hear(channels::kContacts, bytes, turn + ms * kMs + kMs / 10);
+  }
+  sense.step(turn);
+  int heard = 0;
+  while (const auto m = frames.pop()) ++heard;
+  CHECK(heard == 3);
+}

@@ -1,0 +1,107 @@
+// Tagged variables that drive settings.
+#include "sync/node/setting_maps.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+map_def_t map(const std::string& from, const std::string& to, double gain = 1, double offset = 0,
+              double low = -1e9, double high = 1e9) {
+  map_def_t m{};
+  m.tag = from, m.setting = to, m.gain = gain, m.offset = offset, m.low = low, m.high = high;
+  return m;
+}
+HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
+
+// The tags "force" and "speed" of a process.
+tag_list_t list(const std::string& node) {
+  tag_list_t m{};
+  m.header.incarnation = 3, m.node = node, m.list = 5, m.total = m.tag_count = 2;
+  m.tags = {{"force", "N", 0}, {"speed", "m/s", 0}};
+  return m;
+}
+tag_values_t values(std::int16_t column, std::vector<double> rows) {
+  tag_values_t m{};
+  m.header.incarnation = 3, m.node = "haptic_node", m.list = 5, m.column_count = 1, m.columns = {column};
+  m.values = std::move(rows);
+  m.row_count = m.value_count = static_cast<std::int32_t>(m.values.size());
+  for (std::size_t i = 0; i < m.values.size(); ++i) m.times_ns.push_back(static_cast<std::int64_t>(i));
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("A setting is the offset and so many times the variable, and stays within its bounds") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-10, 10);
+  for (int i = 0; i < 1000; ++i) {
+    const double gain = any(random), offset = any(random), value = any(random);
+    const map_def_t m = map("a.b", "c.d", gain, offset, -20, 30);
+    CHECK(mapped(m, value) == std::min(30.0, std::max(-20.0, offset + gain * value)));
+  }
+}
+
+TEST_CASE("Only the maps of its own process are heeded, and what they need is asked for once") {
+  SettingMaps maps("visual_node");
+  CHECK_FALSE(maps.any());
+  maps.set({map("haptic_node.force", "visual_node.exposure"), map("haptic_node.force", "visual_node.display_gain"),
+            map("haptic_node.speed", "audio_node.gain"), map("haptic_node.speed", "visual_node_left.exposure")});
+  CHECK(maps.any());
+  CHECK(maps.request().patterns == std::vector<std::string>{"haptic_node.force"});
+  maps.set({});
+  CHECK_FALSE(maps.any());
+}
+
+TEST_CASE(
+    "The newest value of the variable is handed out, when it is another and at most a hundred times a second") {
+  SettingMaps maps("visual_node");
+  maps.set({map("haptic_node.force", "visual_node.exposure", 0.5, 1)});
+  maps.push(values(0, {8}));
+  CHECK(maps.take(at_ms(0)).empty());  // nobody has said what that is
+  maps.push(list("haptic_node"));
+  maps.push(values(1, {7}));  // the speed
+  CHECK(maps.take(at_ms(20)).empty());
+  maps.push(values(0, {1, 2, 3}));
+  auto changes = maps.take(at_ms(40));
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].name == "exposure");
+  CHECK(changes[0].value == "2.5");
+  CHECK(maps.take(at_ms(60)).empty());
+  maps.push(values(0, {3}));
+  CHECK(maps.take(at_ms(80)).empty());
+  maps.push(values(0, {4}));
+  CHECK(maps.take(at_ms(81)).empty());  // too soon
+  changes = maps.take(at_ms(90));
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].value == "3");
+}
+
+TEST_CASE("A process whose name begins as another's drives nothing of the other's") {
+  SettingMaps maps("visual_node");
+  maps.set({map("haptic_node_lamp.force", "visual_node.exposure")});
+  maps.push(list("haptic_node"));
+  maps.push(values(0, {4}));
+  CHECK(maps.take(at_ms(0)).empty());
+}
+
+TEST_CASE("A setting that cannot be changed is left alone after that") {
+  SettingMaps maps("visual_node");
+  maps.set({map("haptic_node.force", "visual_node.width")});
+  maps.push(list("haptic_node"));
+  maps.push(values(0, {4}));
+  REQUIRE(maps.take(at_ms(0)).size() == 1);
+  maps.give_up("width");
+  CHECK_FALSE(maps.any());
+}
+
+TEST_CASE("A scene of many maps asks for no more than a request holds") {
+  SettingMaps maps("visual_node");
+  std::vector<map_def_t> many;
+  for (int i = 0; i < 100; ++i) many.push_back(map("haptic_node.a" + std::to_string(i), "visual_node.exposure"));
+  maps.set(many);
+  CHECK(maps.request().patterns == std::vector<std::string>{"*"});
+}

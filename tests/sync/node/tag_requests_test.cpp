@@ -1,0 +1,81 @@
+// Who asks for which tagged variables, and for how long.
+#include "sync/node/tag_requests.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+#include <regex>
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+tag_request_t request(std::int64_t incarnation, std::vector<std::string> patterns, std::int64_t run_id = 7) {
+  tag_request_t m{};
+  m.header.run_id = run_id, m.header.incarnation = incarnation;
+  m.patterns = std::move(patterns), m.pattern_count = static_cast<std::int32_t>(m.patterns.size());
+  return m;
+}
+HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
+
+}  // namespace
+
+TEST_CASE("A star stands for any characters, as in a regular expression that is written otherwise") {
+  std::mt19937 random(1);
+  const auto text = [&](const char* letters, std::size_t kinds) {
+    std::string t;
+    for (auto n = random() % 7; n > 0; --n) t += letters[random() % kinds];
+    return t;
+  };
+  int matched = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::string pattern = text("ab.*", 4), name = text("ab.", 3);
+    std::string expression;
+    for (const char c : pattern) expression += c == '*' ? ".*" : c == '.' ? "\\." : std::string(1, c);
+    const bool expected = std::regex_match(name, std::regex(expression));
+    matched += expected;
+    REQUIRE(matches(pattern, name) == expected);
+  }
+  CHECK(matched > 1000);
+}
+
+TEST_CASE("A pattern of many stars is answered at once") {
+  CHECK_FALSE(matches("*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*ab", std::string(100, 'a')));
+}
+
+TEST_CASE("What is asked for holds for three seconds from the last time it was asked") {
+  TagRequests requests(7);
+  CHECK(requests.take(request(1, {"sim_node.*"}), at_ms(0)));
+  CHECK_FALSE(requests.take(request(1, {"sim_node.*"}), at_ms(1000)));
+  CHECK_FALSE(requests.expire(at_ms(4000)));
+  CHECK(requests.wants("sim_node.work"));
+  CHECK_FALSE(requests.wants("audio_node.work"));
+  CHECK(requests.expire(at_ms(4001)));
+  CHECK_FALSE(requests.any());
+  CHECK_FALSE(requests.wants("sim_node.work"));
+}
+
+TEST_CASE("Everybody gets what they ask for, until each is gone") {
+  TagRequests requests(7);
+  requests.take(request(1, {"a.*"}), at_ms(0));
+  CHECK(requests.take(request(2, {"*.b"}), at_ms(2000)));
+  CHECK(requests.wants("a.c"));
+  CHECK(requests.wants("c.b"));
+  CHECK(requests.expire(at_ms(3500)));
+  CHECK_FALSE(requests.wants("a.c"));
+  CHECK(requests.wants("c.b"));
+  CHECK(requests.take(request(2, {"d"}), at_ms(3600)));
+  CHECK_FALSE(requests.wants("c.b"));
+}
+
+TEST_CASE("A request of another run is not heeded, nor the sixty-fifth of one") {
+  TagRequests requests(7);
+  CHECK_FALSE(requests.take(request(1, {"*"}, 8), at_ms(0)));
+  CHECK_FALSE(requests.any());
+  for (int i = 0; i < 64; ++i) CHECK(requests.take(request(100 + i, {"x"}), at_ms(0)));
+  CHECK_FALSE(requests.take(request(999, {"*"}), at_ms(1)));
+  CHECK_FALSE(requests.wants("y"));
+  requests.expire(at_ms(3500));
+  CHECK(requests.take(request(999, {"*"}), at_ms(3500)));
+  CHECK(requests.wants("y"));
+}

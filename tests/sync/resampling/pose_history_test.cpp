@@ -1,0 +1,120 @@
+#include "sync/resampling/pose_history.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "lcmtypes/vectors.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr std::int64_t kRun = 3;
+constexpr std::int64_t kMs = 1'000'000;
+
+// A head that goes along +x at 2 m/s and turns about z at 1 rad/s.
+double angle_at(double s) { return 1.0 * s; }
+tool_state_t head_at(std::int64_t host_ns, std::int64_t incarnation = 9) {
+  const double s = 1e-9 * static_cast<double>(host_ns);
+  tool_state_t m{};
+  m.header.run_id = kRun;
+  m.header.incarnation = incarnation;
+  m.header.sim_time_ns = -1;
+  m.header.publish_time_ns = host_ns;
+  m.device.position_m = to_vec3({2 * s, 0.5, 0});
+  m.device.orientation = to_quat(Eigen::Quaterniond(Eigen::AngleAxisd(angle_at(s), Eigen::Vector3d::UnitZ())));
+  m.device_velocity_m_s = to_vec3f({2, 0, 0});
+  m.device_spin_rad_s = to_vec3f({0, 0, 1});
+  return m;
+}
+
+struct Heard {
+  PoseHistory history{kRun};
+  // A report every 4 ms, each 1 ms under way.
+  explicit Heard(std::int64_t until_ms = 400) {
+    for (std::int64_t t = 0; t <= until_ms * kMs; t += 4 * kMs) history.push(head_at(t), host_time(t + kMs));
+  }
+  auto at(double ms) const { return history.at(host_time(static_cast<std::int64_t>(ms * 1e6))); }
+};
+
+double error_m(const Sample<BodyPose>& s, double ms) {
+  return (s.value.position - Eigen::Vector3d(2e-3 * ms, 0.5, 0)).norm();
+}
+double error_rad(const Sample<BodyPose>& s, double ms) {
+  return s.value.orientation.angularDistance(
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle_at(1e-3 * ms), Eigen::Vector3d::UnitZ())));
+}
+
+}  // namespace
+
+TEST_CASE("Of what was never heard there is no pose") {
+  CHECK(PoseHistory(kRun).at(host_time(kMs)).how == How::kNone);
+}
+
+TEST_CASE("A pose is exact where it was reported, and between reports the even motion that it was") {
+  const Heard h;
+  CHECK(h.at(200).how == How::kExact);
+  for (const double ms : {100.0, 101.0, 102.5, 399.9}) {
+    const auto s = h.at(ms);
+    CHECK(error_m(s, ms) < 1e-9);
+    CHECK(error_rad(s, ms) < 1e-7);
+  }
+  CHECK(h.at(101).how == How::kInterpolated);
+}
+
+TEST_CASE(
+    "Past the newest report it goes on as it went for 20 ms, stays there, and after 200 ms is stale but not "
+    "forgotten") {
+  const Heard h;
+  const auto soon = h.at(415);
+  CHECK(soon.how == How::kExtrapolated);
+  CHECK(error_m(soon, 415) < 1e-6);
+  CHECK(error_rad(soon, 415) < 1e-6);
+  const auto later = h.at(500);
+  CHECK(later.how == How::kHeld);
+  CHECK(error_m(later, 420) < 1e-6);
+  const auto lost = h.at(10'000);
+  CHECK(lost.how == How::kStale);
+  CHECK(error_m(lost, 400) < 1e-6);  // where it was last seen
+}
+
+TEST_CASE("A second of the past is kept, and before it the oldest is held") {
+  const Heard h(3000);
+  CHECK(error_m(h.at(2100), 2100) < 1e-9);
+  CHECK(h.at(1000).how == How::kHeld);
+}
+
+TEST_CASE("A report that is overtaken changes nothing, and another process that takes over ends what was") {
+  Heard h;
+  h.history.push(head_at(100 * kMs), host_time(402 * kMs));
+  CHECK(h.at(400).how == How::kExact);
+  h.history.push(head_at(404 * kMs, 10), host_time(405 * kMs));
+  CHECK(h.at(300).how == How::kHeld);
+  CHECK(h.at(404).how == How::kExact);
+}
+
+TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on from nothing before") {
+  Heard h;
+  REQUIRE(h.at(200).how == How::kExact);
+  h.history.forget();
+  CHECK(h.at(200).how == How::kNone);
+  h.history.push(head_at(404 * kMs), host_time(405 * kMs));
+  CHECK(h.at(404).how == How::kExact);
+  const auto before = h.at(402);  // between two reports, had the first of them not been forgotten
+  CHECK(before.how == How::kHeld);
+  CHECK(error_m(before, 404) < 1e-9);
+}
+
+TEST_CASE("A log that is replayed speaks of another time: it is read by arrival") {
+  PoseHistory history(kRun);
+  for (std::int64_t t = 0; t <= 200 * kMs; t += 4 * kMs) {
+    tool_state_t m = head_at(t);
+    m.header.run_id = kRun + 1;
+    history.push(m, host_time(t + 5'000 * kMs));
+  }
+  const auto s = history.at(host_time(5'101 * kMs));
+  CHECK(s.how == How::kInterpolated);
+  CHECK(error_m(s, 101) < 1e-4);
+}

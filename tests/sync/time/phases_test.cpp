@@ -1,0 +1,59 @@
+// Where the time of a tick goes, on a clock that is moved by hand.
+#include "sync/time/phases.h"
+
+#include <catch2/catch.hpp>
+#include <thread>
+
+using namespace tactus::sync;
+
+namespace {
+
+HostTime now{};
+HostTime by_hand() { return now; }
+void pass_us(std::int64_t us) { now += Nanoseconds(1000 * us); }
+
+}  // namespace
+
+TEST_CASE("Each phase is told what was spent in it, what is inside another only once, and the rest is other") {
+  Phases phases(by_hand);
+  phases.begin(true);
+  pass_us(5);
+  {
+    const InPhase solve(Phase::kSolve);
+    pass_us(20);
+    {
+      const InPhase collision(Phase::kCollision);
+      pass_us(7);
+    }
+    pass_us(1);
+  }
+  pass_us(2);
+  {
+    const InPhase collision(Phase::kCollision);
+    pass_us(3);
+  }
+  phases.end();
+  CHECK(phases.us(Phase::kOther) == 7);
+  CHECK(phases.us(Phase::kSolve) == 21);
+  CHECK(phases.us(Phase::kCollision) == 10);
+  CHECK(phases.us(Phase::kRender) == 0);
+  phases.begin(true);
+  pass_us(4);
+  phases.end();
+  CHECK(phases.us(Phase::kOther) == 4);
+  CHECK(phases.us(Phase::kSolve) == 0);
+}
+
+TEST_CASE("A tick that nobody measures reads no clock, nor does another thread of the process") {
+  static int read = 0;
+  Phases phases([] { return ++read, HostTime{}; });
+  phases.begin(false);
+  { const InPhase solve(Phase::kSolve); }
+  phases.end();
+  CHECK(read == 0);
+  phases.begin(true);
+  const int before = read;
+  std::thread([] { const InPhase solve(Phase::kSolve); }).join();
+  CHECK(read == before);
+  phases.end();
+}

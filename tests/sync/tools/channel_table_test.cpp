@@ -1,0 +1,166 @@
+// Tables of any channel, read back and held against the messages that they were made of.
+#include "sync/tools/channel_table.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "lcmtypes/channels.h"
+#include "sync/text/csv.h"
+#include "sync/bus/decode.h"
+#include "tests/lcmtypes/samples.h"
+#include "tests/lcmtypes/schema.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+using namespace tactus::test;
+
+namespace {
+
+#define EVERY_CHANNELS_TYPE                                                                                       \
+  world_state_t, contact_frame_t, contact_events_t, touch_model_t, tool_state_t, device_state_t, thermal_state_t, \
+      thermal_device_t, presented_t, node_health_t, sync_report_t, clock_map_t, media_clock_t, frame_shown_t,     \
+      degradation_t, degraded_t, playout_t, setting_change_t, sim_command_t, sim_reply_t, game_state_t,           \
+      log_info_t, asset_request_t, tag_list_t, tag_request_t, tag_values_t
+
+struct Log {
+  LogOrigin origin;
+  TableContext context{origin};
+  Log() {
+    origin.known = true;
+    origin.info.live_from_ns = 5'000'000'000;
+    origin.info.header.clock = 77;
+  }
+  LogEvent event(const std::string& channel, const std::vector<std::uint8_t>& bytes) const {
+    return {0, 0, channel, bytes};
+  }
+};
+
+std::vector<std::vector<std::string>> cells_of(const std::string& rows) {
+  std::vector<std::vector<std::string>> all;
+  std::istringstream text(rows);
+  for (std::string line; std::getline(text, line);) all.push_back(csv_cells(line));
+  return all;
+}
+
+const Schema& schema() {
+  static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");
+  return s;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("Every number and text of a message is a row that reads back to the same", "",
+                   EVERY_CHANNELS_TYPE) {
+  Log log;
+  Samples samples(21);
+  const MessageType& type = *message_type(TestType::getTypeName());
+  for (int i = 0; i < 20; ++i) {
+    TestType m{};
+    samples.fill(m);
+    m.header.sim_time_ns = i % 2 ? 1'500'000'000 : -1;
+    m.header.seq = i;
+    const auto bytes = encode(m);
+    const auto rows = cells_of(long_rows(log.context, type, log.event("X", bytes), host_time(7'250'000'000)));
+    std::size_t at = 0;
+    for (const Spot& spot : schema().walk(TestType::getTypeName(), bytes)) {
+      if (spot.path.starts_with("header.")) continue;
+      INFO(spot.path);
+      REQUIRE(at < rows.size());
+      const auto& row = rows[at++];
+      REQUIRE(row.size() == 7);
+      CHECK(row[0] == "2.250000000");
+      CHECK(row[1] == (i % 2 ? "1.500000000" : ""));
+      CHECK(row[3] == std::to_string(i));
+      CHECK(row[4] == spot.path);
+      const FieldPath path(type, spot.path);
+      CHECK(row[5] == path.unit());
+      const auto value = path.read(bytes);
+      REQUIRE(value);
+      if (const auto* text = std::get_if<std::string>(&*value))
+        CHECK(row[6] == *text);
+      else if (spot.type == "double" || spot.type == "float")
+        CHECK(std::stod(row[6]) == std::get<double>(*value));
+      else
+        CHECK(static_cast<double>(std::stoll(row[6])) == std::get<double>(*value));
+    }
+    CHECK(at == rows.size());
+  }
+}
+
+TEMPLATE_TEST_CASE("A wide table has a column for each field that is in no list, and as many cells in every row",
+                   "", EVERY_CHANNELS_TYPE) {
+  Log log;
+  Samples samples(22);
+  const MessageType& type = *message_type(TestType::getTypeName());
+  const WideColumns columns(type);
+  const auto names = cells_of(columns.names()).at(0);
+  for (int i = 0; i < 5; ++i) {
+    TestType m{};
+    samples.fill(m);
+    const auto bytes = encode(m);
+    const auto rows = cells_of(columns.row(log.context, log.event("X", bytes), host_time(7'250'000'000)));
+    REQUIRE(rows.size() == 1);
+    REQUIRE(rows[0].size() == names.size());
+    for (std::size_t c = 4; c < names.size(); ++c) {
+      const std::string path = names[c].substr(0, names[c].find(" ("));
+      const FieldPath field(type, path);
+      CHECK(names[c] == path + (field.unit().empty() ? "" : " (" + field.unit() + ")"));
+      const auto value = field.read(bytes);
+      REQUIRE(value);
+      if (const auto* text = std::get_if<std::string>(&*value))
+        CHECK(rows[0][c] == *text);
+      else
+        CHECK(std::stod(rows[0][c]) == std::get<double>(*value));
+    }
+  }
+}
+
+TEST_CASE("Text with commas, quotes and ends of lines stays one cell, and damaged messages make no row") {
+  CHECK(csv_cells(csv_cell(std::string_view("a,\"b\""))) == std::vector<std::string>{"a,\"b\""});
+  CHECK(csv_cell(std::string_view("plain")) == "plain");
+  CHECK(csv_cell(Leaf(0.1)) == "0.1");
+  CHECK(csv_cell(Leaf(std::int64_t{-9'007'199'254'740'993})) == "-9007199254740993");  // no double holds it
+  Log log;
+  Samples samples(23);
+  tool_state_t m{};
+  samples.fill(m);
+  auto bytes = encode(m);
+  const MessageType& type = *message_type("tool_state_t");
+  CHECK_FALSE(long_rows(log.context, type, log.event("X", bytes), {}).empty());
+  bytes.pop_back();
+  CHECK(long_rows(log.context, type, log.event("X", bytes), {}).empty());
+  CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
+}
+
+TEST_CASE("Tagged values have the instant at which they were taken, and senders their names") {
+  Log log;
+  tag_list_t list{};
+  list.header.run_id = list.header.incarnation = 1, list.node = "haptic_node", list.list = 5,
+  list.total = list.tag_count = 2;
+  list.tags = {{"force", "N", 0}, {"speed", "m/s", 0}};
+  node_health_t health{};
+  health.header.run_id = health.header.incarnation = 1, health.header.source = 4242, health.node = "haptic_node";
+  for (const auto& bytes : {encode(list), encode(health)})
+    log.context.learn(log.event(bytes == encode(list) ? channels::kTagList : channels::kNodeHealth, bytes));
+  CHECK(log.context.sender(4242) == "haptic_node");
+  CHECK(log.context.sender(0x10) == "0x00000010");
+
+  tag_values_t values{};
+  values.header.run_id = values.header.incarnation = 1, values.header.publish_time_ns = 6'000'000'000;
+  values.node = "haptic_node", values.list = 5, values.column_count = 2, values.columns = {0, 1};
+  values.row_count = 2, values.times_ns = {5'100'000'000, 5'200'000'000};
+  values.value_count = 4, values.values = {1, tag_values_t::NONE, 3, 0.25};
+  for (const std::int32_t clock : {77, 78}) {
+    values.header.clock = clock;
+    TagTable tags = log.context.tags();
+    const auto rows = cells_of(
+        tag_rows(tags, log.context, log.event(channels::kTagValues, encode(values)), host_time(6'010'000'000)));
+    REQUIRE(rows.size() == 3);
+    // Of another clock: as much before its arrival as before its sending.
+    CHECK(rows[0] ==
+          std::vector<std::string>{clock == 77 ? "0.100000000" : "0.110000000", "haptic_node", "force", "N", "1"});
+    CHECK(rows[2] == std::vector<std::string>{clock == 77 ? "0.200000000" : "0.210000000", "haptic_node", "speed",
+                                              "m/s", "0.25"});
+  }
+}

@@ -1,0 +1,311 @@
+#include "sync/tools/recorder/recorder.h"
+
+#include <catch2/catch.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+
+#include "lcmtypes/fields.h"
+#include "sync/log/recorder_types.h"
+#include "tests/sync/support/memory_sink.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+constexpr std::int64_t kOffsetNs = 1'700'000'000'000'000'000;
+const HostTime kStart = host_time(1'000'000'000'000);
+
+Bytes some_bytes(std::size_t n) {
+  Bytes b(n);
+  for (std::size_t i = 0; i < n; ++i) b[i] = static_cast<std::uint8_t>(i * 31 + n);
+  return b;
+}
+
+struct Scene {
+  std::vector<Bytes> bytes;
+  std::vector<HeadAsset> assets;
+  explicit Scene(int count, std::size_t name_length = 40) {
+    for (int i = 0; i < count; ++i) bytes.push_back(some_bytes(static_cast<std::size_t>(1 + i * 700)));
+    for (const Bytes& b : bytes) {
+      asset_ref_t ref{};
+      ref.hash = fnv1a_64(b.data(), b.size());
+      ref.size = static_cast<std::int32_t>(b.size());
+      ref.name = std::string(name_length, 'n');
+      assets.push_back({ref, &b});
+    }
+  }
+};
+
+// All but the pages of the message types.
+std::vector<LogEvent> read_but_types(std::span<const std::uint8_t> bytes) {
+  std::vector<LogEvent> events = read_all(bytes);
+  std::erase_if(events, [](const LogEvent& e) { return e.channel == kLogTypes; });
+  return events;
+}
+
+struct Fixture {
+  std::shared_ptr<MemorySink::State> disk = std::make_shared<MemorySink::State>();
+  Identity id{"recorder", 5, 6, 7};
+  Recorder recorder;
+  MessageBatch batch;
+  std::int64_t seq = 0;
+
+  static log_info_t info() {
+    log_info_t i{};
+    i.realtime_offset_ns = kOffsetNs;
+    i.scene = "room.sdf";
+    return i;
+  }
+  Fixture() : recorder(id, info(), LogWriter(std::make_unique<MemorySink>(disk)), kStart) {}
+
+  void hear(HostTime t, std::int64_t skip = 0) {
+    asset_chunk_t m{};
+    m.header = header_of("sim_node", 9, seq += skip, to_ns(t));
+    m.chunks = m.size = 1;
+    m.data = {1};
+    ++seq;
+    batch.clear();
+    batch.add(t, {"LIVE", encode(m)}, 1 << 20);
+    recorder.push(batch);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("The head of a log comes before everything that was heard, evenly spaced, and holds the whole scene") {
+  Fixture f;
+  const Scene scene(30);
+  for (int i = 0; i < 100; ++i) f.hear(kStart + Nanoseconds(i * 1'000'000));
+  f.recorder.poll(kStart + Nanoseconds(100'000'000));
+  CHECK(f.disk->bytes.empty());
+  f.recorder.begin(scene.assets, kStart + Nanoseconds(100'000'000));
+  f.recorder.poll(kStart + Nanoseconds(120'000'000));
+
+  const auto events = read_all(f.disk->bytes);
+  REQUIRE(events.size() > 101);
+  const std::size_t head = events.size() - 100;
+  CHECK(events[head].timestamp_us == (to_ns(kStart) + kOffsetNs) / 1000);
+  for (std::size_t i = 0; i < head; ++i) {
+    CHECK(events[i].timestamp_us == events[head].timestamp_us - 500 * static_cast<std::int64_t>(head - i));
+    CHECK(events[i].data.size() <= channels::kMaxMessageBytes);
+  }
+
+  REQUIRE(events[0].channel == channels::kLogInfo);
+  const auto info = decode<log_info_t>(events[0].data.data(), events[0].data.size());
+  REQUIRE(info);
+  CHECK(info->realtime_offset_ns == kOffsetNs);
+  CHECK(info->live_from_ns == to_ns(kStart));
+  CHECK(info->scene == "room.sdf");
+
+  std::vector<asset_ref_t> refs;
+  std::map<std::int64_t, Bytes> received;
+  int page = 0;
+  for (std::size_t i = 1; i < head; ++i) {
+    if (events[i].channel == kLogTypes) continue;
+    if (const auto m = decode<scene_manifest_t>(events[i].data.data(), events[i].data.size())) {
+      CHECK(received.empty());  // the manifest comes first, so that a receiver knows what the chunks are for
+      CHECK(m->page == page++);
+      refs.insert(refs.end(), m->assets.begin(), m->assets.end());
+      continue;
+    }
+    const auto chunk = decode<asset_chunk_t>(events[i].data.data(), events[i].data.size());
+    REQUIRE(chunk);
+    Bytes& bytes = received[chunk->hash];
+    CHECK(bytes.size() == static_cast<std::size_t>(chunk->chunk) * kChunkBytes);
+    bytes.insert(bytes.end(), chunk->data.begin(), chunk->data.end());
+  }
+  CHECK(page > 1);
+  REQUIRE(refs.size() == scene.assets.size());
+  for (std::size_t i = 0; i < refs.size(); ++i) {
+    CHECK(refs[i].hash == scene.assets[i].ref.hash);
+    CHECK(received[refs[i].hash] == scene.bytes[i]);
+  }
+}
+
+TEST_CASE("A log begins without the scene when that does not come") {
+  Fixture f;
+  f.hear(kStart + Nanoseconds(5'000'000));
+  f.recorder.poll(kStart + Recorder::kWaitForScene - Nanoseconds(1));
+  CHECK_FALSE(f.recorder.begun());
+  f.recorder.poll(kStart + Recorder::kWaitForScene);
+  CHECK(f.recorder.begun());
+  const auto events = read_but_types(f.disk->bytes);
+  REQUIRE(events.size() == 2);
+  CHECK(events[0].channel == channels::kLogInfo);
+  CHECK(events[1].channel == "LIVE");
+
+  SECTION("and a scene that comes later changes nothing: its chunks crossed the bus") {
+    f.recorder.begin(Scene(3).assets, kStart + Nanoseconds(6'000'000'000));
+    f.recorder.finish(kStart + Nanoseconds(7'000'000'000));
+    CHECK(read_but_types(f.disk->bytes).size() == 2);
+  }
+}
+
+TEST_CASE("A log begins at once when what waits for the scene grows too large, and nothing is lost") {
+  Fixture f;
+  asset_chunk_t m{};
+  m.header = header_of("sim_node", 9, 0, 1);
+  m.chunks = 1;
+  m.size = 1024;
+  m.data.resize(1024);
+  int n = 0;
+  for (; !f.recorder.begun(); ++n) {
+    f.batch.clear();
+    m.header.seq = n;
+    f.batch.add(kStart + Nanoseconds(n), {"LIVE", encode(m)}, 1 << 20);
+    f.recorder.push(f.batch);
+  }
+  CHECK(n < static_cast<int>(Recorder::kMaxHeldBytes / 1024) + 1);
+  f.recorder.finish(kStart);
+  CHECK(read_but_types(f.disk->bytes).size() == static_cast<std::size_t>(n) + 1);
+}
+
+TEST_CASE("Nothing that was heard is lost when the recorder ends before the scene comes") {
+  Fixture f;
+  f.hear(kStart);
+  f.recorder.finish(kStart + Nanoseconds(1));
+  CHECK(read_but_types(f.disk->bytes).size() == 2);
+}
+
+TEST_CASE("Messages that are missing in their numbering are counted by channel") {
+  Fixture f;
+  f.recorder.begin({}, kStart);
+  f.hear(kStart + Nanoseconds(1));
+  f.hear(kStart + Nanoseconds(2), 3);
+  f.hear(kStart + Nanoseconds(3));
+  CHECK(f.recorder.gaps() == 3);
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("gaps: LIVE 3"));
+}
+
+TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
+  Fixture f;
+  f.recorder.begin({}, kStart);
+  f.disk->trouble = "No space left on device";
+  f.hear(kStart);
+  f.recorder.poll(kStart);
+  CHECK(f.recorder.failing());
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("No space left on device"));
+  f.disk->trouble.clear();
+  f.recorder.poll(kStart + Nanoseconds(500'000'000));
+  CHECK(f.recorder.failing());
+  f.recorder.poll(kStart + Nanoseconds(1'000'000'000));
+  CHECK_FALSE(f.recorder.failing());
+  CHECK(read_but_types(f.disk->bytes).size() == 2);
+}
+
+TEST_CASE("A message that is none of ours is recorded as it is") {
+  Fixture f;
+  f.recorder.begin({}, kStart);
+  f.batch.clear();
+  for (std::size_t size : {0u, 1u, 7u, 8u, 60u}) f.batch.add(kStart, {"FOREIGN", Bytes(size, 0xff)}, 1 << 20);
+  f.recorder.push(f.batch);
+  f.recorder.finish(kStart);
+  CHECK(read_but_types(f.disk->bytes).size() == 6);
+  CHECK(f.recorder.gaps() == 0);
+}
+
+TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
+  Fixture f;
+  CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
+  CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
+}
+
+TEST_CASE("A log says itself what its messages are, each type with the bytes that it begins with") {
+  Fixture f;
+  f.recorder.begin({}, kStart);
+  f.recorder.finish(kStart);
+  std::string text;
+  int pages = 0;
+  for (const LogEvent& e : read_all(f.disk->bytes)) {
+    if (e.channel != kLogTypes) continue;
+    CHECK(e.data.size() <= channels::kMaxMessageBytes);
+    const std::string page(e.data.begin(), e.data.end());
+    CHECK(page.starts_with("tactus types, page " + std::to_string(++pages) + " of "));
+    text += page.substr(page.find('\n') + 1);
+  }
+  CHECK(pages == static_cast<int>(log_types().size()));
+  for (const MessageType& t : message_types()) {
+    char fingerprint[20];
+    std::snprintf(fingerprint, sizeof fingerprint, "0x%016llx", static_cast<unsigned long long>(t.fingerprint));
+    CHECK(text.find("struct " + std::string(t.name) + " " + fingerprint + "\n") != std::string::npos);
+    for (const Field& field : t.fields)
+      CHECK(text.find("  " + std::string(field.type) + " " + std::string(field.name)) != std::string::npos);
+  }
+  CHECK(text.find("channel WORLD_STATE world_state_t\n") != std::string::npos);
+}
+
+TEST_CASE("Each part of a split log has the head, and together they hold every message once") {
+  Fixture f;
+  const Scene scene(5);
+  std::vector<std::shared_ptr<MemorySink::State>> parts{f.disk};
+  LogLimits limits;
+  SECTION("by size") { limits.split_bytes = 60'000; }
+  SECTION("by time") { limits.split_after = Nanoseconds(500'000'000); }
+  f.recorder.limit(
+      limits,
+      [&] {
+        parts.push_back(std::make_shared<MemorySink::State>());
+        return std::make_unique<MemorySink>(parts.back());
+      },
+      nullptr);
+  f.recorder.begin(scene.assets, kStart);
+  for (int i = 0; i < 2000; ++i) {
+    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    if (i % 20 == 0) f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
+  }
+  f.recorder.finish(kStart + Nanoseconds(2'000'000'000));
+  REQUIRE(parts.size() > 3);
+  CHECK(f.recorder.parts() == static_cast<int>(parts.size()));
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("in " + std::to_string(parts.size()) + " parts"));
+  std::int64_t next = 0;
+  for (const auto& part : parts) {
+    const auto events = read_all(part->bytes);
+    REQUIRE(!events.empty());
+    CHECK(events.front().channel == channels::kLogInfo);
+    std::map<std::int64_t, Bytes> assets;
+    for (const LogEvent& e : events) {
+      const auto m = decode<asset_chunk_t>(e.data.data(), e.data.size());
+      if (e.channel == channels::kAssetChunk && m) {
+        Bytes& bytes = assets[m->hash];
+        bytes.insert(bytes.end(), m->data.begin(), m->data.end());
+      }
+      if (e.channel == "LIVE") CHECK(m->header.seq == next++);
+    }
+    for (std::size_t i = 0; i < scene.assets.size(); ++i)
+      CHECK(assets[scene.assets[i].ref.hash] == scene.bytes[i]);
+  }
+  CHECK(next == 2000);
+}
+
+TEST_CASE("A part that cannot be begun is said, and the one before it goes on") {
+  Fixture f;
+  LogLimits limits;
+  limits.split_after = Nanoseconds(100'000'000);
+  f.recorder.limit(
+      limits, []() -> std::unique_ptr<LogSink> { throw std::runtime_error("cannot create run.2.lcmlog"); },
+      nullptr);
+  f.recorder.begin({}, kStart);
+  for (int i = 0; i < 300; ++i) {
+    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
+  }
+  CHECK(f.recorder.failing());
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("cannot create run.2.lcmlog"));
+  f.recorder.finish(kStart + Nanoseconds(300'000'000));
+  CHECK(read_but_types(f.disk->bytes).size() == 301);
+}
+
+TEST_CASE("A log of a largest size ends there, and what exceeds it is counted") {
+  Fixture f;
+  LogLimits limits;
+  limits.max_bytes = 50'000;
+  f.recorder.limit(limits, nullptr, nullptr);
+  f.recorder.begin({}, kStart);
+  for (int i = 0; i < 2000; ++i) f.hear(kStart + Nanoseconds(i));
+  f.recorder.finish(kStart + Nanoseconds(5000));
+  CHECK(f.disk->bytes.size() <= 50'000 + channels::kMaxMessageBytes);
+  CHECK(f.recorder.beyond() > 0);
+  CHECK(static_cast<std::int64_t>(read_but_types(f.disk->bytes).size()) + f.recorder.beyond() == 2001);
+  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("beyond the largest size"));
+}

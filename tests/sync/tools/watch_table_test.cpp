@@ -1,0 +1,100 @@
+#include "sync/tools/watch_table.h"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+const HostTime kNow = host_time(1'000'000'000'000);
+
+node_health_t health(const std::string& node) {
+  node_health_t m{};
+  m.node = node;
+  m.state = node_health_t::RUNNING;
+  m.rate_Hz = 999.94;
+  m.missed_ticks = 3;
+  m.contacts_rendered = 17;
+  m.note = "SCHED_FIFO 60, memory locked";
+  m.inputs = {{"TOUCH_MODEL", 1'300'000, 0, 100, 0, 0}, {"CONTACT_EVENTS", 9'000'000'000, 0, 5, 0, 0},
+              {"SCENE_MANIFEST", 700'000'000, 0, 5, 0, 0}};
+  m.input_count = 3;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("The table shows how a node fares") {
+  WatchTable table;
+  table.observe(health("haptic_node"), kNow);
+  const auto rows = table.rows(kNow + Nanoseconds(100'000'000));
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].state == "running");
+  CHECK(rows[0].missed_ticks == 3);
+  CHECK(rows[0].rendered == 17);
+
+  SECTION("the age is that of an input that should flow, not of events that did not happen") {
+    CHECK(rows[0].oldest_input == "TOUCH_MODEL");
+    CHECK(rows[0].input_age == Nanoseconds(1'300'000));
+  }
+  SECTION("a node that falls silent is lost, and shows no rate") {
+    const auto later = table.rows(kNow + Nanoseconds(600'000'000));
+    CHECK(later[0].state == "LOST");
+    CHECK(later[0].rate_Hz == 0);
+    CHECK(later[0].note == "silent for 600 ms");
+  }
+  SECTION("and comes back") {
+    table.observe(health("haptic_node"), kNow + Nanoseconds(2'000'000'000));
+    CHECK(table.rows(kNow + Nanoseconds(2'000'000'000))[0].state == "running");
+  }
+}
+
+TEST_CASE("The table fits the terminal") {
+  WatchTable table;
+  for (const char* name : {"audio_node", "haptic_node", "a_node_with_quite_a_long_name_indeed"})
+    table.observe(health(name), kNow);
+  sync_report_t report{};
+  report.hits = 12;
+  report.modalities = {{"audio", 12, 11, 1, 0, 0, 0, 0}};
+  report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3, 40'000, -1, -1}};
+  table.observe(report);
+  for (std::size_t width : {40u, 80u, 110u}) {
+    std::istringstream lines(table.to_text(kNow, width));
+    int n = 0;
+    for (std::string line; std::getline(lines, line); ++n)
+      if (n < 4) CHECK(line.size() <= width);
+    CHECK(n == 5);
+  }
+  const std::string text = table.to_text(kNow);
+  CHECK_THAT(text, Catch::Contains("999.9"));
+  CHECK_THAT(text, Catch::Contains("1.3 ms TOUCH_MODEL"));
+  CHECK_THAT(text, Catch::Contains("audio 11/12 LOST 1"));
+  CHECK_THAT(text, Catch::Contains("haptic to audio -20 ms +-0.04 ms"));
+}
+
+TEST_CASE("Before the first report the table says so") {
+  CHECK_THAT(WatchTable().to_text(kNow), Catch::Contains("no node has reported yet"));
+}
+
+TEST_CASE("What a node says is shown, not obeyed by the terminal") {
+  WatchTable table;
+  node_health_t m = health("a\x1b[2J");
+  m.note = "one\ntwo\x1b]0;title\a";
+  table.observe(m, kNow);
+  const std::string text = table.to_text(kNow);
+  CHECK(std::count(text.begin(), text.end(), '\n') == 2);
+  CHECK(text.find_first_of("\x1b\a") == std::string::npos);
+  CHECK_THAT(text, Catch::Contains("\\x1b[2J") && Catch::Contains("one\\x0atwo"));
+}
+
+TEST_CASE("As JSON it is one line, whatever a note holds") {
+  WatchTable table;
+  node_health_t m = health("audio_node");
+  m.note = "line\nbreak \"quoted\" \xff";
+  table.observe(m, kNow);
+  const std::string json = table.to_json(kNow);
+  CHECK(std::count(json.begin(), json.end(), '\n') == 1);
+  CHECK_THAT(json, Catch::Contains("\"missed_ticks\":3"));
+}

@@ -1,0 +1,76 @@
+#include "thermal_node/devices/choice.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+
+namespace {
+scene_t scene_with(std::vector<std::string> tools) {
+  scene_t scene{};
+  for (const std::string& name : tools) {
+    tool_def_t tool{};
+    tool.name = name;
+    tool.body = 10 + static_cast<int>(scene.tools.size());
+    scene.tools.push_back(tool);
+  }
+  scene.tool_count = static_cast<int>(tools.size());
+  return scene;
+}
+}  // namespace
+
+TEST_CASE("The first tool is felt unless another is named") {
+  scene_t scene = scene_with({"hand", "foot"});
+  CHECK(thermal::choose(scene, "", {}).tool == 0);
+  CHECK(thermal::choose(scene, "foot", {}).tool == 1);
+  CHECK(thermal::choose(scene, "foot", {}).tool_body == 11);
+  SECTION("by the scene, and over it by the command line") {
+    setting_t s{};
+    s.node = "thermal_node", s.name = "tool", s.value = "foot";
+    scene.settings = {s};
+    CHECK(thermal::choose(scene, "", {}).tool == 1);
+    CHECK(thermal::choose(scene, "hand", {}).tool == 0);
+  }
+}
+
+TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
+  const auto none = thermal::choose(scene_with({}), "", {});
+  CHECK(none.tool == -1);
+  CHECK_FALSE(none.problem.empty());
+  const auto other = thermal::choose(scene_with({"hand", "foot"}), "nose", {});
+  CHECK(other.tool == -1);
+  CHECK(other.problem.find("hand, foot") != std::string::npos);
+}
+
+TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element. The command line can") {
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
+           {"temperature_min", "10"}, {"temperature_max", "43"}, {"slew_max", "300"}}) {
+    INFO(name);
+    scene_t scene = scene_with({"hand"});
+    setting_t s{};
+    s.node = "thermal_node", s.name = name, s.value = value;
+    scene.settings = {s};
+    const auto choice = thermal::choose(scene, "", {});
+    REQUIRE(choice.refused.size() == 1);
+    CHECK(choice.refused[0].find("only tighten") != std::string::npos);
+    CHECK(choice.settings.temperature_min_degC == 15);
+    CHECK(choice.settings.temperature_max_degC == 42);
+    CHECK(choice.settings.slew_max_K_s == 20);
+    CHECK(thermal::choose(scene_with({"hand"}), "", {name + "=" + value}).refused.empty());
+  }
+}
+
+TEST_CASE("Settings are taken from the scene and the command line, and refused with a sentence") {
+  scene_t scene = scene_with({"hand"});
+  setting_t s{};
+  s.node = "thermal_node", s.name = "rate", s.value = "100 Hz";
+  scene.settings = {s};
+  CHECK(thermal::choose(scene, "", {}).settings.rate_Hz == 100);
+  CHECK(thermal::choose(scene, "", {"rate=20"}).settings.rate_Hz == 20);
+  for (const char* wrong : {"rate=5000", "rate=fast", "colour=red", "temperature_max=60", "temperature_min=-5"}) {
+    const auto choice = thermal::choose(scene, "", {wrong});
+    INFO(wrong);
+    CHECK(choice.refused.size() == 1);
+    CHECK(choice.settings.rate_Hz == 100);
+    CHECK(choice.settings.temperature_max_degC == 42);
+  }
+}

@@ -1,0 +1,189 @@
+#include "thermal_node/display/ticks.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace std::chrono_literals;
+using thermal::Tick;
+using thermal::Ticks;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+// A simulation whose time runs with the host's, 1 s behind, that speaks every millisecond.
+struct World {
+  sync::ContactStream stream{1};
+  std::int64_t host_ms = 1000;
+  std::int64_t incarnation = 5;
+  std::int64_t seq = 0;
+  double rate = 1;
+  std::vector<contact_t> contacts;
+
+  sync::HostTime now() const { return sync::host_time(host_ms * kMs); }
+
+  template <class Message>
+  void stamp(Message& m) {
+    m.header.run_id = 1;
+    m.header.incarnation = incarnation;
+    m.header.seq = seq++;
+    m.header.publish_time_ns = host_ms * kMs;
+    m.header.sim_time_ns = (host_ms - 1000) * kMs;
+    m.clock.sim_ns = m.header.sim_time_ns;
+    m.clock.host_ns = host_ms * kMs;
+    m.clock.rate = rate;
+  }
+  void event(std::int8_t kind, std::int64_t id, std::int64_t at_ms) {
+    contact_events_t m{};
+    stamp(m);
+    m.pages = 1;
+    contact_event_t e{};
+    e.event_id = id * 10 + kind;
+    e.contact_id = id;
+    e.kind = kind;
+    e.time_ns = at_ms * kMs;
+    e.tool = 0;
+    e.body_b = 9;
+    e.effective_mass_kg = 1;
+    m.events = {e};
+    m.count = 1;
+    stream.push(m, now());
+  }
+  void run(int ms) {
+    for (int i = 0; i < ms; ++i) {
+      ++host_ms;
+      contact_frame_t m{};
+      stamp(m);
+      m.group = contact_frame_t::TOOL;
+      m.pages = 1;
+      m.contacts = contacts;
+      m.count = static_cast<int>(contacts.size());
+      stream.push(m, now());
+    }
+  }
+  Tick tick(Ticks& ticks) { return ticks.next(stream, now(), now(), 0, 9); }
+};
+
+contact_t touch(std::int64_t id, float force_N) {
+  contact_t c{};
+  c.contact_id = id;
+  c.tool = 0;
+  c.body_a = 3;
+  c.body_b = 9;
+  c.material_a = 2;
+  c.material_b = -1;
+  c.normal_force_N = force_N;
+  c.area_m2 = 1e-5f;
+  c.point_count = 1;
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("Before the first message a tick is empty") {
+  World world;
+  Ticks ticks;
+  const Tick tick = world.tick(ticks);
+  CHECK(tick.contact.how == sync::How::kNone);
+  CHECK(tick.events.empty());
+}
+
+TEST_CASE("Ticks cut the world's time without a gap or an overlap") {
+  World world;
+  world.run(100);
+  Ticks ticks;
+  Tick before = world.tick(ticks);
+  for (const int ms : {20, 20, 35, 1, 90, 20}) {
+    world.run(ms);
+    const Tick tick = world.tick(ticks);
+    CHECK(tick.sim_begin == before.sim_end);
+    CHECK(tick.begin == before.end);
+    CHECK(tick.sim_end - tick.sim_begin == std::chrono::milliseconds(ms));
+    before = tick;
+  }
+}
+
+TEST_CASE("Every part of a touch is felt in one tick, however its events fall on their borders") {
+  // A touch of 7 ms, begun at each millisecond of a tick: the contact times of all ticks sum up to 7 ms.
+  for (int begin = 100; begin < 120; ++begin) {
+    World world;
+    Ticks ticks;
+    world.run(60);
+    world.tick(ticks);
+    sync::Nanoseconds sum{0};
+    std::size_t events = 0;
+    for (int ms = 61; ms < 300; ++ms) {
+      // What happened in a step is known at its end.
+      if (ms == begin + 1) world.contacts = {touch(4, 1)};
+      if (ms == begin + 8) world.contacts.clear();
+      world.run(1);
+      if (ms == begin + 1) world.event(contact_event_t::BEGIN, 4, begin);
+      if (ms == begin + 8) world.event(contact_event_t::END, 4, begin + 7);
+      if (ms % 20 != 0) continue;
+      const Tick tick = world.tick(ticks);
+      sum += tick.contact.contact_time;
+      events += tick.events.size();
+      CHECK((tick.contact.material == 2) == (tick.contact.contact_time > 0ms));
+    }
+    CHECK(sum == 7ms);
+    CHECK(events == 2);
+  }
+}
+
+TEST_CASE("A silent simulation turns stale after 50 ms") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.run(60);
+  CHECK(world.tick(ticks).contact.how != sync::How::kStale);
+  world.host_ms += 40;
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 40ms, 0, 9).contact.how == sync::How::kHeld);
+  world.host_ms += 20;
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 60ms, 0, 9).contact.how == sync::How::kStale);
+}
+
+TEST_CASE("While the world is paused its contact is held, and it turns stale when the simulation dies") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.run(60);
+  world.tick(ticks);
+  world.run(20);
+  const Tick running = world.tick(ticks);
+  REQUIRE(running.contact.force_N == Approx(1));
+  world.rate = 0;
+  world.event(contact_event_t::HIT, 4, 79);  // carries the paused clock
+  world.host_ms += 20;
+  world.tick(ticks);
+  world.host_ms += 20;
+  const Tick paused = ticks.next(world.stream, world.now(), world.now(), 0, 9);
+  CHECK(paused.sim_begin == paused.sim_end);
+  CHECK(paused.end - paused.begin == 20ms);
+  CHECK(paused.contact.force_N == Approx(1));
+  CHECK(paused.contact.how != sync::How::kStale);
+  world.host_ms += 200;
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.how == sync::How::kStale);
+}
+
+TEST_CASE("A restarted simulation begins a new interval") {
+  World world;
+  Ticks ticks;
+  world.run(500);
+  world.tick(ticks);
+  world.incarnation = 6;
+  world.run(20);
+  const Tick tick = world.tick(ticks);
+  CHECK(tick.sim_end - tick.sim_begin == 20ms);
+}
+
+TEST_CASE("A process that was stopped for a minute integrates no more than two seconds") {
+  World world;
+  Ticks ticks;
+  world.run(100);
+  world.tick(ticks);
+  world.host_ms += 60'000;
+  world.run(1);
+  const Tick tick = world.tick(ticks);
+  CHECK(tick.sim_end - tick.sim_begin == Ticks::kLongest);
+  CHECK(tick.end - tick.begin == 60'001ms);
+}

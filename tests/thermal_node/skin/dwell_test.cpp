@@ -1,0 +1,96 @@
+#include "thermal_node/skin/dwell.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+using namespace tactus::thermal;
+
+namespace {
+constexpr TemperatureRange kWide{15, 42};
+// Seconds at degC until the range is no longer wide; at most an hour.
+double lasts_s(double degC) {
+  Dwell dwell({60, 20, 60});
+  for (int i = 1; i <= 180'000; ++i) {
+    const TemperatureRange range = dwell.step(degC, 0.02, kWide);
+    if (range.min_degC != kWide.min_degC || range.max_degC != kWide.max_degC) return 0.02 * i;
+  }
+  return INFINITY;
+}
+}  // namespace
+
+TEST_CASE("Warmth may last the shorter the warmer, as the dose says") {
+  CHECK(lasts_s(43) == Approx(60).margin(0.05));
+  CHECK(lasts_s(42) == Approx(4 * 60).margin(0.05));
+  CHECK(lasts_s(41) == Approx(16 * 60).margin(0.1));
+  CHECK(lasts_s(44) == Approx(30).margin(0.05));
+  CHECK(lasts_s(45) == Approx(15).margin(0.05));
+  CHECK(std::isinf(lasts_s(39)));
+  CHECK(std::isinf(lasts_s(33)));
+}
+
+TEST_CASE("Cold may last a minute, and what is cool forever") {
+  CHECK(lasts_s(19.9) == Approx(60).margin(0.05));
+  CHECK(lasts_s(15) == Approx(60).margin(0.05));
+  CHECK(std::isinf(lasts_s(20)));
+}
+
+TEST_CASE("What was too warm or too cold for too long is mild until half of it is made good") {
+  Dwell dwell({60, 20, 60});
+  for (int i = 0; i < 61 * 50; ++i) dwell.step(43, 0.02, kWide);
+  CHECK(dwell.step(43, 0.02, kWide).max_degC == Dwell::kWarm_degC);
+  CHECK(dwell.step(43, 0.02, kWide).min_degC == 15);
+  int ticks = 0;
+  while (dwell.step(33, 0.02, kWide).max_degC < 42 && ticks < 100'000) ++ticks;
+  CHECK(ticks * 0.02 == Approx(Dwell::kForgets_s * std::log(2)).epsilon(0.05));
+
+  Dwell cold({60, 20, 60});
+  for (int i = 0; i < 61 * 50; ++i) cold.step(16, 0.02, kWide);
+  CHECK(cold.step(16, 0.02, kWide).min_degC == 20);
+  for (ticks = 0; cold.step(33, 0.02, kWide).min_degC > 15 && ticks < 100'000;) ++ticks;
+  CHECK(ticks * 0.02 == Approx(31).margin(0.2));
+}
+
+TEST_CASE("A narrower range of others stays narrow") {
+  Dwell dwell({60, 20, 60});
+  for (int i = 0; i < 61 * 50; ++i) dwell.step(43, 0.02, {25, 36});
+  const TemperatureRange range = dwell.step(43, 0.02, {25, 36});
+  CHECK(range.min_degC == 25);
+  CHECK(range.max_degC == 36);
+}
+
+TEST_CASE("A new scene does not undo what the skin has had") {
+  Dwell before({60, 20, 60});
+  for (int i = 0; i < 61 * 50; ++i) before.step(43, 0.02, kWide);
+  Dwell after({60, 20, 60});
+  after.resume(before);
+  CHECK(after.step(43, 0.02, kWide).max_degC == Dwell::kWarm_degC);
+}
+
+TEST_CASE("A temperature that is no number counts as the worst, time that stands still as nothing") {
+  Dwell dwell({60, 20, 60});
+  for (int i = 0; i < 61 * 50; ++i)
+    dwell.step(33, NAN, kWide), dwell.step(43, -1, kWide), dwell.step(43, 0, kWide);
+  CHECK(dwell.dose_s() == 0);
+  for (int i = 0; i < 241 * 50; ++i) dwell.step(NAN, 0.02, kWide);
+  CHECK(dwell.step(NAN, 0.02, kWide).max_degC == Dwell::kWarm_degC);
+  CHECK(dwell.step(NAN, 0.02, kWide).min_degC == 20);
+}
+
+TEST_CASE("Whatever comes, the range is one, within the wide one, and a dose is a number") {
+  std::mt19937_64 random(3);
+  Dwell dwell({60, 20, 60});
+  for (int i = 0; i < 200'000; ++i) {
+    const std::uint64_t bits = random();
+    double degC;
+    std::memcpy(&degC, &bits, sizeof degC);
+    if (random() % 2) degC = static_cast<double>(random() % 60);
+    const TemperatureRange range = dwell.step(degC, 0.001 * static_cast<double>(random() % 100), kWide);
+    REQUIRE(range.min_degC >= 15);
+    REQUIRE(range.max_degC <= 42);
+    REQUIRE(range.min_degC < range.max_degC);
+    REQUIRE(std::isfinite(dwell.dose_s()));
+    REQUIRE(std::isfinite(dwell.cold_s()));
+  }
+}

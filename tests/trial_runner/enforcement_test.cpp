@@ -1,0 +1,62 @@
+#include "scripts/trial_runner/enforcement.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::conductor;
+
+namespace {
+
+sync::HostTime ms(std::int64_t t) { return sync::host_time(t * 1'000'000); }
+
+node_health_t health(const char* node, const char* modality, std::int64_t profile) {
+  node_health_t m{};
+  m.node = node, m.modality = modality, m.profile = profile;
+  return m;
+}
+
+sync::ProfileInForce profile(std::int64_t hash) {
+  sync::ProfileInForce p;
+  p.text = "<profile/>", p.hash = hash, p.generation = hash;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("A profile is in force when every sense that is there has it, and that is said once") {
+  Enforcement e;
+  e.push(health("audio_node", "audio", 0), ms(0));
+  e.push(health("visual_node", "visual", 0), ms(0));
+  e.push(health("recorder", "", 0), ms(0));
+  e.begin(profile(7));
+  REQUIRE(e.to_send(ms(10)));
+  CHECK_FALSE(e.to_send(ms(50)));
+  CHECK(e.to_send(ms(110)));
+  e.push(health("audio_node", "audio", 7), ms(100));
+  CHECK_FALSE(e.take_in_force(ms(100)));
+  CHECK(e.missing(ms(100)) == std::vector<std::string>{"visual_node"});
+  e.push(health("visual_node", "visual", 7), ms(120));
+  CHECK(e.take_in_force(ms(121)) == std::vector<std::string>{"audio_node", "visual_node"});
+  CHECK_FALSE(e.take_in_force(ms(122)));
+  CHECK_FALSE(e.to_send(ms(1000)));
+}
+
+TEST_CASE("A sense that has gone is not waited for, and without any nothing is in force") {
+  Enforcement e;
+  e.push(health("audio_node", "audio", 0), ms(0));
+  e.begin(profile(7));
+  CHECK_FALSE(e.take_in_force(ms(499)));
+  CHECK_FALSE(e.take_in_force(ms(501)));
+  e.push(health("visual_node", "visual", 7), ms(600));
+  CHECK(e.take_in_force(ms(601)) == std::vector<std::string>{"visual_node"});
+}
+
+TEST_CASE("The next profile has to be taken anew") {
+  Enforcement e;
+  e.push(health("audio_node", "audio", 7), ms(0));
+  e.begin(profile(7));
+  REQUIRE(e.take_in_force(ms(1)));
+  e.begin(profile(8));
+  CHECK_FALSE(e.take_in_force(ms(2)));
+  CHECK(e.to_send(ms(2)));
+}

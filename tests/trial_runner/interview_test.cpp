@@ -1,0 +1,82 @@
+#include "scripts/trial_runner/interview.h"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::conductor;
+
+namespace {
+
+question_t choice(int count) {
+  question_t q{};
+  q.kind = question_t::CHOICE, q.text = "Together?", q.count = count;
+  for (int i = 0; i < count; ++i) q.choices.push_back(std::string(1, static_cast<char>('a' + i)));
+  q.trial = 5;
+  return q;
+}
+
+sync::HostTime ms(std::int64_t t) { return sync::host_time(t * 1'000'000); }
+
+}  // namespace
+
+TEST_CASE("A question is said at once, again every 200 ms, and no more once it is answered") {
+  Interview interview(1);
+  interview.ask(choice(2));
+  const auto first = interview.step(ms(1000));
+  REQUIRE(first);
+  CHECK_FALSE(interview.step(ms(1100)));
+  const auto again = interview.step(ms(1200));
+  REQUIRE(again);
+  CHECK(again->id == first->id);
+  const auto a = interview.answer(1, 0, "button", ms(1300));
+  REQUIRE(a);
+  CHECK(a->after_ns == 300'000'000);
+  REQUIRE(interview.take(*a));
+  CHECK_FALSE(interview.take(*a));
+  CHECK_FALSE(interview.waits());
+  const auto nothing = interview.step(ms(1301));
+  REQUIRE(nothing);
+  CHECK(nothing->kind == question_t::NOTHING);
+  CHECK(nothing->trial == 5);
+  CHECK(nothing->id != first->id);
+}
+
+TEST_CASE("An answer to another question, or one that it has not, is none") {
+  Interview interview(1);
+  interview.ask(choice(2));
+  interview.step(ms(0));
+  answer_t a = *interview.answer(0, 0, "key", ms(10));
+  ++a.id;
+  CHECK_FALSE(interview.take(a));
+  --a.id, a.choice = 2;
+  CHECK_FALSE(interview.take(a));
+  a.choice = -1;
+  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.answer(2, 0, "button", ms(20)));
+  CHECK(interview.waits());
+}
+
+TEST_CASE("Nothing can be answered before it was asked") {
+  Interview interview(1);
+  interview.ask(choice(2));
+  CHECK_FALSE(interview.answer(0, 0, "button", ms(0)));
+}
+
+TEST_CASE("A number outside of its range is no answer") {
+  Interview interview(1);
+  question_t q{};
+  q.kind = question_t::NUMBER, q.text = "How warm?", q.lowest = 20, q.highest = 40, q.step = 0.5;
+  interview.ask(q);
+  interview.step(ms(0));
+  CHECK_FALSE(interview.take(*interview.answer(0, 19, "page", ms(1))));
+  CHECK_FALSE(interview.take(*interview.answer(0, NAN, "page", ms(1))));
+  CHECK(interview.take(*interview.answer(0, 40, "page", ms(1))));
+}
+
+TEST_CASE("A question that nobody could answer is not asked, and the one before stays") {
+  Interview interview(1);
+  interview.ask(choice(3));
+  CHECK_THROWS_AS(interview.ask(choice(1)), std::invalid_argument);
+  CHECK_THROWS_AS(interview.ask(choice(10)), std::invalid_argument);
+  CHECK(interview.asked().count == 3);
+}

@@ -1,0 +1,44 @@
+#include "scripts/trial_runner/orders.h"
+
+#include <catch2/catch.hpp>
+#include <tactus/sim_command_t.hpp>
+
+using namespace tactus;
+using namespace tactus::conductor;
+using Catch::Matchers::Contains;
+
+TEST_CASE("Each order is read as what it is") {
+  CHECK(std::get<ProfileOrder>(parse_order(R"({"profile": "<profile/>"})")).text == "<profile/>");
+  CHECK(std::get<TapOrder>(parse_order(R"({"tap": {"depth_m": 0.01}})")).depth_m == 0.01);
+  CHECK(std::get<PressOrder>(parse_order(R"({"press": {"depth_m": 0.01, "period_s": 0.5, "times": 3}})")).times ==
+        3);
+  CHECK(std::get<CommandOrder>(parse_order(R"({"command": {"kind": "reset"}})")).kind == sim_command_t::RESET);
+  CHECK(std::get<AnswerOrder>(parse_order(R"({"answer": {"number": 0.5}})")).number == 0.5);
+  CHECK(std::holds_alternative<EndOrder>(parse_order(R"({"end": true})")));
+  const auto q =
+      std::get<QuestionOrder>(
+          parse_order(
+              R"({"question": {"kind": "number", "text": "How hard?", "lowest": 0, "highest": 1, "step": 0.1, "trial": 3, "condition": "c"}})"))
+          .question;
+  CHECK(q.kind == question_t::NUMBER);
+  CHECK(q.trial == 3);
+  CHECK(q.step == 0.1);
+}
+
+TEST_CASE("What is no order is refused with a reason") {
+  const auto refuses = [](const char* line, const char* why) {
+    CHECK_THROWS_WITH(parse_order(line), Contains(why));
+  };
+  refuses("", "JSON object with one member");
+  refuses("[]", "JSON object with one member");
+  refuses("{}", "JSON object with one member");
+  refuses(R"({"end": true, "tap": {}})", "JSON object with one member");
+  refuses(R"({"dance": 1})", "there is no order");
+  refuses(R"({"tap": 1})", "tap is no JSON object");
+  refuses(R"({"tap": {"depth_m": "deep"}})", "depth_m is not a number from 0");
+  refuses(R"({"tap": {"depth_m": 5}})", "depth_m is not a number from 0");
+  refuses(R"({"question": {"kind": "riddle"}})", "none of nothing, read, choice, number");
+  refuses(R"({"question": {"kind": "choice", "choices": [1]}})", "a choice is not text");
+  refuses(R"({"command": {"kind": "explode"}})", "none of pause");
+  refuses(R"({"profile": 3})", "profile is not text");
+}

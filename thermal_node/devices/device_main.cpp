@@ -1,0 +1,65 @@
+// thermal_device: a thermal display as a program of its own, behind the two messages of `device=external`, at 100
+// Hz. Its Peltier element is simulated; to drive a real one, replace `plate` by what talks to yours.
+//
+//   in   THERMAL_STATE    what its tool's plate is to be brought to
+//   out  THERMAL_DEVICE   every tick
+//
+// Losing THERMAL_STATE for 0.3 s brings the plate back to neutral; its own limits hold whatever is commanded.
+//
+// The whole contract: read THERMAL_STATE of your tool; never trust it further than your own limits; answer with
+// THERMAL_DEVICE. Both are in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another
+// language fill it by hand: run_id and clock as in the THERMAL_STATE that you answer when you run on its machine,
+// source and incarnation of your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "sync/node/node.h"
+#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/external.h"
+#include "thermal_node/devices/simulated_peltier.h"
+
+using namespace tactus;
+
+int main(int argc, char** argv) try {
+  const sync::Declaration declaration{
+      .node = "thermal_device",
+      .modality = "",
+      .rate_Hz = 100,
+      .about = "A thermal display behind two messages: an example, with a simulated element."};
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, declaration);
+  int tool = 0;
+  app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
+  sync::parse_or_exit(app, declaration.node, argc, argv);
+  const thermal::Choice choice = thermal::choose(scene_t{}, "", options.set);
+  if (!choice.refused.empty()) throw std::runtime_error(choice.refused.front());
+  const thermal::Settings& settings = choice.settings;
+
+  sync::Node node(declaration, options);
+  auto& commands = node.bus().queue<thermal_state_t>(channels::kThermalState, 64);
+  const double neutral_degC = settings.skin_rest_degC;
+  thermal::SimulatedPeltier plate({}, {}, neutral_degC);
+  thermal_state_t command{};
+  command.commanded_degC = static_cast<float>(neutral_degC);
+  sync::HostTime heard{};
+  node.set_state(node_health_t::WAITING, "waits for THERMAL_STATE");
+
+  while (node.running()) {
+    const sync::HostTime now = node.wait();
+    while (const auto m = commands.pop())
+      if (m->message.tool == tool) command = m->message, heard = m->arrival;
+    const bool silent = now - heard > thermal::Device::kSilence;
+    const double load_W = silent ? 0 : command.heat_flux_W_m2 * settings.reference_area_m2;
+    const auto reading = plate.step(silent ? neutral_degC : command.commanded_degC, load_W, now);
+    if (heard != sync::HostTime{})
+      node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING,
+                     silent ? "no THERMAL_STATE: the plate is neutral" : "");
+    if (!reading) continue;
+    thermal_device_t answer = thermal::to_message(*reading, tool);
+    node.bus().publish(channels::kThermalDevice, answer);
+  }
+  return 0;
+} catch (const std::exception& e) {
+  return sync::fail("thermal_device", e);
+}

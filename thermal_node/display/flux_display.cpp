@@ -1,0 +1,27 @@
+#include "thermal_node/display/flux_display.h"
+
+#include <cmath>
+
+namespace tactus::thermal {
+namespace {
+
+// A plate is what its controller holds it at, whatever flows: so good a conductor that no finger changes it.
+constexpr double kConductivity_W_mK = 1e6;
+constexpr double kHeatCapacity_J_m3K = 1e12;
+
+}  // namespace
+
+double FluxDisplay::step(double skin_degC, double flux_W_m2, double plate_degC, double dt_s,
+                         double longest_substep_s) {
+  if (dt_s > 0 && std::isfinite(plate_degC)) {
+    finger_->set_object({plate_degC, std::sqrt(kConductivity_W_mK * kHeatCapacity_J_m3K), kConductivity_W_mK,
+                         kHeatCapacity_J_m3K});
+    // The model of the touch and that of the finger leave the loss to the room the same, so both are at rest
+    // together.
+    finger_->step(dt_s, contact_.conductance_W_m2K, 0, longest_substep_s);
+  }
+  const double forward = skin_degC - flux_W_m2 / contact_.conductance_W_m2K;
+  return forward + contact_.feedback * (skin_degC - finger_degC());
+}
+
+}  // namespace tactus::thermal

@@ -1,0 +1,18 @@
+#include "thermal_node/display/quality.h"
+
+#include <string>
+
+namespace tactus::thermal {
+namespace {
+
+// Share of a tick; the rest is for a wake-up that comes late and for others (design).
+constexpr double kBudget = 0.5;
+constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+
+}  // namespace
+
+Quality::Quality(const Settings& s)
+    : ladder_(steps(), sync::from_seconds(kBudget / s.rate_Hz), static_cast<int>(kCalm_s * s.rate_Hz)),
+      held_(s.quality == "auto" ? -1 : std::stoi(s.quality)) {}
+
+}  // namespace tactus::thermal

@@ -1,0 +1,47 @@
+#include "thermal_node/display/ticks.h"
+
+#include <algorithm>
+
+namespace tactus::thermal {
+
+Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime newest_arrival, int tool,
+                 int tool_body, sync::Nanoseconds delay) {
+  Tick tick;
+  tick.end = now;
+  tick.begin = std::min(end_.value_or(now), now);
+  end_ = now;
+  const auto map = stream.map(now);
+  if (!map) return tick;
+  tick.map = *map;
+  tick.delay = delay;
+  const sync::Nanoseconds ago = kSettle + delay;
+  if (stream.restarts() != restarts_) sim_end_.reset();
+  restarts_ = stream.restarts();
+
+  tick.sim_end = map->to_sim(now - ago);
+  if (!sim_end_) sim_end_ = map->to_sim(tick.begin - ago);
+  // The map slews; what it takes back for a moment has been felt already. What lies farther back is a new
+  // beginning.
+  const bool fell_back = *sim_end_ - tick.sim_end > kLongest;
+  tick.sim_begin = fell_back ? tick.sim_end : std::max(*sim_end_, tick.sim_end - kLongest);
+  tick.sim_end = std::max(tick.sim_end, tick.sim_begin);
+  sim_end_ = tick.sim_end;
+
+  const bool silent = now - newest_arrival > sync::ContactStream::kStaleAfter;
+  tick.events = stream.take_events(tick.sim_end);
+  if (tick.sim_end > tick.sim_begin) {
+    const auto contact = stream.integral(tick.sim_begin, tick.sim_end, tool, tool_body);
+    const bool commanded_gap = contact.how == sync::How::kStale && !silent;
+    if (!commanded_gap) {
+      contact_ = contact;
+      contact_interval_ = tick.sim_end - tick.sim_begin;
+    }
+  } else if (silent) {
+    contact_.how = sync::How::kStale;  // paused, and now silent
+  }
+  tick.contact = contact_;
+  tick.contact_interval = contact_interval_;
+  return tick;
+}
+
+}  // namespace tactus::thermal

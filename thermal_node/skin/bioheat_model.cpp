@@ -1,0 +1,116 @@
+#include "thermal_node/skin/bioheat_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::thermal {
+namespace {
+
+// Heat passes this many s^0.5 in about (95/2)^2 s = 2000 s: beyond it a thing is infinite.
+constexpr double kFarthest = 95;
+// Of the thinnest cells that a caller may ask for.
+constexpr std::size_t kMostCells = 1000;
+
+// Wider than any material by far; beyond it the grid would lose its numbers.
+bool conducts(double conductivity_W_mK, double heat_capacity_J_m3K) {
+  const double diffusivity = conductivity_W_mK / heat_capacity_J_m3K;
+  return diffusivity > 1e-12 && diffusivity < 1e3 && conductivity_W_mK > 1e-9 && conductivity_W_mK < 1e9;
+}
+
+}  // namespace
+
+BioheatModel::Grid BioheatModel::grid_of(const Tissue& tissue, const Mesh& mesh) {
+  Grid grid;
+  const Layer& top = tissue.layers.front();
+  double next = mesh.first_cell * std::sqrt(top.conductivity_W_mK / (top.density_kg_m3 * top.specific_heat_J_kgK));
+  std::vector<double> widths(kMostCells);
+  for (const Layer& layer : tissue.layers) {
+    const std::size_t count = growing_widths(layer.thickness_m, next, mesh.growth, widths);
+    const double blood = layer.perfused ? tissue.perfusion_1_s * kBloodHeatCapacity_J_m3K : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double w = widths[i];
+      grid.width_m.push_back(w);
+      grid.cells.push_back(
+          {w * layer.density_kg_m3 * layer.specific_heat_J_kgK, 2 * layer.conductivity_W_mK / w, w * blood});
+    }
+    next = grid.width_m.back() * mesh.growth;
+  }
+  return grid;
+}
+
+BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh)
+    : BioheatModel(tissue, mesh, grid_of(tissue, mesh)) {}
+
+BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid)
+    : tissue_(tissue),
+      mesh_(mesh),
+      width_m_(std::move(grid.width_m)),
+      columns_(std::move(grid.cells), kThings, kMostCells),
+      thing_width_m_(kMostCells),
+      thing_cells_(kMostCells) {
+  reset();
+}
+
+// The temperature of undisturbed skin is linear in that of the blood, so that of the blood follows from the
+// difference that one kelvin makes. Without blood nothing balances a loss to the room, so then there is none.
+void BioheatModel::reset() {
+  const bool living = tissue_.perfusion_1_s > 0 && std::any_of(tissue_.layers.begin(), tissue_.layers.end(),
+                                                               [](const Layer& layer) { return layer.perfused; });
+  if (living) {
+    columns_.set_room(0);
+    columns_.set_blood(1);
+    columns_.settle_skin(tissue_.air_conductance_W_m2K);
+    blood_degC_ = tissue_.room_degC + (tissue_.rest_degC - tissue_.room_degC) / columns_.surface();
+    columns_.set_room(tissue_.room_degC);
+    columns_.set_blood(blood_degC_);
+    columns_.settle_skin(tissue_.air_conductance_W_m2K);
+  } else {
+    blood_degC_ = tissue_.rest_degC;
+    columns_.set_room(tissue_.rest_degC);
+    columns_.set_blood(tissue_.rest_degC);
+    columns_.set_skin(tissue_.rest_degC);
+  }
+  for (std::size_t i = 0; i < kThings; ++i) set_object(objects_[i], i);
+}
+
+void BioheatModel::set_object(const ObjectProperties& object, std::size_t thing) {
+  objects_[thing] = object;
+  const double k = object.conductivity_W_mK, c = object.heat_capacity_J_m3K;
+  std::size_t count = 0;
+  double back_W_m2K = 0;
+  if (conducts(k, c)) {
+    const double root = std::sqrt(k / c), far_m = kFarthest * root;
+    const bool ends = object.thickness_m > 0 && object.thickness_m < far_m;
+    count =
+        growing_widths(ends ? object.thickness_m : far_m, mesh_.first_cell * root, mesh_.growth, thing_width_m_);
+    for (std::size_t i = 0; i < count; ++i)
+      thing_cells_[i] = {thing_width_m_[i] * c, 2 * k / thing_width_m_[i], 0};
+    // A thing that ends loses heat at its back; one that is infinite ends nowhere.
+    if (ends && count > 0 && tissue_.air_conductance_W_m2K > 0)
+      back_W_m2K = 1 / (1 / tissue_.air_conductance_W_m2K + 1 / thing_cells_[count - 1].half);
+  }
+  columns_.set_thing(thing, std::span<const HeatCell>(thing_cells_).first(count), back_W_m2K, object.rest_degC);
+}
+
+void BioheatModel::step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
+                        double longest_substep_s) {
+  const double bare = 1 - std::clamp(touched_share, 0.0, 1.0);
+  columns_.step(dt_s, conductance_W_m2K, tissue_.air_conductance_W_m2K * bare, longest_substep_s);
+}
+
+double BioheatModel::at_depth_degC(double depth_m) const {
+  double above_m = 0, above_degC = surface_degC(), top_m = 0;
+  for (std::size_t i = 0; i < width_m_.size(); ++i) {
+    const double here_m = top_m + width_m_[i] / 2, here_degC = columns_.skin(i);
+    if (depth_m <= here_m)
+      return above_degC +
+             (here_degC - above_degC) * std::clamp((depth_m - above_m) / (here_m - above_m), 0.0, 1.0);
+    above_m = here_m;
+    above_degC = here_degC;
+    top_m += width_m_[i];
+  }
+  return above_degC;
+}
+
+}  // namespace tactus::thermal

@@ -1,0 +1,27 @@
+#include "visual_node/devices/context_loss.h"
+
+#include <epoxy/gl.h>
+
+namespace tactus::visual {
+
+std::string why_context_is_lost() {
+  // libepoxy would abort the process where nobody has it.
+  if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
+      epoxy_has_gl_extension("GL_ARB_robustness")) {
+    switch (glGetGraphicsResetStatus()) {
+      case GL_NO_ERROR: return {};
+      case GL_GUILTY_CONTEXT_RESET: return "the graphics device was reset after what this node drew";
+      case GL_INNOCENT_CONTEXT_RESET: return "the graphics device was reset after what another program drew";
+      default: return "the graphics device was reset";
+    }
+  }
+  // Errors of its own making are none of its end; the loop asks once a frame, so that few are left unread.
+  for (int i = 0; i < 16; ++i) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) return {};
+    if (error == GL_CONTEXT_LOST) return "the graphics device has forgotten what it was given";
+  }
+  return {};
+}
+
+}  // namespace tactus::visual

@@ -1,0 +1,152 @@
+#include <pwd.h>
+#include <unistd.h>
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <malloc.h>
+
+#include <array>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "visual_node/devices/context_loss.h"
+#include "visual_node/devices/display.h"
+
+namespace tactus::visual {
+namespace {
+
+struct Candidate {
+  std::string name;
+  EGLDisplay display;
+};
+
+class Headless : public Display {
+ public:
+  Headless(EGLDisplay display, EGLContext context, const std::string& name)
+      : display_(display), context_(context) {
+    description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " on " + name;
+  }
+  ~Headless() override {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+    eglTerminate(display_);
+  }
+  void show(unsigned, int, int, bool) override {}
+  bool closed() override { return false; }
+  std::string lost() override { return why_context_is_lost(); }
+  bool has_screen() const override { return false; }
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_;
+};
+
+std::string error_text() {
+  std::ostringstream text;
+  text << "0x" << std::hex << eglGetError();
+  return text.str();
+}
+
+bool has_client_extension(const char* name) { return epoxy_has_egl_extension(EGL_NO_DISPLAY, name); }
+
+std::vector<Candidate> candidates(int egl_device) {
+  std::vector<Candidate> list;
+  if (has_client_extension("EGL_EXT_platform_device") &&
+      (has_client_extension("EGL_EXT_device_enumeration") || has_client_extension("EGL_EXT_device_base"))) {
+    std::array<EGLDeviceEXT, 64> devices{};
+    EGLint count = 0;
+    eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count);
+    const auto add = [&](int i) {
+      list.push_back(
+          {"EGL device " + std::to_string(i),
+           eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr)});
+    };
+    if (egl_device >= 0 && egl_device < count) add(egl_device);
+    for (int i = 0; i < count; ++i)
+      if (i != egl_device) add(i);
+  }
+  if (has_client_extension("EGL_MESA_platform_surfaceless"))
+    list.push_back({"EGL surfaceless",
+                    eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)});
+  list.push_back({"EGL default display", eglGetDisplay(EGL_DEFAULT_DISPLAY)});
+  return list;
+}
+
+// Null, and why in `reason`, when this one cannot.
+std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) {
+  if (c.display == EGL_NO_DISPLAY) return reason = "no such display", nullptr;
+  if (!eglInitialize(c.display, nullptr, nullptr))
+    return reason = "eglInitialize failed, " + error_text(), nullptr;
+  const auto give_up = [&](const std::string& why) {
+    reason = why + ", " + error_text();
+    eglTerminate(c.display);
+    return nullptr;
+  };
+  if (!epoxy_has_egl_extension(c.display, "EGL_KHR_surfaceless_context"))
+    return give_up("no contexts without a surface");
+  if (!eglBindAPI(EGL_OPENGL_API)) return give_up("no OpenGL");
+  // One that says when it is lost, where the driver can; the last two are left out where it cannot.
+  std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                   3,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   3,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                   EGL_LOSE_CONTEXT_ON_RESET,
+                                   EGL_NONE};
+  EGLConfig config = nullptr;  // EGL_NO_CONFIG_KHR
+  if (!epoxy_has_egl_extension(c.display, "EGL_KHR_no_config_context")) {
+    constexpr std::array<EGLint, 3> any{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    EGLint found = 0;
+    if (!eglChooseConfig(c.display, any.data(), &config, 1, &found) || found == 0)
+      return give_up("no OpenGL configuration");
+  }
+  EGLContext context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) {
+    attributes[6] = EGL_NONE;
+    context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
+  }
+  if (context == EGL_NO_CONTEXT) return give_up("no OpenGL 3.3 core context");
+  if (!eglMakeCurrent(c.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    eglDestroyContext(c.display, context);
+    return give_up("its context cannot be made current");
+  }
+  return std::make_unique<Headless>(c.display, context, c.name);
+}
+
+}  // namespace
+
+void quiet_software_renderer() {
+  setenv("LP_NUM_THREADS", "1", 0);
+  // For every picture it takes and gives back some MB in blocks of 64 KiB: kept here, they are not cleared and
+  // mapped anew by the kernel, which took a quarter of the time. The second is the most that malloc allows; both
+  // are far above what a picture needs.
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  // Mesa keeps compiled shaders under the home that the password file names, and complains where that cannot be
+  // written: in a user namespace it is root's.
+  const passwd* me = getpwuid(getuid());
+  const bool told = std::getenv("XDG_CACHE_HOME") || std::getenv("MESA_SHADER_CACHE_DIR");
+  if (!told && (me == nullptr || access(me->pw_dir, W_OK) != 0)) setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+  setenv("EGL_LOG_LEVEL", "fatal", 0);  // what failed is in our own sentence
+}
+
+std::unique_ptr<Display> make_headless(int egl_device) {
+  // libepoxy would abort the process.
+  if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
+    throw std::runtime_error("libEGL.so.1 is missing; install libegl1, libegl-mesa0 and libgl1-mesa-dri");
+  std::string tried;
+  for (const Candidate& c : candidates(egl_device)) {
+    std::string reason;
+    if (auto display = try_candidate(c, reason)) return display;
+    tried += (tried.empty() ? "" : "; ") + c.name + " (" + reason + ")";
+  }
+  throw std::runtime_error("no OpenGL 3.3 context, tried " + tried +
+                           "; install libegl-mesa0 and libgl1-mesa-dri for a software renderer");
+}
+
+}  // namespace tactus::visual
