@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Checks who includes whom, and the size and tidiness of files, over the source tree.
+"""Checks the includes between folders, and the size and tidiness of folders and files, over the source tree.
 
-  check_layers.py [ROOT]      prints every offence as FILE:LINE: what; exits 1 when there is one
+  check_layers.py [ROOT]          prints every offence as FILE:LINE: what; exits 1 when there is one
+  check_layers.py [ROOT] --graph  prints the includes between folders as they are, in the form of folder_graph.txt
 
-The rules are those of the design: a node folder includes itself, sync/ and lcmtypes/; sync/ includes lcmtypes/; external
-libraries stay in few files.
+A node folder includes itself, sync/ and lcmtypes/; sync/ includes lcmtypes/; external libraries stay in few files. The
+allowed includes between folders are listed in folder_graph.txt beside this file. They form no cycle.
 """
+import collections
 import os
 import re
 import sys
@@ -16,16 +18,19 @@ MAY_INCLUDE.update({node: {node, "sync", "lcmtypes"} for node in NODES})
 
 # External headers and the places where they may appear.
 QUARANTINE = [
-    (r"lcm/", r"(sync/(bus|recorder|log|replay)[a-z_]*\.(h|cpp)|examples/)", "LCM is used in the bus and recorder files of sync/ only"),
-    (r"(ode|ccd|fcl)/", r"sim_node/(collision|behaviour)/", "ODE, libccd and FCL are used in sim_node/collision and behaviour only"),
-    (r"(EGL|GL|GLES\d|epoxy|gbm|X11)(/|\.h)", r"visual_node/(egl|gl|scene_view|frame|window)/",
+    (r"lcm/", r"(sync/(bus|log|tools)/|examples/)", "LCM is used in sync/bus, sync/log and sync/tools only"),
+    (r"(ode|ccd|fcl)/", r"sim_node/(collision|contacts|behaviour)/", "ODE, libccd and FCL are used in sim_node/collision, contacts and behaviour only"),
+    (r"(EGL|GL|GLES\d|epoxy|gbm|X11)(/|\.h)", r"visual_node/(devices|gl|scene_view|frame)/",
      "EGL and GL are used in the drawing folders of visual_node only"),
-    (r"EGL/|epoxy/egl", r"visual_node/egl/", "EGL is used in visual_node/egl only"),
+    (r"EGL/|epoxy/egl", r"visual_node/devices/", "EGL is used in visual_node/devices only"),
     (r"(sdf|gz|ignition)/", r"sim_node/scene/", "libsdformat is used in sim_node/scene only"),
     (r"assimp/", r"sim_node/scene/", "assimp is used in sim_node/scene only"),
-    (r"(portaudio|alsa)", r"audio_node/(device|vcard)/", "PortAudio and ALSA are used in audio_node/device and vcard only"),
+    (r"(portaudio|alsa)", r"audio_node/devices/", "PortAudio and ALSA are used in audio_node/devices only"),
 ]
-MOST_LINES = 400
+MAX_LINES = 400
+MAX_FILES = 40  # directly inside a folder
+GRAPH_FILE = "tests/scripts/folder_graph.txt"
+GRAPH_OF = ("lcmtypes", "sync", *NODES)  # folders below these follow GRAPH_FILE; below others, any graph without a cycle does
 SOURCES = (".h", ".cpp", ".c", ".lcm", ".py", ".cmake", ".glsl", ".vert", ".frag", ".sh")
 SKIPPED = {"build", "out", ".git", "__pycache__", "shared", "node_modules", "dist"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]')
@@ -63,6 +68,91 @@ def offences_of_include(inside, kind, header):
             yield f"<{header}>: {sentence}"
 
 
+def included_folder(root, kind, header):
+    """The folder of a header of this tree, or None."""
+    return os.path.dirname(header) if kind == '"' and "/" in header and os.path.isfile(os.path.join(root, header)) else None
+
+
+def read_graph(root):
+    """{folder: folders that it may include} of GRAPH_FILE."""
+    graph = {}
+    with open(os.path.join(root, GRAPH_FILE), encoding="utf-8") as file:
+        for line in file:
+            folder, _, allowed = line.split("#")[0].partition(":")
+            if folder.strip():
+                graph[folder.strip()] = set(allowed.split())
+    return graph
+
+
+def includes_between_folders(root):
+    """{folder: {folder that it includes: first place}} of the C++ files."""
+    edges = collections.defaultdict(dict)
+    for inside, path in source_files(root):
+        if not inside.endswith((".h", ".cpp", ".c")):
+            continue
+        here = os.path.dirname(inside)
+        with open(path, encoding="utf-8") as file:
+            for number, line in enumerate(file, start=1):
+                match = INCLUDE.match(line)
+                there = match and included_folder(root, *match.groups())
+                if there and there != here:
+                    edges[here].setdefault(there, f"{inside}:{number}")
+    return edges
+
+
+def a_cycle(edges):
+    """Folders that include each other in a circle, the first also last; empty when there is none."""
+    done, path = set(), []
+
+    def visit(folder):
+        if folder in path:
+            return path[path.index(folder):] + [folder]
+        if folder in done:
+            return []
+        path.append(folder)
+        for there in sorted(edges.get(folder, ())):
+            found = visit(there)
+            if found:
+                return found
+        done.add(path.pop())
+        return []
+
+    for folder in sorted(edges):
+        found = visit(folder)
+        if found:
+            return found
+    return []
+
+
+def offences_of_folders(root):
+    edges = includes_between_folders(root)
+    cycle = a_cycle(edges)
+    if cycle:
+        yield f"{edges[cycle[0]][cycle[1]]}: folders include each other: {' -> '.join(cycle)}"
+    if os.path.isfile(os.path.join(root, GRAPH_FILE)):
+        allowed = read_graph(root)
+        for here in sorted(edges):
+            if here.split("/")[0] not in GRAPH_OF:
+                continue
+            for there, place in sorted(edges[here].items()):
+                if there not in allowed.get(here, ()):
+                    yield f"{place}: {here} must not include {there}; move the code, or allow it in {GRAPH_FILE}"
+    count = collections.Counter(os.path.dirname(inside) for inside, _ in tracked_files(root))
+    for folder, files in sorted(count.items()):
+        if files > MAX_FILES:
+            yield f"{folder}:{files}: more than {MAX_FILES} files directly inside; make folders of them"
+
+
+def tracked_files(root):
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(f for f in folders if f not in SKIPPED and not f.startswith("."))
+        for name in sorted(files):
+            path = os.path.join(folder, name)
+            inside = os.path.relpath(path, root)
+            if not inside.startswith("tests/fuzz/seeds"):
+                yield inside, path
+
+
 def lines_before(lines, at):
     return "\n".join(lines).count("\n", 0, at)
 
@@ -71,8 +161,8 @@ def offences(root):
     for inside, path in source_files(root):
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
-        if len(lines) > MOST_LINES:
-            yield f"{inside}:{len(lines)}: longer than {MOST_LINES} lines; split it along its joints"
+        if len(lines) > MAX_LINES:
+            yield f"{inside}:{len(lines)}: longer than {MAX_LINES} lines; split it along its joints"
         for name in TEST_NAME.finditer("\n".join(lines)):
             if ";" in name.group(1) and inside.endswith(".cpp"):
                 yield f"{inside}:{lines_before(lines, name.start()) + 1}: a semicolon in the name of a test, which would never run; say it otherwise"
@@ -85,12 +175,22 @@ def offences(root):
                     yield f"{inside}:{number}: {sentence}"
 
 
+def print_graph(root):
+    for folder, there in sorted(includes_between_folders(root).items()):
+        if folder.split("/")[0] in GRAPH_OF:
+            print(f"{folder}: {' '.join(sorted(there))}")
+
+
 def main():
-    if sys.argv[1:] in (["-h"], ["--help"]):
+    if "-h" in sys.argv or "--help" in sys.argv:
         print(__doc__)
         return 0
-    root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-    found = list(offences(os.path.abspath(root)))
+    arguments = [a for a in sys.argv[1:] if a != "--graph"]
+    root = arguments[0] if arguments else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    if "--graph" in sys.argv:
+        print_graph(os.path.abspath(root))
+        return 0
+    found = list(offences(os.path.abspath(root))) + list(offences_of_folders(os.path.abspath(root)))
     print("\n".join(found) if found else "layers: clean")
     return 1 if found else 0
 
