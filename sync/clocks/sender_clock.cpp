@@ -13,19 +13,19 @@ bool SenderClock::observe(const header_t& h, HostTime arrival) {
   if (ours() && clock_ == own_.clock) return false;
   const bool jumped = one_way_.observe(h.publish_time_ns, arrival);
   const Reading reading = read(h.publish_time_ns, arrival);
-  if (reading.how != How::kMapped) return jumped;
+  if (reading.how != ClockSource::kMapped) return jumped;
   const bool contradicted = reading.time - reading.uncertainty > arrival + kTolerance;
   if (contradicted) distrust_until_ = arrival + kDistrust;
   return contradicted;
 }
 
 SenderClock::Reading SenderClock::read(std::int64_t sender_ns, HostTime now) const {
-  if (!heard_) return {host_time(sender_ns), How::kUnknown, Nanoseconds(-1)};
-  if (ours() && clock_ == own_.clock) return {host_time(sender_ns), How::kSame, Nanoseconds(0)};
+  if (!heard_) return {host_time(sender_ns), ClockSource::kUnknown, Nanoseconds(-1)};
+  if (ours() && clock_ == own_.clock) return {host_time(sender_ns), ClockSource::kSame, Nanoseconds(0)};
   if (ours() && own_.maps != nullptr && now >= distrust_until_)
     if (const auto mapped = own_.maps->read(host_time(sender_ns), clock_, own_.clock))
-      return {mapped->time, How::kMapped, mapped->uncertainty};
-  return {one_way_.to_host(sender_ns, now), How::kOneWay, Nanoseconds(-1)};
+      return {mapped->time, ClockSource::kMapped, mapped->uncertainty};
+  return {one_way_.to_host(sender_ns, now), ClockSource::kOneWay, Nanoseconds(-1)};
 }
 
 }  // namespace tactus::sync

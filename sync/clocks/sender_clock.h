@@ -18,10 +18,10 @@ namespace tactus::sync {
 // has just jumped forward. A jump back looks like latency until the probes have noticed it, within three seconds.
 class SenderClock {
  public:
-  enum class How { kUnknown, kSame, kMapped, kOneWay };
+  enum class ClockSource { kUnknown, kSame, kMapped, kOneWay };
   struct Reading {
     HostTime time{};
-    How how = How::kUnknown;
+    ClockSource how = ClockSource::kUnknown;
     Nanoseconds uncertainty{-1};  // half width; -1: not known
   };
   // The next waves of probes have noticed the jump by then: two periods, their length and the maps' own.
