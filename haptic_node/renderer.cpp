@@ -217,13 +217,13 @@ void Renderer::split(const Wrench& felt_constraint) {
   }
 }
 
-sync::How Renderer::how(const TickInput& in) const {
-  if (!model_time_ || !in.touch_arrival) return sync::How::kNone;
-  if (fade_.lost()) return sync::How::kStale;
-  if (!in.map) return sync::How::kHeld;
+sync::SampleStatus Renderer::how(const TickInput& in) const {
+  if (!model_time_ || !in.touch_arrival) return sync::SampleStatus::kNone;
+  if (fade_.lost()) return sync::SampleStatus::kStale;
+  if (!in.map) return sync::SampleStatus::kHeld;
   const double age_s = sync::to_seconds(in.map->to_sim(in.now) - *model_time_);
-  if (age_s == 0) return sync::How::kExact;
-  return age_s <= settings_.extrapolate_at_most_s ? sync::How::kExtrapolated : sync::How::kHeld;
+  if (age_s == 0) return sync::SampleStatus::kExact;
+  return age_s <= settings_.extrapolate_at_most_s ? sync::SampleStatus::kExtrapolated : sync::SampleStatus::kHeld;
 }
 
 void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_N) {

@@ -23,7 +23,7 @@
 #include "haptic_node/settings.gen.h"
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/rendering/transient.h"
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 
 namespace tactus::haptic {
@@ -86,7 +86,7 @@ class Renderer {
   Wrench constraint_wrench(double dt);
   void split(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
-  sync::How how(const TickInput& in) const;
+  sync::SampleStatus how(const TickInput& in) const;
   sync::Nanoseconds uncertainty() const;
 
   int tool_;

@@ -36,7 +36,7 @@ ControllerLimits limits(const Settings& s) {
 // As published: what is no quantity reads as none.
 float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
 
-bool usable(sync::How how) { return how != sync::How::kNone && how != sync::How::kStale; }
+bool usable(sync::SampleStatus how) { return how != sync::SampleStatus::kNone && how != sync::SampleStatus::kStale; }
 
 }  // namespace
 

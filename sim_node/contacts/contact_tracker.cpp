@@ -138,8 +138,8 @@ void ContactTracker::remember(LiveContact& c, std::span<const BodyMotion> bodies
   c.b_body_m = b.to_body(p.point_m - 0.5 * p.depth_m * p.normal);
 }
 
-template <class How>
-void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, How how) {
+template <class SampleStatus>
+void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, SampleStatus how) {
   if (is_new) emit(c, contact_event_t::BEGIN, when, how());
   const bool rested = !c.has_hit || now_ - c.last_hit >= sync::from_seconds(settings_.hit_interval_s);
   if (c.armed && rested && speed_m_s > settings_.hit_speed_m_s) {

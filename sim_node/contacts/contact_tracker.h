@@ -84,8 +84,8 @@ class ContactTracker {
   Meeting meeting(const Manifold& contact, const Impact& impact) const;
   void follow(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
   // A hit when the surfaces close fast enough. how: gives the Meeting, should there be something to say.
-  template <class How>
-  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, How how);
+  template <class SampleStatus>
+  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, SampleStatus how);
   // True when it has ended.
   bool part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
   void remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls);

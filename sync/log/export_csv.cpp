@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -62,7 +62,7 @@ std::string csv_row(const tool_state_t& m) {
       .vector(m.transient_N)
       .number(m.fade)
       .number(m.coupling)
-      .text(to_string(static_cast<How>(m.touch_how)))
+      .text(to_string(static_cast<SampleStatus>(m.touch_how)))
       .number(m.constraint_count)
       .number(m.energy_J)
       .number(m.generated_J)

@@ -35,10 +35,10 @@ bool rests(const BodyPose& p) {
   return p.velocity == Eigen::Vector3d::Zero() && p.angular_velocity == Eigen::Vector3d::Zero();
 }
 
-How past(Nanoseconds newest) {
-  return newest <= BodyHistory::kExtrapolateAtMost ? How::kExtrapolated
-         : newest <= BodyHistory::kStaleAfter      ? How::kHeld
-                                                   : How::kStale;
+SampleStatus past(Nanoseconds newest) {
+  return newest <= BodyHistory::kExtrapolateAtMost ? SampleStatus::kExtrapolated
+         : newest <= BodyHistory::kStaleAfter      ? SampleStatus::kHeld
+                                                   : SampleStatus::kStale;
 }
 
 }  // namespace
@@ -126,9 +126,9 @@ void BodyHistory::forget_after(SimTime latest) {
   }
 }
 
-How BodyHistory::how(SimTime t) const {
-  if (!newest_) return How::kNone;
-  return t <= *newest_ ? How::kInterpolated : past(t - *newest_);
+SampleStatus BodyHistory::how(SimTime t) const {
+  if (!newest_) return SampleStatus::kNone;
+  return t <= *newest_ ? SampleStatus::kInterpolated : past(t - *newest_);
 }
 
 Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
@@ -136,15 +136,15 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
   if (it == bodies_.end() || it->second.empty()) return {};
   const auto& samples = it->second;
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const Stamped& s) { return s.time > t; });
-  if (after == samples.begin()) return {after->pose, How::kHeld};  // older than all that is kept
+  if (after == samples.begin()) return {after->pose, SampleStatus::kHeld};  // older than all that is kept
   const Stamped& before = *std::prev(after);
-  if (before.time == t) return {before.pose, How::kExact};
+  if (before.time == t) return {before.pose, SampleStatus::kExact};
   if (after != samples.end()) {
     SimTime begin = before.time;
     if (after->period > Nanoseconds(0) && rests(before.pose)) begin = std::max(begin, after->time - after->period);
-    if (t <= begin) return {before.pose, How::kInterpolated};
+    if (t <= begin) return {before.pose, SampleStatus::kInterpolated};
     const double span_s = to_seconds(after->time - begin), s = to_seconds(t - begin) / span_s;
-    return {between(before.pose, after->pose, span_s, s), How::kInterpolated};
+    return {between(before.pose, after->pose, span_s, s), SampleStatus::kInterpolated};
   }
   const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
   // At rest it is left out, and well known. One that was moving is missing: its page was lost.

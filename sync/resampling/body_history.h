@@ -13,7 +13,7 @@
 #include <optional>
 #include <tactus/world_state_t.hpp>
 
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/clocks/sim_follower.h"
 #include "sync/time/time.h"
 
@@ -51,7 +51,7 @@ class BodyHistory {
   // and moves on as past the newest sample.
   Sample<BodyPose> pose(int body, SimTime t) const;
   // How the newest snapshot as a whole relates to t; it may be of an instant to come.
-  How how(SimTime t) const;
+  SampleStatus how(SimTime t) const;
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
   // Pages more than 1 s ahead of their simulation's own time, and bodies beyond kMaxBodies.
   std::int64_t refused() const { return refused_; }

@@ -173,12 +173,12 @@ bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
   return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
 }
 
-How ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
-  if (group.empty() || t < group.front().time) return How::kNone;
-  if (t > group.back().time) return t - group.back().time <= kStaleAfter ? How::kHeld : How::kStale;
+SampleStatus ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
+  if (group.empty() || t < group.front().time) return SampleStatus::kNone;
+  if (t > group.back().time) return t - group.back().time <= kStaleAfter ? SampleStatus::kHeld : SampleStatus::kStale;
   const auto it =
       std::lower_bound(group.begin(), group.end(), t, [](const Snapshot& s, SimTime x) { return s.time < x; });
-  return it->time == t ? How::kExact : How::kInterpolated;
+  return it->time == t ? SampleStatus::kExact : SampleStatus::kInterpolated;
 }
 
 // It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
@@ -191,7 +191,7 @@ bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const
 
 void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
   const auto& group = snapshots_[number];
-  if (how(group, t) == How::kNone) return;
+  if (how(group, t) == SampleStatus::kNone) return;
   const auto after =
       std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
   const auto before = std::prev(after);

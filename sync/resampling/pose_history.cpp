@@ -39,25 +39,25 @@ Sample<BodyPose> PoseHistory::at(HostTime t) const {
   if (t >= newest.time) {
     BodyPose pose = newest.pose;
     const Nanoseconds past = t - newest.time;
-    if (past > kStaleAfter) return {pose, How::kStale};
+    if (past > kStaleAfter) return {pose, SampleStatus::kStale};
     const double s = to_seconds(std::min(past, kExtrapolateAtMost));
     pose.position += s * pose.velocity;
     pose.orientation = turned(pose.orientation, pose.angular_velocity, s);
-    return {pose, past == Nanoseconds(0)      ? How::kExact
-                  : past > kExtrapolateAtMost ? How::kHeld
-                                              : How::kExtrapolated};
+    return {pose, past == Nanoseconds(0)      ? SampleStatus::kExact
+                  : past > kExtrapolateAtMost ? SampleStatus::kHeld
+                                              : SampleStatus::kExtrapolated};
   }
   const auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
                                       [](HostTime time, const Stamped& s) { return time < s.time; });
-  if (after == samples_.begin()) return {samples_.front().pose, How::kHeld};
+  if (after == samples_.begin()) return {samples_.front().pose, SampleStatus::kHeld};
   const Stamped &a = *std::prev(after), &b = *after;
-  if (a.time == t) return {a.pose, How::kExact};
+  if (a.time == t) return {a.pose, SampleStatus::kExact};
   const double s = to_seconds(t - a.time) / to_seconds(b.time - a.time);
   return {
       {a.pose.position + s * (b.pose.position - a.pose.position), a.pose.orientation.slerp(s, b.pose.orientation),
        a.pose.velocity + s * (b.pose.velocity - a.pose.velocity),
        a.pose.angular_velocity + s * (b.pose.angular_velocity - a.pose.angular_velocity)},
-      How::kInterpolated};
+      SampleStatus::kInterpolated};
 }
 
 }  // namespace tactus::sync

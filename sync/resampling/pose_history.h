@@ -7,7 +7,7 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "sync/resampling/body_history.h"
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/clocks/sender_clock.h"
 #include "sync/time/time.h"
 

@@ -123,7 +123,7 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
 }
 
 TEST_CASE("Input that is stale or absent returns the command to resting skin, no faster than the element") {
-  for (const sync::How how : {sync::How::kStale, sync::How::kNone}) {
+  for (const sync::SampleStatus how : {sync::SampleStatus::kStale, sync::SampleStatus::kNone}) {
     Hand hand;
     float before = hand.press(kCopper, 1, 250).commanded_degC;
     REQUIRE(before < 26);
@@ -323,7 +323,7 @@ TEST_CASE("However slow a display is on purpose, it is in the safe range, and lo
   thermal_state_t state{};
   for (int i = 0; i < 50; ++i) {
     Tick tick = hand.next();
-    tick.contact.how = sync::How::kStale;
+    tick.contact.how = sync::SampleStatus::kStale;
     state = hand.renderer.step(tick, {.response_s = 60});
   }
   CHECK(state.commanded_degC == 33);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "sync/resampling/body_history.h"
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 #include "visual_node/frame/room_time.h"
 

@@ -35,15 +35,15 @@ std::optional<HeadSample> HeadSamples::told_by(RoomTime t) const {
 sync::Sample<sync::BodyPose> carried(const HeadSample& sample, RoomTime t) {
   sync::BodyPose pose = sample.pose;
   const sync::Nanoseconds past = std::max(t - sample.sent, sync::Nanoseconds(0));
-  if (past > sync::PoseHistory::kStaleAfter) return {pose, sync::How::kStale};
+  if (past > sync::PoseHistory::kStaleAfter) return {pose, sync::SampleStatus::kStale};
   const double s = sync::to_seconds(std::min(past, kCarryAtMost));
   pose.position += s * pose.velocity;
   if (const double angle = pose.angular_velocity.norm() * s; angle > 0)
     pose.orientation =
         (Eigen::AngleAxisd(angle, pose.angular_velocity.normalized()) * pose.orientation).normalized();
-  return {pose, past == sync::Nanoseconds(0) ? sync::How::kExact
-                : past > kCarryAtMost        ? sync::How::kHeld
-                                             : sync::How::kExtrapolated};
+  return {pose, past == sync::Nanoseconds(0) ? sync::SampleStatus::kExact
+                : past > kCarryAtMost        ? sync::SampleStatus::kHeld
+                                             : sync::SampleStatus::kExtrapolated};
 }
 
 }  // namespace tactus::visual

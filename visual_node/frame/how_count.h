@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <string>
 
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 
 namespace tactus::visual {
 
 class HowCount {
  public:
-  void add(sync::How how) { ++counts_[static_cast<std::size_t>(how)]; }
-  std::int64_t of(sync::How how) const { return counts_[static_cast<std::size_t>(how)]; }
+  void add(sync::SampleStatus how) { ++counts_[static_cast<std::size_t>(how)]; }
+  std::int64_t of(sync::SampleStatus how) const { return counts_[static_cast<std::size_t>(how)]; }
   // One line, in percent of all; empty: there was none.
   std::string text() const {
     std::int64_t all = 0;
@@ -21,7 +21,7 @@ class HowCount {
     for (std::size_t i = 0; i < counts_.size() && all > 0; ++i)
       if (counts_[i] > 0)
         line += (line.empty() ? "" : ", ") + std::to_string(100 * counts_[i] / all) + " % " +
-                sync::to_string(static_cast<sync::How>(i));
+                sync::to_string(static_cast<sync::SampleStatus>(i));
     return line;
   }
 

@@ -33,7 +33,7 @@ void RoomClockReader::hear(const header_t& header, const sim_clock_t& clock, syn
 
 bool RoomClockReader::mapped(sync::HostTime now) const {
   const auto how = sender_.read(last_.publish_time_ns, now).how;
-  return how == sync::SenderClock::How::kSame || how == sync::SenderClock::How::kMapped;
+  return how == sync::SenderClock::SampleStatus::kSame || how == sync::SenderClock::SampleStatus::kMapped;
 }
 
 sync::HostTime RoomClockReader::here(RoomTime t, sync::HostTime now) const {

@@ -79,13 +79,13 @@ void LiveOverlays::tint(FrameComposer& composer, std::size_t bodies) {
   tinted_ = now;
 }
 
-std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::How contacts, sync::HostTime now) const {
+std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStatus contacts, sync::HostTime now) const {
   std::vector<InputLine> lines;
   for (const char* channel :
        {channels::kWorldState, channels::kContactEvents, channels::kToolState, channels::kContacts})
     for (const auto& inbox : bus_.inboxes()) {
       if (inbox->count().channel != channel) continue;
-      InputLine line{channel, sync::age_of(inbox->count(), bus_.clocks(), now), sync::How::kNone};
+      InputLine line{channel, sync::age_of(inbox->count(), bus_.clocks(), now), sync::SampleStatus::kNone};
       if (line.age.age < sync::Nanoseconds(0) && inbox->count().newest_arrival != sync::HostTime{})
         line.age.age = now - inbox->count().newest_arrival;
       if (channel == channels::kWorldState) line.how = frame.how;

@@ -53,7 +53,7 @@ class LiveOverlays {
   }
   void listen();
   void hear();
-  std::vector<InputLine> inputs(const Frame& frame, sync::How contacts, sync::HostTime now) const;
+  std::vector<InputLine> inputs(const Frame& frame, sync::SampleStatus contacts, sync::HostTime now) const;
 
   sync::Bus& bus_;
   OverlaySet on_;

@@ -7,7 +7,7 @@
 #include <tactus/node_health_t.hpp>
 #include <vector>
 
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/node/sense.h"
 #include "visual_node/overlay/kinds.h"
 #include "visual_node/scene_view/draw_list.h"
@@ -32,7 +32,7 @@ class TickTimes {
 struct InputLine {
   std::string channel;
   sync::InputAge age;
-  sync::How how = sync::How::kNone;  // how what is drawn of it was obtained; kNone: it is not resampled
+  sync::SampleStatus how = sync::SampleStatus::kNone;  // how what is drawn of it was obtained; kNone: it is not resampled
 };
 
 struct PanelFacts {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "sync/resampling/how.h"
+#include "sync/resampling/sample_status.h"
 
 using namespace tactus;
 using namespace tactus::sync;
@@ -42,7 +42,7 @@ TEST_CASE("A row of haptic.csv has a value under every name") {
   m.coupling = 0.75f;
   m.energy_J = -0.25f;
   m.generated_J = 0.001953125f;
-  m.touch_how = static_cast<std::int8_t>(How::kHeld);
+  m.touch_how = static_cast<std::int8_t>(SampleStatus::kHeld);
   const std::string names = haptic_csv_names(), row = csv_row(m);
   CHECK(cells(names).size() == cells(row).size());
   CHECK(cell(names, row, "time_s") == "1.234567891");

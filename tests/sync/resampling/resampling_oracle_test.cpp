@@ -140,7 +140,7 @@ class Renderer {
   void check_state(SimTime t) {
     const auto state = stream_.state_at(t);
     const auto wanted = contacts_.state(to_ns(t));
-    const How how = std::max({contacts_.how(0, to_ns(t)), contacts_.how(1, to_ns(t)), contacts_.how(2, to_ns(t))});
+    const SampleStatus how = std::max({contacts_.how(0, to_ns(t)), contacts_.how(1, to_ns(t)), contacts_.how(2, to_ns(t))});
     if (state.how != how)
       said_ << "the state at " << to_ns(t) << " is " << to_string(state.how) << " instead of " << to_string(how)
             << "; ";
@@ -155,7 +155,7 @@ class Renderer {
               << " N; ";
     }
     ++tally_.states;
-    tally_.interpolated += how == How::kInterpolated && !wanted.empty();
+    tally_.interpolated += how == SampleStatus::kInterpolated && !wanted.empty();
   }
 
   void check_integral(std::int64_t t0, std::int64_t t1) {
@@ -195,16 +195,16 @@ class Renderer {
       const double s = static_cast<double>(to_ns(t)) * 1e-9;
       Eigen::Vector3d position = truth.position(s);
       double turned = truth.turn_rad_s * s;
-      How how = How::kInterpolated;
+      SampleStatus how = SampleStatus::kInterpolated;
       if (before_ns == to_ns(t)) {
-        how = How::kExact;
+        how = SampleStatus::kExact;
       } else if (after == times.end()) {
         const std::int64_t past = std::min<std::int64_t>(to_ns(t) - before_ns, 50 * kMs);
         const double known_s = static_cast<double>(before_ns) * 1e-9, on_s = static_cast<double>(past) * 1e-9;
         position = truth.position(known_s) + on_s * truth.velocity(known_s);
         turned = truth.turn_rad_s * (known_s + on_s);
         const std::int64_t own_past = to_ns(t) - before_ns;
-        how = own_past <= 50 * kMs ? How::kExtrapolated : own_past <= 200 * kMs ? How::kHeld : How::kStale;
+        how = own_past <= 50 * kMs ? SampleStatus::kExtrapolated : own_past <= 200 * kMs ? SampleStatus::kHeld : SampleStatus::kStale;
       }
       const Eigen::Quaterniond turn(Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()));
       if (got.how != how)

@@ -10,7 +10,7 @@
 
 namespace tactus::hostile {
 
-using sync::How;
+using sync::SampleStatus;
 
 // Of one life of the simulation: a new one knows nothing of the one before.
 struct Known {
@@ -71,12 +71,12 @@ class Reference {
     return after == known_.complete[group].end() ? std::nullopt : std::optional(*after);
   }
 
-  How how(int group, std::int64_t t) const {
+  SampleStatus how(int group, std::int64_t t) const {
     const auto before = snapshot_before(group, t);
-    if (!before) return How::kNone;
-    if (*before == t) return How::kExact;
-    if (snapshot_after(group, t)) return How::kInterpolated;
-    return t - *before <= to_ns(sync::SimTime(sync::ContactStream::kStaleAfter)) ? How::kHeld : How::kStale;
+    if (!before) return SampleStatus::kNone;
+    if (*before == t) return SampleStatus::kExact;
+    if (snapshot_after(group, t)) return SampleStatus::kInterpolated;
+    return t - *before <= to_ns(sync::SimTime(sync::ContactStream::kStaleAfter)) ? SampleStatus::kHeld : SampleStatus::kStale;
   }
 
   // What is told ahead may not come true: it counts once its begin or the snapshot before tell of it too.

@@ -71,8 +71,8 @@ TEST_CASE("What is off has no line, and what is on has its figures") {
   facts.contacts = 12;
   facts.rendering = microseconds(8200), facts.period = microseconds(16667);
   facts.quality = 1, facts.qualities = 4;
-  facts.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::How::kInterpolated},
-                  {"TOOL_STATE", {}, sync::How::kNone}};
+  facts.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::SampleStatus::kInterpolated},
+                  {"TOOL_STATE", {}, sync::SampleStatus::kNone}};
   facts.profile = "late sound";
   CHECK(panel_lines({}, facts).empty());
   const auto text = [&](Overlay o) {
@@ -134,7 +134,7 @@ TEST_CASE("All lines of all overlays are read at 640 x 480, beside the plots and
   facts.delay = facts.profile_delay = microseconds(250000);
   facts.output.frame_rate_Hz = 12.5, facts.output.resolution = 0.25;
   for (const char* channel : {"WORLD_STATE", "CONTACT_EVENTS", "TOOL_STATE", "CONTACTS"})
-    facts.inputs.push_back({channel, {microseconds(1234567), {}}, sync::How::kExtrapolated});
+    facts.inputs.push_back({channel, {microseconds(1234567), {}}, sync::SampleStatus::kExtrapolated});
   OverlaySet on = parse_overlays("all");
   on.set(Overlay::kHelp);
   const float left = plots_left(640), bottom = 480 - 64;

@@ -5,7 +5,7 @@
 
 namespace tactus::sync {
 
-enum class How : std::int8_t {
+enum class SampleStatus : std::int8_t {
   kNone = 0,      // nothing has arrived yet
   kExact,         // a sample of just this instant
   kInterpolated,  // between two samples
@@ -14,12 +14,12 @@ enum class How : std::int8_t {
   kStale,         // the newest sample, so old that it should not be relied on
 };
 
-const char* to_string(How);
+const char* to_string(SampleStatus);
 
 template <class T>
 struct Sample {
   T value{};
-  How how = How::kNone;
+  SampleStatus how = SampleStatus::kNone;
 };
 
 }  // namespace tactus::sync
