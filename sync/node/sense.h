@@ -32,7 +32,7 @@
 namespace tactus::sync {
 
 template <class Message>
-struct Let {
+struct Delivered {
   Message message;
   HostTime arrival;  // when it really arrived
 };
@@ -44,10 +44,10 @@ class Sense {
   class Stream {
    public:
     // The next message that is let through by now.
-    std::optional<Let<Message>> pop() {
+    std::optional<Delivered<Message>> pop() {
       auto next = degraded_.pop(now_);
       if (!next) return std::nullopt;
-      return Let<Message>{std::move(next->first), next->second};
+      return Delivered<Message>{std::move(next->first), next->second};
     }
     const InputCount& count() const { return inbox_.count(); }
 
@@ -119,8 +119,8 @@ class Sense {
     virtual HostTime newest_arrival() const = 0;
   };
   template <class Message>
-  struct Held : AnyStream {
-    explicit Held(Queue<Message>& inbox) : stream(inbox) {}
+  struct StreamSlot : AnyStream {
+    explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
     void step(Sense& sense, HostTime now, HostTime lets) override;
     // Events are decided on one by one.
     void change_profile() override {
@@ -131,7 +131,7 @@ class Sense {
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
-    auto held = std::make_unique<Held<Message>>(node_.bus().queue<Message>(channel, capacity));
+    auto held = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
     auto& stream = held->stream;
     streams_.push_back(std::move(held));
     return stream;
@@ -172,7 +172,7 @@ class Sense {
 };
 
 template <class Message>
-void Sense::Held<Message>::step(Sense& sense, HostTime now, HostTime lets) {
+void Sense::StreamSlot<Message>::step(Sense& sense, HostTime now, HostTime lets) {
   // A turn that is held up while it reads hears what came meanwhile, too, and does not keep it until the next.
   HostTime heard = now;
   while (auto m = stream.inbox_.pop()) {
