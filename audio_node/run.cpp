@@ -31,7 +31,7 @@
 #include "sync/node/node.h"
 #include "sync/node/opening.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 #include "sync/virtual_time/virtual_time.h"
 
 using namespace tactus;
@@ -99,7 +99,7 @@ int tactus::audio::run(int argc, char** argv) try {
 
   sync::Node node(kAudio, options);
   sync::SceneReceiver scene(node.bus());
-  sync::Sense sense(node);
+  sync::ModalityEndpoint sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);

@@ -35,7 +35,7 @@
 #include "sync/node/opening.h"
 #include "sync/clocks/pacing.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 
 using namespace tactus;
 
@@ -102,7 +102,7 @@ int tactus::haptic::run(int argc, char** argv) try {
   };
   tool_state_t told{};  // last; for who records it
   haptic::tag(node.tags(), told);
-  sync::Sense sense(node);
+  sync::ModalityEndpoint sense(node);
   auto& touch = sense.held_snapshots<touch_model_t>(channels::kTouchModel, 1024);
   auto& events = sense.events();
   if (offline) sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });

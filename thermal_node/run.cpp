@@ -20,7 +20,7 @@
 #include "sync/node/node.h"
 #include "sync/clocks/pacing.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 #include "thermal_node/devices/choice.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/make_device.h"
@@ -64,7 +64,7 @@ int tactus::thermal::run(int argc, char** argv) try {
 
   sync::Node node(declaration, options);
   sync::SceneReceiver scenes(node.bus());
-  sync::Sense sense(node);
+  sync::ModalityEndpoint sense(node);
   auto& events = sense.events();
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   auto& answers = node.bus().queue<thermal_device_t>(channels::kThermalDevice, 64);

@@ -25,7 +25,7 @@
 #include "sync/node/live_settings.h"
 #include "sync/node/node.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
@@ -95,7 +95,7 @@ int tactus::visual::run(int argc, char** argv) try {
   sync::Node node(declaration, options);
   node.set_rate(settings.rate_Hz);
   sync::SceneReceiver scenes(node.bus());
-  sync::Sense sense(node);
+  sync::ModalityEndpoint sense(node);
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   auto& events = sense.events();
   auto& tools = sense.snapshots<tool_state_t>(channels::kToolState, 512);

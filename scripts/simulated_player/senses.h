@@ -12,7 +12,7 @@
 #include "scripts/simulated_player/rules.h"
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 
 namespace tactus::participant {
 
@@ -33,10 +33,10 @@ class Senses {
   void listen(sync::HostTime now, Percept& percept);
 
   Rules rules_;
-  sync::Sense eyes_, ears_;
+  sync::ModalityEndpoint eyes_, ears_;
   sync::Queue<node_health_t>& healths_;
-  sync::Sense::Stream<world_state_t>& world_;
-  sync::Sense::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Stream<world_state_t>& world_;
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
   sync::BodyHistory bodies_;
   sync::ContactStream contacts_;
   double frame_rate_Hz_;

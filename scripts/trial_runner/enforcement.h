@@ -29,14 +29,14 @@ class Enforcement {
   const std::optional<sync::ProfileInForce>& profile() const { return profile_; }
 
  private:
-  struct Sense {
+  struct ModalityEndpoint {
     std::int64_t profile = 0;
     sync::HostTime heard{};
   };
   std::optional<sync::ProfileInForce> profile_;
   bool told_ = false;
   std::optional<sync::HostTime> next_;
-  std::map<std::string, Sense> senses_;  // by node
+  std::map<std::string, ModalityEndpoint> senses_;  // by node
 };
 
 }  // namespace tactus::conductor

@@ -263,7 +263,7 @@ class Conductor {
     node_.bus().publish(channels::kDeviceState, state_);
   }
 
-  struct Sense {
+  struct ModalityEndpoint {
     std::string modality;
     int state = 0;
     double rate_Hz = 0, nominal_rate_Hz = 0;
@@ -289,7 +289,7 @@ class Conductor {
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<device_force_t>& forces_;
   sync::Queue<picture_chunk_t>* pictures_ = nullptr;
-  std::map<std::string, Sense> senses_;
+  std::map<std::string, ModalityEndpoint> senses_;
   std::map<std::int32_t, int> buttons_;  // by source
   std::optional<sim_command_t> command_;
   sync::HostTime next_command_{}, next_senses_{}, before_{};

@@ -3,7 +3,7 @@
 //
 // A message that is let through late carries the newest publication time and clock of its stream, and the arrival
 // of the message that they are of: it is old news of the world, not a message from before a restart, and says
-// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/node/sense.h).
+// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/node/modality_endpoint.h).
 #pragma once
 
 #include <algorithm>

@@ -18,11 +18,11 @@ bool Needs::counts(Nanoseconds needed) const {
   return needed <= plan_.budget || plan_.policy == Policy::kItouch2005;
 }
 
-Needs::Sense* Needs::of(const std::string& modality) {
+Needs::ModalityEndpoint* Needs::of(const std::string& modality) {
   const auto it = senses_.find(modality);
   if (it != senses_.end()) return &it->second;
   if (senses_.size() >= kMaxSenses) return nullptr;
-  Sense& sense = senses_[modality];
+  ModalityEndpoint& sense = senses_[modality];
   sense.aligner = make_aligner(plan_.aligner, plan_.base);
   return &sense;
 }
@@ -36,7 +36,7 @@ void Needs::know(const std::string& modality, bool slow) {
 }
 
 void Needs::add(const std::string& modality, Nanoseconds needed) {
-  Sense* sense = of(modality);
+  ModalityEndpoint* sense = of(modality);
   if (sense == nullptr) return;
   needed = std::max(needed, Nanoseconds(0));
   sense->last.push_back(needed);

@@ -35,15 +35,15 @@ class Needs {
   static constexpr std::size_t kMaxSenses = 64;
   static constexpr std::size_t kRemembered = 128;  // events
   static constexpr std::size_t kLately = 16;       // events
-  struct Sense {
+  struct ModalityEndpoint {
     std::unique_ptr<Aligner> aligner;
     std::deque<Nanoseconds> last;
   };
-  Sense* of(const std::string& modality);
+  ModalityEndpoint* of(const std::string& modality);
   bool counts(Nanoseconds needed) const;
 
   PlayoutPlan plan_;
-  std::map<std::string, Sense> senses_;
+  std::map<std::string, ModalityEndpoint> senses_;
   std::set<std::string> slow_;
 };
 

@@ -12,7 +12,7 @@
 
 #include "sync/node/node.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 #include "tests/wind_node/fan.h"
 
 using namespace tactus;
@@ -39,7 +39,7 @@ int main(int argc, char** argv) try {
   sync::Node node(declaration, options);
   node.set_rate(settings.rate_Hz);
   sync::SceneReceiver scenes(node.bus());
-  sync::Sense sense(node);
+  sync::ModalityEndpoint sense(node);
   auto& world = sense.snapshots<world_state_t>(channels::kWorldState, 4096);
   auto& events = sense.events();
   std::optional<wind::Fan> fan;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sync/resampling/sample_status.h"
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 #include "visual_node/overlay/kinds.h"
 #include "visual_node/scene_view/draw_list.h"
 

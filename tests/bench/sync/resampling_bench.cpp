@@ -132,7 +132,7 @@ Stack stack_of(bool degraded) {
 }
 
 // A sense that takes in a millisecond at a time.
-struct Sense {
+struct ModalityEndpoint {
   Stack stack;
   DegradedSnapshots<contact_frame_t> contacts;
   DegradedSnapshots<world_state_t> world;
@@ -141,7 +141,7 @@ struct Sense {
   ContactStream stream{1};
   BodyHistory bodies{1};
 
-  explicit Sense(bool degraded) : stack(stack_of(degraded)) {}
+  explicit ModalityEndpoint(bool degraded) : stack(stack_of(degraded)) {}
   template <class Message, class Degraded, class Sink>
   void take(const Wire& wire, HostTime now, Degraded& degraded, Sink& sink) {
     for (const auto& bytes : wire)
@@ -158,13 +158,13 @@ void sense(benchmark::State& state, int period_ms, const Read& read, const Rende
   const bool degraded = state.range(1) != 0;
   static std::map<int, Second> seconds;
   const Second& second = seconds.try_emplace(n, n).first->second;
-  auto s = std::make_unique<Sense>(degraded);
+  auto s = std::make_unique<ModalityEndpoint>(degraded);
   std::int64_t ms = 0;
   for (auto _ : state) {
     if (ms + period_ms > kRecorded_ms) {
       state.PauseTiming();
       ms = 0;
-      s = std::make_unique<Sense>(degraded);
+      s = std::make_unique<ModalityEndpoint>(degraded);
       state.ResumeTiming();
     }
     for (int i = 0; i < period_ms; ++i, ++ms) read(*s, second, static_cast<std::size_t>(ms), host_time(ms * kMs));
@@ -192,14 +192,14 @@ class Table : public benchmark::BenchmarkReporter {
   }
 };
 
-void read_contacts(Sense& s, const Second& second, std::size_t ms, HostTime now) {
+void read_contacts(ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
   s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
   s.take<contact_frame_t>(second.contacts[ms], now, s.contacts, s.stream);
 }
 
 // Events and state of all contacts, a thousand times a second.
 void every_millisecond(benchmark::State& state) {
-  sense(state, 1, read_contacts, [](Sense& s, SimTime t, int) {
+  sense(state, 1, read_contacts, [](ModalityEndpoint& s, SimTime t, int) {
     benchmark::DoNotOptimize(s.stream.take_events(t));
     benchmark::DoNotOptimize(s.stream.state_at(t - Nanoseconds(8 * kMs)));
   });
@@ -209,15 +209,15 @@ void every_millisecond(benchmark::State& state) {
 void audio_node(benchmark::State& state) {
   sense(
       state, 3,
-      [](Sense& s, const Second& second, std::size_t ms, HostTime now) {
+      [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
         s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
       },
-      [](Sense& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
+      [](ModalityEndpoint& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
 }
 
 // As thermal_node: the integral over its tick.
 void thermal_node(benchmark::State& state) {
-  sense(state, 20, read_contacts, [](Sense& s, SimTime t, int) {
+  sense(state, 20, read_contacts, [](ModalityEndpoint& s, SimTime t, int) {
     benchmark::DoNotOptimize(s.stream.take_events(t));
     benchmark::DoNotOptimize(s.stream.integral(t - Nanoseconds(25 * kMs), t - Nanoseconds(5 * kMs), 0, 1000));
   });
@@ -227,11 +227,11 @@ void thermal_node(benchmark::State& state) {
 void visual_node(benchmark::State& state) {
   sense(
       state, 16,
-      [](Sense& s, const Second& second, std::size_t ms, HostTime now) {
+      [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
         s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
         s.take<world_state_t>(second.bodies[ms], now, s.world, s.bodies);
       },
-      [](Sense& s, SimTime t, int n) {
+      [](ModalityEndpoint& s, SimTime t, int n) {
         benchmark::DoNotOptimize(s.stream.take_events(t));
         for (int i = 0; i < n; ++i) benchmark::DoNotOptimize(s.bodies.pose(i, t));
       });

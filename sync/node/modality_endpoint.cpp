@@ -1,4 +1,4 @@
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 
 #include <algorithm>
 #include <iostream>
@@ -27,9 +27,9 @@ std::vector<std::string> not_declared(const Profile& profile, const Declaration&
 
 }  // namespace
 
-Sense::Sense(Node& node) : Sense(node, node.declaration()) { listens_in_ = false; }
+ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.declaration()) { listens_in_ = false; }
 
-Sense::Sense(Node& node, Declaration of)
+ModalityEndpoint::ModalityEndpoint(Node& node, Declaration of)
     : node_(node),
       declaration_(std::move(of)),
       listens_in_(true),
@@ -44,9 +44,9 @@ Sense::Sense(Node& node, Declaration of)
   receiver_.set_generation(0);
 }
 
-Sense::~Sense() = default;
+ModalityEndpoint::~ModalityEndpoint() = default;
 
-void Sense::set_scene(const scene_t& scene, int tool) {
+void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   names_ = {};
   for (const body_def_t& b : scene.bodies) names_.bodies.push_back(b.name);
   for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
@@ -61,7 +61,7 @@ void Sense::set_scene(const scene_t& scene, int tool) {
   if (hash != profile_hash_) put_in_force({text, hash, 0, SimTime{}});
 }
 
-void Sense::put_in_force(const ProfileInForce& profile) {
+void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   const Declaration& d = declaration_;
   try {
     const Profile parsed = parse_profile(profile.text, "profile");
@@ -82,7 +82,7 @@ void Sense::put_in_force(const ProfileInForce& profile) {
   }
 }
 
-void Sense::take_control(HostTime) {
+void ModalityEndpoint::take_control(HostTime) {
   const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
@@ -94,7 +94,7 @@ void Sense::take_control(HostTime) {
     if (ours(m->message.header)) playout_.take(m->message);
 }
 
-void Sense::step(HostTime now) {
+void ModalityEndpoint::step(HostTime now) {
   take_control(now);
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
@@ -108,7 +108,7 @@ void Sense::step(HostTime now) {
   for (const auto& stream : streams_) stream->step(*this, now, lets);
 }
 
-void Sense::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
+void ModalityEndpoint::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
   const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
   for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
     const HostTime arrived = arrivals_.at(*id);
@@ -122,7 +122,7 @@ void Sense::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
   }
 }
 
-HostTime Sense::schedule(std::int64_t event_id, HostTime happened) const {
+HostTime ModalityEndpoint::schedule(std::int64_t event_id, HostTime happened) const {
   if (lockstep_) return lockstep_->next_turn(happened) + serial_delay_;
   if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
   const auto arrived = arrivals_.find(event_id);
@@ -130,13 +130,13 @@ HostTime Sense::schedule(std::int64_t event_id, HostTime happened) const {
   return std::max(happened, ready) + profile_delay_;
 }
 
-HostTime Sense::newest_arrival() const {
+HostTime ModalityEndpoint::newest_arrival() const {
   HostTime newest{};
   for (const auto& stream : streams_) newest = std::max(newest, stream->newest_arrival());
   return newest;
 }
 
-void Sense::note_arrivals(const contact_events_t& m, HostTime arrival) {
+void ModalityEndpoint::note_arrivals(const contact_events_t& m, HostTime arrival) {
   for (const contact_event_t& e : m.events) {
     if (!arrivals_.try_emplace(e.event_id, arrival).second) continue;
     arrivals_order_.push_back(e.event_id);
@@ -147,14 +147,14 @@ void Sense::note_arrivals(const contact_events_t& m, HostTime arrival) {
   }
 }
 
-bool Sense::owes(const contact_event_t& e) const {
+bool ModalityEndpoint::owes(const contact_event_t& e) const {
   const int owes = declaration_.owes;
   if ((owes & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
   return (e.kind == contact_event_t::BEGIN && (owes & node_health_t::OWES_BEGIN)) ||
          (e.kind == contact_event_t::HIT && (owes & node_health_t::OWES_HIT));
 }
 
-void Sense::report_dropped(const std::vector<contact_event_t>& dropped) {
+void ModalityEndpoint::report_dropped(const std::vector<contact_event_t>& dropped) {
   for (const contact_event_t& e : dropped) {
     if (!owes(e)) continue;
     presentation_t r{};
@@ -166,7 +166,7 @@ void Sense::report_dropped(const std::vector<contact_event_t>& dropped) {
   }
 }
 
-void Sense::report(const presentation_t& report) {
+void ModalityEndpoint::report(const presentation_t& report) {
   presentation_t r = report;
   const auto arrived = arrivals_.find(r.event_id);
   r.ready_ns = arrived == arrivals_.end() ? -1 : to_ns(arrived->second + output_latency_);
@@ -174,7 +174,7 @@ void Sense::report(const presentation_t& report) {
   if (tell_) tell_(r);
 }
 
-void Sense::publish(HostTime now) {
+void ModalityEndpoint::publish(HostTime now) {
   if (listens_in_) return decisions_.clear();
   reporter_.publish(node_.bus(), now);
   if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
@@ -182,7 +182,7 @@ void Sense::publish(HostTime now) {
   publish_decisions();
 }
 
-void Sense::publish_decisions() {
+void ModalityEndpoint::publish_decisions() {
   if (decisions_.size() > kMostDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMostDecisions);
   degraded_t m{};
   m.header.sim_time_ns = -1;

@@ -37,7 +37,7 @@ struct Delivered {
   HostTime arrival;  // when it really arrived
 };
 
-class Sense {
+class ModalityEndpoint {
  public:
   // A message stream of this sense: what the renderer reads instead of the inbox.
   template <class Message>
@@ -52,7 +52,7 @@ class Sense {
     const InputCount& count() const { return inbox_.count(); }
 
    private:
-    friend class Sense;
+    friend class ModalityEndpoint;
     explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
     Queue<Message>& inbox_;
     std::conditional_t<std::is_same_v<Message, contact_events_t>, DegradedEvents, DegradedSnapshots<Message>> degraded_;
@@ -61,11 +61,11 @@ class Sense {
   };
 
   // Reads the node's --degrade. Throws std::runtime_error with one sentence when that is no profile.
-  explicit Sense(Node& node);
+  explicit ModalityEndpoint(Node& node);
   // The sense of another process, listened in on: its streams with what the same profile decides, when it presents, and nothing
   // said on the bus. So a process knows what a person gets of it.
-  Sense(Node& node, Declaration of);
-  ~Sense();
+  ModalityEndpoint(Node& node, Declaration of);
+  ~ModalityEndpoint();
 
   // Make them before the first step.
   Stream<contact_events_t>& events(std::size_t capacity = 4096) { return add<contact_events_t>(channels::kContactEvents, capacity); }
@@ -114,14 +114,14 @@ class Sense {
  private:
   struct AnyStream {
     virtual ~AnyStream() = default;
-    virtual void step(Sense& sense, HostTime now, HostTime lets) = 0;
+    virtual void step(ModalityEndpoint& sense, HostTime now, HostTime lets) = 0;
     virtual void change_profile() = 0;
     virtual HostTime newest_arrival() const = 0;
   };
   template <class Message>
   struct StreamSlot : AnyStream {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
-    void step(Sense& sense, HostTime now, HostTime lets) override;
+    void step(ModalityEndpoint& sense, HostTime now, HostTime lets) override;
     // Events are decided on one by one.
     void change_profile() override {
       if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
@@ -172,7 +172,7 @@ class Sense {
 };
 
 template <class Message>
-void Sense::StreamSlot<Message>::step(Sense& sense, HostTime now, HostTime lets) {
+void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTime now, HostTime lets) {
   // A turn that is held up while it reads hears what came meanwhile, too, and does not keep it until the next.
   HostTime heard = now;
   while (auto m = stream.inbox_.pop()) {

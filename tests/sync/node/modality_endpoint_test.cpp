@@ -1,4 +1,4 @@
-#include "sync/node/sense.h"
+#include "sync/node/modality_endpoint.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -32,7 +32,7 @@ contact_frame_t frame(Identity& sender, std::int64_t seq, HostTime at) {
 TEST_CASE("What arrives while a turn is held up in its reading is not kept until the next") {
   Node node({.node = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."},
             in_memory());
-  Sense sense(node);
+  ModalityEndpoint sense(node);
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 64);
   Identity sender = Identity::fresh("sim_node", 1);
   const HostTime turn = host_now();
