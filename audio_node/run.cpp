@@ -39,7 +39,7 @@ using namespace tactus;
 namespace {
 
 // The loop only hands events on, below the simulation; the card's callback renders them at 70.
-const sync::Declaration kAudio{.node = "audio_node",
+const sync::NodeDescriptor kAudio{.node = "audio_node",
                                .modality = "audio",
                                .owes = node_health_t::OWES_HIT,
                                .rate_Hz = 1000,

@@ -40,7 +40,7 @@
 using namespace tactus;
 
 int tactus::haptic::run(int argc, char** argv) try {
-  const sync::Declaration declaration{
+  const sync::NodeDescriptor declaration{
       .node = "haptic_node",
       .modality = "haptic",
       .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,

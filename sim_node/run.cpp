@@ -53,7 +53,7 @@ struct Telling {
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
-  const sync::Declaration declaration{.node = "sim_node",
+  const sync::NodeDescriptor declaration{.node = "sim_node",
                                       .modality = "",
                                       .rate_Hz = 1000,
                                       .fifo_priority = 50,

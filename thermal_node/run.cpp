@@ -32,7 +32,7 @@
 using namespace tactus;
 
 int tactus::thermal::run(int argc, char** argv) try {
-  const sync::Declaration declaration{
+  const sync::NodeDescriptor declaration{
       .node = "thermal_node",
       .modality = "thermal",
       .owes = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,

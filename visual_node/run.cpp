@@ -41,7 +41,7 @@ using namespace tactus;
 
 int tactus::visual::run(int argc, char** argv) try {
   visual::Settings settings;
-  const sync::Declaration declaration{
+  const sync::NodeDescriptor declaration{
       .node = "visual_node",
       .modality = "visual",
       .owes = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},

@@ -24,7 +24,7 @@ using namespace tactus;
 
 namespace {
 
-const sync::Declaration kParticipant{.node = "participant",
+const sync::NodeDescriptor kParticipant{.node = "participant",
                                      .modality = "",
                                      .rate_Hz = 1000,
                                      .fifo_priority = 55,

@@ -8,7 +8,7 @@ namespace tactus::participant {
 namespace {
 
 // Those whose senses these are: visual_node and audio_node.
-sync::Declaration of(const char* node, const char* modality, int owes) {
+sync::NodeDescriptor of(const char* node, const char* modality, int owes) {
   return {.node = node, .modality = modality, .owes = owes, .about = ""};
 }
 

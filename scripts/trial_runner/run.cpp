@@ -44,7 +44,7 @@ using nlohmann::json;
 namespace tactus::conductor {
 namespace {
 
-const sync::Declaration kConductor{.node = "conductor",
+const sync::NodeDescriptor kConductor{.node = "conductor",
                                    .modality = "",
                                    .rate_Hz = 1000,
                                    .fifo_priority = 55,

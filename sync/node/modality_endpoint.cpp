@@ -15,7 +15,7 @@ constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as Prese
 constexpr std::size_t kRememberedArrivals = 8192;    // as sync/resampling/contact_stream.cpp remembers ids
 
 // Operators on the output that the profile asks of this sense and that it does not have.
-std::vector<std::string> not_declared(const Profile& profile, const Declaration& d) {
+std::vector<std::string> not_declared(const Profile& profile, const NodeDescriptor& d) {
   std::vector<std::string> missing;
   for (const Rule& rule : profile.rules) {
     if (rule.modality != d.modality) continue;
@@ -29,7 +29,7 @@ std::vector<std::string> not_declared(const Profile& profile, const Declaration&
 
 ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.declaration()) { listens_in_ = false; }
 
-ModalityEndpoint::ModalityEndpoint(Node& node, Declaration of)
+ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor of)
     : node_(node),
       declaration_(std::move(of)),
       listens_in_(true),
@@ -62,7 +62,7 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
 }
 
 void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
-  const Declaration& d = declaration_;
+  const NodeDescriptor& d = declaration_;
   try {
     const Profile parsed = parse_profile(profile.text, "profile");
     stack_ = Stack(parsed, d.modality, profile.start);

@@ -64,7 +64,7 @@ class ModalityEndpoint {
   explicit ModalityEndpoint(Node& node);
   // The sense of another process, listened in on: its streams with what the same profile decides, when it presents, and nothing
   // said on the bus. So a process knows what a person gets of it.
-  ModalityEndpoint(Node& node, Declaration of);
+  ModalityEndpoint(Node& node, NodeDescriptor of);
   ~ModalityEndpoint();
 
   // Make them before the first step.
@@ -147,7 +147,7 @@ class ModalityEndpoint {
   void publish_decisions();
 
   Node& node_;
-  Declaration declaration_;
+  NodeDescriptor declaration_;
   bool listens_in_ = false;
   Queue<degradation_t>& degradations_;
   Queue<playout_t>& playouts_;

@@ -37,7 +37,7 @@ Realtime parse_realtime(const std::string& text) {
   return text == "require" ? Realtime::kRequire : text == "off" ? Realtime::kOff : Realtime::kTry;
 }
 
-std::string enter(const Declaration& d, const NodeOptions& o) {
+std::string enter(const NodeDescriptor& d, const NodeOptions& o) {
   if (o.check) std::exit(0);
   if (VirtualTime::current()) return "virtual time";
   catch_signals();
@@ -63,7 +63,7 @@ constexpr std::size_t kLongestNote = 140;
 
 }  // namespace
 
-void NodeOptions::add_to(CLI::App& app, const Declaration& d) {
+void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
   name = d.node;
   app.description(d.about);
   add_bus_options(app, bus);
@@ -104,7 +104,7 @@ int fail(const std::string& node, const std::exception& e) {
   return 1;
 }
 
-Node::Node(Declaration declaration, NodeOptions options)
+Node::Node(NodeDescriptor declaration, NodeOptions options)
     : declaration_(std::move(declaration)),
       options_(with_profile(std::move(options))),
       scheduling_(enter(declaration_, options_)),

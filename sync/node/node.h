@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "sync/bus/bus.h"
-#include "sync/node/declaration.h"
+#include "sync/node/node_descriptor.h"
 #include "sync/time/histogram.h"
 #include "sync/clocks/pacing.h"
 #include "sync/time/phases.h"
@@ -43,7 +43,7 @@ struct NodeOptions {
   double load = 0;               // for measurements: so much of its period is wasted
   bool check = false;            // leave, with success, where the bus would be joined
 
-  void add_to(CLI::App& app, const Declaration& declaration);
+  void add_to(CLI::App& app, const NodeDescriptor& declaration);
 };
 
 // Parses; prints help or one sentence and exits when there is nothing to run. Then the process may start.
@@ -56,7 +56,7 @@ int fail(const std::string& node, const std::exception& e);
 class Node {
  public:
   // Takes its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.
-  Node(Declaration declaration, NodeOptions options);
+  Node(NodeDescriptor declaration, NodeOptions options);
   ~Node();
 
   // False after SIGTERM or SIGINT.
@@ -76,7 +76,7 @@ class Node {
   // Variables of this process that can be recorded; the time of each phase of its tick is among them.
   Tags& tags() { return tags_; }
   const NodeOptions& options() const { return options_; }
-  const Declaration& declaration() const { return declaration_; }
+  const NodeDescriptor& declaration() const { return declaration_; }
   void set_rate(double rate_Hz);
   // For a loop whose phase is somebody else's: the next tick is then; so many before it are left out and count as missed.
   void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
@@ -111,7 +111,7 @@ class Node {
   void report(HostTime now);
   node_health_t health_message(HostTime now);
 
-  Declaration declaration_;
+  NodeDescriptor declaration_;
   NodeOptions options_;
   std::string scheduling_;
   bool demoted_ = false;

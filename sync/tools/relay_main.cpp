@@ -44,7 +44,7 @@ sync::BusOptions bulk_of(sync::BusOptions bus) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::Declaration declaration{.node = "relay",
+  const sync::NodeDescriptor declaration{.node = "relay",
                                       .modality = "",
                                       .rate_Hz = 500,  // so it adds a millisecond in the mean
                                       .fifo_priority = 40,

@@ -77,7 +77,7 @@ void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& ass
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::Declaration declaration{.node = "replay",
+  const sync::NodeDescriptor declaration{.node = "replay",
                                       .modality = "",
                                       .rate_Hz = 1000,
                                       .fifo_priority = 50,

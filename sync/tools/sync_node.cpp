@@ -62,7 +62,7 @@ std::string clocks_note(const std::vector<clock_map_t>& maps) {
 }  // namespace
 
 int tactus::sync::run_sync_node(int argc, char** argv) try {
-  const sync::Declaration declaration{.node = "sync_node",
+  const sync::NodeDescriptor declaration{.node = "sync_node",
                                       .modality = "",
                                       .rate_Hz = 50,  // at the least: it wakes when something arrives
                                       .fifo_priority = 40,

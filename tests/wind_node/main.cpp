@@ -19,7 +19,7 @@ using namespace tactus;
 
 int main(int argc, char** argv) try {
   wind::Settings settings;
-  const sync::Declaration declaration{.node = "wind_node",
+  const sync::NodeDescriptor declaration{.node = "wind_node",
                                       .modality = "wind",
                                       .owes = int{node_health_t::OWES_HIT},
                                       .rate_Hz = settings.rate_Hz,

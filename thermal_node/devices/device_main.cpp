@@ -21,7 +21,7 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  const sync::Declaration declaration{
+  const sync::NodeDescriptor declaration{
       .node = "thermal_device",
       .modality = "",
       .rate_Hz = 100,

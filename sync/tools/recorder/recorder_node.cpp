@@ -55,7 +55,7 @@ std::vector<sync::HeadAsset> assets_of(const sync::SceneReceiver& scene) {
 }  // namespace
 
 int tactus::sync::run_recorder(int argc, char** argv) try {
-  const sync::Declaration declaration{.node = "recorder",
+  const sync::NodeDescriptor declaration{.node = "recorder",
                                       .modality = "",
                                       .rate_Hz = 50,  // of writing to disk; a thread of its own stamps on arrival
                                       .fifo_priority = 40,

@@ -62,7 +62,7 @@ contact_event_t hit(std::int64_t id, std::int64_t time_ns, double azimuth_rad) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::Declaration declaration{.node = "sim_node",
+  const sync::NodeDescriptor declaration{.node = "sim_node",
                                       .modality = "",
                                       .rate_Hz = 1000,
                                       .fifo_priority = 50,

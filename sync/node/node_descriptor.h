@@ -11,7 +11,7 @@
 
 namespace tactus::sync {
 
-struct Declaration {
+struct NodeDescriptor {
   std::string node;      // "audio_node"
   std::string modality;  // "audio"; empty: renders nothing
   int owes = node_health_t::OWES_NOTHING;
