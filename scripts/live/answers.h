@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "scripts/live/browser_message.h"
-#include "sync/node/asked_question.h"
+#include "sync/node/current_question.h"
 
 namespace tactus::live {
 
@@ -20,7 +20,7 @@ class Answers {
  public:
   static constexpr std::size_t kRemembered = 64;  // design: a leader asks one question after the other
 
-  // run_id: as of sync::AskedQuestion.
+  // run_id: as of sync::CurrentQuestion.
   explicit Answers(std::int64_t run_id) : asked_(run_id) {}
 
   void push(const question_t& m, sync::HostTime arrival);
@@ -40,7 +40,7 @@ class Answers {
  private:
   const answer_t* answered(const question_t& m) const;
 
-  sync::AskedQuestion asked_;
+  sync::CurrentQuestion asked_;
   std::deque<std::pair<sync::QuestionKey, answer_t>> answered_;
   std::optional<answer_t> to_send_;
 };

@@ -9,7 +9,7 @@
 #include <tactus/question_t.hpp>
 #include <utility>
 
-#include "sync/node/asked_question.h"
+#include "sync/node/current_question.h"
 #include "visual_node/overlay/presses.h"
 
 namespace tactus::visual {
@@ -46,7 +46,7 @@ class QuestionDesk {
   void answer(const question_t& m, const char* by, sync::HostTime now, int choice);
   void begin(const question_t& m);
 
-  sync::AskedQuestion asked_;
+  sync::CurrentQuestion asked_;
   std::optional<sync::QuestionKey> at_;  // what the mark and the time belong to
   double steps_ = 0, mark_ = 0;          // from the lowest to the highest number; of the mark
   std::optional<sync::HostTime> seen_;

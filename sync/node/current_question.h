@@ -9,12 +9,12 @@
 
 namespace tactus::sync {
 
-class AskedQuestion {
+class CurrentQuestion {
  public:
   static constexpr Nanoseconds kGone{2'000'000'000};  // question_t.lcm
 
   // run_id: questions of another run are not heeded; 0: those of any are, as in a log.
-  explicit AskedQuestion(std::int64_t run_id) : run_id_(run_id) {}
+  explicit CurrentQuestion(std::int64_t run_id) : run_id_(run_id) {}
 
   // The newest of one leader holds: false when it is of another run, was overtaken by a newer one, or comes from
   // somebody else while one leads.
