@@ -6,7 +6,7 @@
 
 #include "lcmtypes/vectors.h"
 #include "scripts/live/sliders.h"
-#include "sync/bus/asking.h"
+#include "sync/bus/request_reply.h"
 #include "sync/bus/identity.h"
 #include "sync/text/printable.h"
 
@@ -41,7 +41,7 @@ Controls::Controls(sync::Bus& bus, Tell tell)
 void Controls::command(const Command& command, sync::HostTime now) {
   sim_command_t c{};
   c.header = unstamped();
-  c.id = sync::question_id();
+  c.id = sync::request_id();
   c.kind = command.kind;
   c.steps = command.steps;
   command_ = {c, now + kPatience, now};
@@ -70,7 +70,7 @@ void Controls::hand(const HandAt& at, double aspect, sync::HostTime now) {
 void Controls::stream(double rate_Hz, sync::HostTime now) {
   setting_change_t c{};
   c.header = unstamped();
-  c.id = sync::question_id();
+  c.id = sync::request_id();
   c.node = "visual_node";
   c.name = "stream";
   std::ostringstream value;

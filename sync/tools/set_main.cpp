@@ -3,7 +3,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "sync/bus/asking.h"
+#include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
@@ -22,7 +22,7 @@ setting_change_t change_of(const std::string& node, const std::string& text) {
   setting_change_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid
-  c.id = sync::question_id();
+  c.id = sync::request_id();
   c.node = node;
   c.name = text.substr(0, equals);
   c.value = text.substr(equals + 1);
@@ -49,7 +49,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("set", run_id), bus_options);
   auto& replies = bus.queue<setting_reply_t>(channels::kSettingReply, 64);
   for (setting_change_t& change : changes) {
-    const auto reply = sync::ask(bus, channels::kSetting, change, replies, kPatience);
+    const auto reply = sync::request(bus, channels::kSetting, change, replies, kPatience);
     if (!reply)
       throw std::runtime_error(
           "no \"" + sync::printable(node) +

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "sync/bus/asking.h"
+#include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
@@ -64,7 +64,7 @@ sim_command_t command_of(const std::string& verb, const Words& w) {
   sim_command_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid
-  c.id = sync::question_id();
+  c.id = sync::request_id();
   c.name = w.name;
   constexpr const char* kVerbs[] = {"pause", "resume", "step", "reset", "set", "push", "snapshot", "restore"};
   for (std::size_t i = 0; i < std::size(kVerbs); ++i)
@@ -102,7 +102,7 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
-  const auto reply = sync::ask(bus, channels::kSimCommand, command, replies, kPatience);
+  const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kPatience);
   if (!reply)
     throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));

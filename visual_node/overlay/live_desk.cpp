@@ -1,6 +1,6 @@
 #include "visual_node/overlay/live_desk.h"
 
-#include "sync/bus/asking.h"
+#include "sync/bus/request_reply.h"
 
 namespace tactus::visual {
 
@@ -9,7 +9,7 @@ void LiveDesk::heed(const Wish& wish, Display& display, LiveOverlays& overlays) 
     case Act::kOverlay: return overlays.toggle(wish.overlay);
     case Act::kFullScreen: return display.toggle_full_screen();
     case Act::kClose: closing_ = true; return;
-    default: wishes_.ask(wish.act, sync::question_id());
+    default: wishes_.ask(wish.act, sync::request_id());
   }
 }
 

@@ -11,7 +11,7 @@
 namespace tactus::sync {
 
 // A number that no other question has, > 0. Throws std::runtime_error when the system has no random numbers.
-std::int64_t question_id();
+std::int64_t request_id();
 
 // The reply of this run to `question`; nothing: nobody answered for so long. For programs that a person runs: it
 // waits.

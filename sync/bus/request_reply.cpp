@@ -1,4 +1,4 @@
-#include "sync/bus/asking.h"
+#include "sync/bus/request_reply.h"
 
 #include <sys/random.h>
 
@@ -6,7 +6,7 @@
 
 namespace tactus::sync {
 
-std::int64_t question_id() {
+std::int64_t request_id() {
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != sizeof random) throw std::runtime_error("no random numbers");
   return static_cast<std::int64_t>(random >> 2) + 1;
