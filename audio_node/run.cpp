@@ -29,7 +29,7 @@
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/live_settings.h"
 #include "sync/node/node.h"
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 #include "sync/assets/scene_exchange.h"
 #include "sync/node/modality_endpoint.h"
 #include "sync/virtual_time/virtual_time.h"
@@ -118,7 +118,7 @@ int tactus::audio::run(int argc, char** argv) try {
   std::unique_ptr<audio::Impacts> impacts;
   std::unique_ptr<audio::Sliding> sliding;
   std::unique_ptr<audio::Sampler> sampler;
-  std::optional<sync::Opening<audio::HeardSurfaces>> surfaces;
+  std::optional<sync::BackgroundTask<audio::HeardSurfaces>> surfaces;
   sync::HostTime slid_at{}, told_at{};
   std::int64_t scenes = 0;
 

@@ -32,7 +32,7 @@
 #include "lcmtypes/pointing.h"
 #include "sync/node/live_settings.h"
 #include "sync/node/node.h"
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 #include "sync/clocks/pacing.h"
 #include "sync/assets/scene_exchange.h"
 #include "sync/node/modality_endpoint.h"
@@ -85,9 +85,9 @@ int tactus::haptic::run(int argc, char** argv) try {
   haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
   haptic::Choice choice;
   haptic::Quality quality(given.settings);
-  std::optional<sync::Opening<haptic::Device>> device;
+  std::optional<sync::BackgroundTask<haptic::Device>> device;
   // Read in a thread of its own; what is not there yet is smooth.
-  std::optional<sync::Opening<haptic::SurfaceMaps>> opening_maps;
+  std::optional<sync::BackgroundTask<haptic::SurfaceMaps>> opening_maps;
   std::shared_ptr<const haptic::SurfaceMaps> maps;
   std::optional<haptic::Session> session;
   bool points = false;    // its tool is a wand or the head: there is no touch to wait for

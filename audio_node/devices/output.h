@@ -11,7 +11,7 @@
 #include "audio_node/samples/rub_line.h"
 #include "audio_node/mixer/scrape_line.h"
 #include "audio_node/settings.gen.h"
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 
 namespace tactus::audio {
 
@@ -115,7 +115,7 @@ class Output {
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
                                       const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent);
   void take(Opened& opened);
-  std::optional<sync::Opening<Opened>> opening_;
+  std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;
   std::deque<presentation_t> unsounded_;
   std::int64_t reports_lost_ = 0;

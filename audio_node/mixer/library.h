@@ -11,7 +11,7 @@
 #include "audio_node/samples/database.h"
 #include "audio_node/mixer/recorded.h"
 #include "audio_node/settings.gen.h"
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 
 namespace tactus::audio {
 
@@ -57,7 +57,7 @@ class Library {
 
   RecordedCrossing& crossing_;
   std::optional<Source> wanted_, reading_, read_;
-  std::optional<sync::Opening<Database>> opening_;
+  std::optional<sync::BackgroundTask<Database>> opening_;
   Shared now_, next_;
   std::int64_t told_ = 0;  // number of `now_`
   std::deque<Kept> kept_;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 
 namespace tactus::sim {
 
@@ -44,7 +44,7 @@ class StateStore {
  private:
   std::filesystem::path folder_;
   std::map<std::string, std::shared_ptr<const Bytes>> kept_;
-  std::optional<sync::Opening<Done>> work_;
+  std::optional<sync::BackgroundTask<Done>> work_;
 };
 
 }  // namespace tactus::sim

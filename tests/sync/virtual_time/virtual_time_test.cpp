@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sync/node/node.h"
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 #include "sync/clocks/pacing.h"
 
 using namespace tactus;
@@ -137,7 +137,7 @@ TEST_CASE("There is one virtual time at a time, and only its programs sleep in i
 
 TEST_CASE("What is opened in virtual time is there at once") {
   VirtualTime time;
-  Opening<int> opening([] { return std::make_unique<int>(4); });
+  BackgroundTask<int> opening([] { return std::make_unique<int>(4); });
   REQUIRE(opening.done());
   CHECK(*opening.take() == 4);
 }

@@ -15,10 +15,10 @@
 namespace tactus::sync {
 
 template <class T>
-class Opening {
+class BackgroundTask {
  public:
   // make runs in the new thread and owns all that it uses: it may outlive this object.
-  explicit Opening(std::function<std::unique_ptr<T>()> make) : state_(std::make_shared<State>()) {
+  explicit BackgroundTask(std::function<std::unique_ptr<T>()> make) : state_(std::make_shared<State>()) {
     auto opens = [state = state_, make = std::move(make)] {
       try {
         state->made = make();

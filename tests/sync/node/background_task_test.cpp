@@ -1,22 +1,22 @@
-#include "sync/node/opening.h"
+#include "sync/node/background_task.h"
 
 #include <catch2/catch.hpp>
 #include <future>
 #include <stdexcept>
 
-using tactus::sync::Opening;
+using tactus::sync::BackgroundTask;
 
 namespace {
 
 template <class T>
-void wait_for(const Opening<T>& opening) {
+void wait_for(const BackgroundTask<T>& opening) {
   while (!opening.done()) std::this_thread::yield();
 }
 
 }  // namespace
 
 TEST_CASE("What opens is handed over once it is done") {
-  Opening<int> opening([] { return std::make_unique<int>(7); });
+  BackgroundTask<int> opening([] { return std::make_unique<int>(7); });
   wait_for(opening);
   const auto made = opening.take();
   REQUIRE(made);
@@ -24,7 +24,7 @@ TEST_CASE("What opens is handed over once it is done") {
 }
 
 TEST_CASE("What cannot be opened says why") {
-  Opening<int> opening([]() -> std::unique_ptr<int> { throw std::runtime_error("no card"); });
+  BackgroundTask<int> opening([]() -> std::unique_ptr<int> { throw std::runtime_error("no card"); });
   wait_for(opening);
   CHECK_THROWS_WITH(opening.take(), "no card");
 }
@@ -33,7 +33,7 @@ TEST_CASE("A card that never starts holds nobody, neither while it is waited for
   std::promise<void> never, ended;
   std::shared_future<void> gate = never.get_future();
   {
-    Opening<int> opening([gate, &ended] {
+    BackgroundTask<int> opening([gate, &ended] {
       gate.wait();
       ended.set_value();
       return std::make_unique<int>(1);
