@@ -42,7 +42,7 @@ class Offline {
 
  private:
   sync::Offline run_;
-  sync::WholeFile trace_;
+  sync::AtomicFile trace_;
   ToolTrack track_;
   bool follows_ = false;
   RecordedTick tick_;

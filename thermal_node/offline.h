@@ -28,7 +28,7 @@ class Offline {
 
  private:
   sync::Offline run_;
-  sync::WholeFile trace_;
+  sync::AtomicFile trace_;
   double period_s_;
   std::int64_t rows_ = 0;
 };

@@ -28,7 +28,7 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
     if (std::filesystem::exists(there, none))
       throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
   if (options_.frames.empty()) return;
-  frames_ = std::make_unique<sync::WholeFile>(options_.frames, "--frames");
+  frames_ = std::make_unique<sync::AtomicFile>(options_.frames, "--frames");
   frames_->write("frame,host_ns,pixels\n");
 }
 

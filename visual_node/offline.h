@@ -45,7 +45,7 @@ class Offline {
   double rate_Hz_;
   sync::Offline run_;
   std::unique_ptr<VideoFile> video_;
-  std::unique_ptr<sync::WholeFile> frames_;
+  std::unique_ptr<sync::AtomicFile> frames_;
   std::vector<std::uint8_t> rgba_;
   sync::HostTime next_snapshot_{};
 };

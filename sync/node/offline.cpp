@@ -41,7 +41,7 @@ Offline::Offline(const OfflineOptions& options, std::vector<Written> written, do
                       [&](const std::string& part) { return std::filesystem::equivalent(part, path, none); }))
         throw std::runtime_error(path + " is the log itself, which would be lost; choose another " + w.option);
   if (options.presented.empty()) return;
-  presented_ = std::make_unique<WholeFile>(options.presented, "--presented");
+  presented_ = std::make_unique<AtomicFile>(options.presented, "--presented");
   presented_->write(presented_csv_names());
 }
 

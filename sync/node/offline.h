@@ -19,7 +19,7 @@
 
 #include "sync/log/log_feed.h"
 #include "sync/node/node.h"
-#include "sync/text/whole_file.h"
+#include "sync/text/atomic_file.h"
 
 namespace tactus::sync {
 
@@ -70,7 +70,7 @@ class Offline {
   LogFeed feed_;
   double rate_Hz_;
   bool as_recorded_;
-  std::unique_ptr<WholeFile> presented_;
+  std::unique_ptr<AtomicFile> presented_;
   HostTime end_, now_, began_, said_;
 };
 

@@ -162,14 +162,14 @@ TEST_CASE("A file bears its name only when it is whole") {
   const Folder folder;
   const std::string path = folder.file("a.csv");
   {
-    WholeFile file(path, "--trace");
+    AtomicFile file(path, "--trace");
     file.write("x,y\n");
     CHECK_FALSE(std::filesystem::exists(path));
-    CHECK_THROWS_WITH(WholeFile(path, "--trace"), Contains("another program is writing"));
+    CHECK_THROWS_WITH(AtomicFile(path, "--trace"), Contains("another program is writing"));
   }
   CHECK_FALSE(std::filesystem::exists(path + ".part"));
   const std::string much(200'000, 'z');
-  WholeFile file(path, "--trace");
+  AtomicFile file(path, "--trace");
   file.write("x,y\n");
   file.write(much);
   file.finish();
@@ -177,8 +177,8 @@ TEST_CASE("A file bears its name only when it is whole") {
   CHECK_FALSE(std::filesystem::exists(path + ".part"));
 
   SECTION("one that cannot be made says which option to choose anew, one that does not fit says so") {
-    CHECK_THROWS_WITH(WholeFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
-    WholeFile full("/dev/full", "--trace");
+    CHECK_THROWS_WITH(AtomicFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
+    AtomicFile full("/dev/full", "--trace");
     full.write("x");
     CHECK_THROWS_WITH(full.finish(), Contains("free some disk"));
   }

@@ -6,14 +6,14 @@
 
 namespace tactus::sync {
 
-class WholeFile {
+class AtomicFile {
  public:
   // option: which the person who reads a complaint is to choose anew, e.g. "--trace". Throws std::runtime_error
   // with one sentence when it cannot be made, or another program is writing it.
-  WholeFile(std::string path, std::string option);
-  ~WholeFile();
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
+  AtomicFile(std::string path, std::string option);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
 
   // Throws std::runtime_error with one sentence when the disk does not take it.
   void write(std::string_view text);

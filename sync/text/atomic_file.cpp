@@ -1,4 +1,4 @@
-#include "sync/text/whole_file.h"
+#include "sync/text/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -23,7 +23,7 @@ std::string part_of(const std::string& path) {
   return plain ? path + ".part" : path;
 }
 
-WholeFile::WholeFile(std::string path, std::string option)
+AtomicFile::AtomicFile(std::string path, std::string option)
     : path_(std::move(path)), part_(part_of(path_)), option_(std::move(option)) {
   file_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0)
@@ -37,18 +37,18 @@ WholeFile::WholeFile(std::string path, std::string option)
   }
 }
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
   if (file_ < 0) return;
   if (part_ != path_) unlink(part_.c_str());
   close(file_);
 }
 
-void WholeFile::write(std::string_view text) {
+void AtomicFile::write(std::string_view text) {
   waiting_.append(text);
   if (waiting_.size() >= kWaiting) flush();
 }
 
-void WholeFile::flush() {
+void AtomicFile::flush() {
   for (std::size_t done = 0; done < waiting_.size();) {
     const ssize_t n = ::write(file_, waiting_.data() + done, waiting_.size() - done);
     if (n < 0 && errno == EINTR) continue;
@@ -60,7 +60,7 @@ void WholeFile::flush() {
   waiting_.clear();
 }
 
-void WholeFile::finish() {
+void AtomicFile::finish() {
   if (file_ < 0) return;
   flush();
   std::error_code error;
