@@ -43,7 +43,7 @@ class ToolTrack {
   sync::OwnClock own() const { return {feed_.run_id(), feed_.clock(), nullptr}; }
 
   const sync::LogFeed& feed_;
-  std::optional<sync::DatedEvents> events_;
+  std::optional<sync::TimestampedEvents> events_;
   int tool_ = -1;
   sync::SimFollower simulation_{own()};
   std::int64_t incarnation_ = 0;

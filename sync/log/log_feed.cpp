@@ -21,7 +21,7 @@ LogFeed::LogFeed(const std::string& path, double rate_Hz)
   origin_ = finder.find();
   if (!origin_.known)
     throw std::runtime_error(path + " holds no message of Tactus; give a run.lcmlog that scripts/run wrote");
-  DatedEvents again(file_.bytes(), origin_, &ages_);
+  TimestampedEvents again(file_.bytes(), origin_, &ages_);
   bool begun = false;
   HostTime at{};
   for (LogEvent event; again.next(event, at);) {

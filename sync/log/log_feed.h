@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "sync/bus/bus.h"
-#include "sync/log/dated_events.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/log/log_ages.h"
 #include "sync/log/log_origin.h"
 #include "sync/log/log_reader.h"
@@ -41,8 +41,8 @@ class LogFeed {
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
 
   // All once more from the beginning, for who looks ahead. Refers to this.
-  DatedEvents from_begin() const {
-    DatedEvents events(file_.bytes(), origin_, &ages_);
+  TimestampedEvents from_begin() const {
+    TimestampedEvents events(file_.bytes(), origin_, &ages_);
     events.start_at(0, begin_);
     return events;
   }
@@ -65,7 +65,7 @@ class LogFeed {
   LogScanner whole_;
   LogAges ages_;
   LogOrigin origin_;
-  DatedEvents events_;
+  TimestampedEvents events_;
   LogEvent pending_;
   HostTime pending_at_{};
   bool has_pending_ = false;

@@ -13,7 +13,7 @@
 #include <regex>
 
 #include "sync/tools/channel_table.h"
-#include "sync/log/dated_events.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/log/log_ages.h"
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
@@ -101,7 +101,7 @@ class Export {
     sync::LogScanner scanner(file.bytes());
     for (sync::LogEvent event; scanner.next(event);) context.learn(event);
     sync::TagTable tags = context.tags();
-    sync::DatedEvents events(file.bytes(), origin);
+    sync::TimestampedEvents events(file.bytes(), origin);
     sync::LogEvent event;
     std::int64_t seen = 0;
     for (sync::HostTime at; events.next(event, at);) {

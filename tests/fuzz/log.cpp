@@ -58,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   LogAges ages;
   const std::int64_t events = scan(log, finder, ages);
   const LogOrigin origin = finder.find();
-  DatedEvents dated(log, origin, &ages);
+  TimestampedEvents dated(log, origin, &ages);
   LogEvent event;
   HostTime time{};
   std::int64_t read = 0;

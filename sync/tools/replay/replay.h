@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "sync/log/dated_events.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/log/log_seek.h"
 #include "sync/tools/replay/replay_stamps.h"
 
@@ -74,7 +74,7 @@ class Replay {
 
   std::span<const std::uint8_t> log_;
   LogOrigin origin_;
-  DatedEvents events_{log_, origin_};
+  TimestampedEvents events_{log_, origin_};
   HostTime begin_{}, start_{}, end_{};
   HostTime position_{};
   HostTime anchor_live_{}, anchor_recorded_{};

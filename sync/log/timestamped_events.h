@@ -13,10 +13,10 @@
 
 namespace tactus::sync {
 
-class DatedEvents {
+class TimestampedEvents {
  public:
   // ages: which stamps can be of this log, where that is known; null: any. Both outlive this.
-  DatedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogAges* ages = nullptr)
+  TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogAges* ages = nullptr)
       : scanner_(bytes), origin_(origin), ages_(ages) {}
 
   // Reads on from the first event at or behind this byte, as if nothing had been read; no time is before `from`.

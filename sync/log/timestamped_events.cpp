@@ -1,8 +1,8 @@
-#include "sync/log/dated_events.h"
+#include "sync/log/timestamped_events.h"
 
 namespace tactus::sync {
 
-void DatedEvents::start_at(std::size_t at, HostTime from) {
+void TimestampedEvents::start_at(std::size_t at, HostTime from) {
   scanner_.start_at(at);
   clock_ = {};
   clock_.observe(from);
@@ -11,7 +11,7 @@ void DatedEvents::start_at(std::size_t at, HostTime from) {
   begun_ = false;
 }
 
-HostTime DatedEvents::time_of(const LogEvent& event) {
+HostTime TimestampedEvents::time_of(const LogEvent& event) {
   if (!credible(event)) return before_.value_or(origin_.time(event.timestamp_us));
   const HostTime stamp = origin_.time(event.timestamp_us);
   if (before_ && ahead_ && credible(*ahead_)) {
@@ -24,7 +24,7 @@ HostTime DatedEvents::time_of(const LogEvent& event) {
   return *before_;
 }
 
-bool DatedEvents::next(LogEvent& event, HostTime& time) {
+bool TimestampedEvents::next(LogEvent& event, HostTime& time) {
   const auto read = [&] {
     LogEvent e;
     ahead_ = scanner_.next(e) ? std::optional(e) : std::nullopt;
