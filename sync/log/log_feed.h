@@ -11,7 +11,7 @@
 
 #include "sync/bus/bus.h"
 #include "sync/log/timestamped_events.h"
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 #include "sync/log/log_origin.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/mapped_log.h"
@@ -53,7 +53,7 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events whose stamps are damaged: further than LogAges::kApart_us from those of the run, and too few to
+  // Events whose stamps are damaged: further than LogTimeRanges::kApart_us from those of the run, and too few to
   // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
   std::int64_t misdated() const { return ages_.misdated(); }
   // One sentence when the log itself does not say, or not rightly, which run it is; empty: it does.
@@ -63,7 +63,7 @@ class LogFeed {
   MappedLog file_;
   std::set<std::string, std::less<>> left_out_;
   LogScanner whole_;
-  LogAges ages_;
+  LogTimeRanges ages_;
   LogOrigin origin_;
   TimestampedEvents events_;
   LogEvent pending_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 #include "sync/log/log_origin.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/recorder_types.h"
@@ -72,7 +72,7 @@ std::optional<LogSpan> span_of_log(std::span<const std::uint8_t> log) {
     const std::int64_t at = median(stamps);
     std::int64_t found = at;
     for (const std::int64_t t : stamps)
-      if (std::abs(t - at) <= LogAges::kApart_us) found = least ? std::min(found, t) : std::max(found, t);
+      if (std::abs(t - at) <= LogTimeRanges::kApart_us) found = least ? std::min(found, t) : std::max(found, t);
     return found;
   };
   const std::int64_t first = extreme(head, true);

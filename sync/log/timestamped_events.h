@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 #include "sync/log/log_origin.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/summary_clock.h"
@@ -16,7 +16,7 @@ namespace tactus::sync {
 class TimestampedEvents {
  public:
   // ages: which stamps can be of this log, where that is known; null: any. Both outlive this.
-  TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogAges* ages = nullptr)
+  TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogTimeRanges* ages = nullptr)
       : scanner_(bytes), origin_(origin), ages_(ages) {}
 
   // Reads on from the first event at or behind this byte, as if nothing had been read; no time is before `from`.
@@ -34,7 +34,7 @@ class TimestampedEvents {
 
   LogScanner scanner_;
   const LogOrigin& origin_;
-  const LogAges* ages_;
+  const LogTimeRanges* ages_;
   SummaryClock clock_;
   std::optional<HostTime> before_;
   std::optional<LogEvent> ahead_;

@@ -14,7 +14,7 @@
 
 #include "sync/tools/channel_table.h"
 #include "sync/log/timestamped_events.h"
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "sync/bus/decode.h"
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 #include "sync/log/log_origin.h"
 #include "sync/log/log_seek.h"
 #include "sync/tools/replay/replay.h"
@@ -14,7 +14,7 @@ using namespace tactus::sync;
 namespace {
 
 // Returns the events found.
-std::int64_t scan(std::span<const std::uint8_t> log, OriginFinder& finder, LogAges& ages) {
+std::int64_t scan(std::span<const std::uint8_t> log, OriginFinder& finder, LogTimeRanges& ages) {
   LogScanner scanner(log);
   LogEvent event;
   std::size_t at = 0;
@@ -55,7 +55,7 @@ void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> log(data, size);
   OriginFinder finder;
-  LogAges ages;
+  LogTimeRanges ages;
   const std::int64_t events = scan(log, finder, ages);
   const LogOrigin origin = finder.find();
   TimestampedEvents dated(log, origin, &ages);

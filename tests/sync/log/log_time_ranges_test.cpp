@@ -1,4 +1,4 @@
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,20 +9,20 @@ using namespace tactus::sync;
 
 namespace {
 
-// What LogAges promises, by sorting all stamps: groups with gaps of more than kApart_us between them.
+// What LogTimeRanges promises, by sorting all stamps: groups with gaps of more than kApart_us between them.
 struct Oracle {
   std::vector<std::vector<std::int64_t>> ages;
   std::size_t fullest = 0;
   explicit Oracle(std::vector<std::int64_t> stamps) {
     std::sort(stamps.begin(), stamps.end());
     for (const std::int64_t t : stamps) {
-      if (ages.empty() || t - ages.back().back() > LogAges::kApart_us) ages.emplace_back();
+      if (ages.empty() || t - ages.back().back() > LogTimeRanges::kApart_us) ages.emplace_back();
       ages.back().push_back(t);
       fullest = std::max(fullest, ages.back().size());
     }
   }
   bool good(const std::vector<std::int64_t>& age) const {
-    return age.size() >= static_cast<std::size_t>(LogAges::kFewestOfARun) || age.size() == fullest;
+    return age.size() >= static_cast<std::size_t>(LogTimeRanges::kFewestOfARun) || age.size() == fullest;
   }
 };
 
@@ -33,10 +33,10 @@ TEST_CASE("Stamps near each other are of one age, in whatever order they come") 
     std::mt19937 random(seed);
     std::vector<std::int64_t> stamps;
     // From a few ages to as many as there are stamps.
-    const std::int64_t span_us = LogAges::kApart_us * (1 + seed * 2);
+    const std::int64_t span_us = LogTimeRanges::kApart_us * (1 + seed * 2);
     for (int i = 0; i < 300; ++i)
       stamps.push_back(static_cast<std::int64_t>(random()) * 4096 % span_us - (random() % 3 ? 0 : span_us * 2));
-    LogAges ages;
+    LogTimeRanges ages;
     for (const std::int64_t t : stamps) ages.note(t);
     const Oracle oracle(stamps);
     std::int64_t misdated = 0;
@@ -50,7 +50,7 @@ TEST_CASE("Stamps near each other are of one age, in whatever order they come") 
 
 TEST_CASE("A million stamps of noise take bounded memory, and a run among them is still known") {
   std::mt19937_64 random(1);
-  LogAges ages;
+  LogTimeRanges ages;
   constexpr int kNoise = 1'000'000;
   for (int i = 0; i < kNoise; ++i) {
     ages.note(static_cast<std::int64_t>(random() % 4'000'000'000'000'000));

@@ -7,7 +7,7 @@
 
 namespace tactus::sync {
 
-class LogAges {
+class LogTimeRanges {
  public:
   // Design: who takes part in a run says ten times a second how it is; so few near each other are no run.
   static constexpr std::int64_t kFewestOfARun = 32;

@@ -1,4 +1,4 @@
-#include "sync/log/log_ages.h"
+#include "sync/log/log_time_ranges.h"
 
 #include <algorithm>
 #include <iterator>
@@ -6,7 +6,7 @@
 
 namespace tactus::sync {
 
-void LogAges::note(std::int64_t t) {
+void LogTimeRanges::note(std::int64_t t) {
   auto next = ages_.upper_bound(t);
   auto at = next == ages_.begin() ? ages_.end() : std::prev(next);
   if (at != ages_.end() && t <= at->second.last_us + kApart_us) {
@@ -28,7 +28,7 @@ void LogAges::note(std::int64_t t) {
   if (ages_.size() > kMost) forget();
 }
 
-void LogAges::forget() {
+void LogTimeRanges::forget() {
   std::vector<std::int64_t> counts;
   for (const auto& [first, age] : ages_) counts.push_back(age.events);
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
@@ -46,14 +46,14 @@ void LogAges::forget() {
   }
 }
 
-bool LogAges::of_the_run(std::int64_t t) const {
+bool LogTimeRanges::of_the_run(std::int64_t t) const {
   const auto next = ages_.upper_bound(t);
   if (next == ages_.begin()) return false;
   const Age& age = std::prev(next)->second;
   return t <= age.last_us && good(age);
 }
 
-std::int64_t LogAges::misdated() const {
+std::int64_t LogTimeRanges::misdated() const {
   std::int64_t events = forgotten_;
   for (const auto& [first, age] : ages_)
     if (!good(age)) events += age.events;
