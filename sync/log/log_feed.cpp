@@ -11,7 +11,7 @@ LogFeed::LogFeed(const std::string& path, double rate_Hz)
       whole_(file_.bytes()),
       events_(file_.bytes(), origin_, &ages_),
       period_(from_seconds(1 / rate_Hz)) {
-  OriginFinder finder;
+  LogClockDetector finder;
   for (LogEvent event; whole_.next(event);) {
     finder.observe(event);
     ages_.note(bounded_us(event.timestamp_us));

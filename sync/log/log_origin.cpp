@@ -35,7 +35,7 @@ HostTime LogOrigin::time(std::int64_t timestamp_us) const {
   return time_of_stamp(timestamp_us, info.realtime_offset_ns);
 }
 
-void OriginFinder::observe(const LogEvent& event) {
+void LogClockDetector::observe(const LogEvent& event) {
   if (event.channel == channels::kLogInfo) {
     if (!told_) told_ = decode<log_info_t>(event.data.data(), event.data.size());
     return;  // the head is stamped ahead of the run
@@ -64,13 +64,13 @@ void OriginFinder::observe(const LogEvent& event) {
     pair.differences_ns.push_back(stamp_ns - header->publish_time_ns);
 }
 
-std::int64_t OriginFinder::witnesses() const {
+std::int64_t LogClockDetector::witnesses() const {
   std::int64_t sum = 0;
   for (const auto& [key, pair] : pairs_) sum += pair.events;
   return sum;
 }
 
-OriginFinder::Pairs::const_iterator OriginFinder::likeliest() const {
+LogClockDetector::Pairs::const_iterator LogClockDetector::likeliest() const {
   const auto more = [](const auto& a, const auto& b) {
     const bool of_a = a.second.of_recorder >= kFewestOfRecorder, of_b = b.second.of_recorder >= kFewestOfRecorder;
     return of_a != of_b ? of_b : a.second.events < b.second.events;
@@ -78,7 +78,7 @@ OriginFinder::Pairs::const_iterator OriginFinder::likeliest() const {
   return std::max_element(pairs_.begin(), pairs_.end(), more);
 }
 
-std::int64_t OriginFinder::offset_ns(const Pair& pair) {
+std::int64_t LogClockDetector::offset_ns(const Pair& pair) {
   std::vector<std::int64_t> d = pair.differences_ns;
   if (d.empty()) return 0;
   const auto at = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 20);
@@ -86,7 +86,7 @@ std::int64_t OriginFinder::offset_ns(const Pair& pair) {
   return *at;
 }
 
-LogOrigin OriginFinder::find() const {
+LogOrigin LogClockDetector::find() const {
   LogOrigin origin;
   const auto found = likeliest();
   if (told_) {
@@ -123,7 +123,7 @@ LogOrigin origin_of(std::span<const std::uint8_t> log) {
   constexpr std::int64_t kWitnesses = 4096;
   constexpr std::size_t kMostBytes = 320 << 20;
   LogScanner scanner(log);
-  OriginFinder finder;
+  LogClockDetector finder;
   for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMostBytes && scanner.next(e);)
     finder.observe(e);
   return finder.find();

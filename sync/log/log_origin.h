@@ -34,7 +34,7 @@ HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_n
 // By the beginning of a log, without reading all of it.
 LogOrigin origin_of(std::span<const std::uint8_t> log);
 
-class OriginFinder {
+class LogClockDetector {
  public:
   // So many pairs of a run and a clock are told apart: a cluster has few hosts; damage makes up more.
   static constexpr std::size_t kMostPairs = 64;

@@ -14,7 +14,7 @@ using namespace tactus::sync;
 namespace {
 
 // Returns the events found.
-std::int64_t scan(std::span<const std::uint8_t> log, OriginFinder& finder, LogTimeRanges& ages) {
+std::int64_t scan(std::span<const std::uint8_t> log, LogClockDetector& finder, LogTimeRanges& ages) {
   LogScanner scanner(log);
   LogEvent event;
   std::size_t at = 0;
@@ -54,7 +54,7 @@ void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> log(data, size);
-  OriginFinder finder;
+  LogClockDetector finder;
   LogTimeRanges ages;
   const std::int64_t events = scan(log, finder, ages);
   const LogOrigin origin = finder.find();
