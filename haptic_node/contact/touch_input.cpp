@@ -4,9 +4,9 @@ namespace tactus::haptic {
 
 void TouchInput::push(const touch_model_t& page, sync::HostTime arrival) {
   if (page.tool != tool_) return;
-  const sync::Follow verdict = simulation_.follow(page.header, page.clock, arrival);
-  if (verdict == sync::Follow::kIgnore) return;
-  if (verdict == sync::Follow::kRestart) {
+  const sync::TrackResult verdict = simulation_.follow(page.header, page.clock, arrival);
+  if (verdict == sync::TrackResult::kIgnore) return;
+  if (verdict == sync::TrackResult::kRestart) {
     pages_.clear();
     began_anew_ = true;
   }

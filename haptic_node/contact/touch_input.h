@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "haptic_node/contact/touch_pages.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 #include "sync/time/time.h"
 
 namespace tactus::haptic {
@@ -32,7 +32,7 @@ class TouchInput {
 
  private:
   int tool_;
-  sync::SimFollower simulation_;
+  sync::SimClockTracker simulation_;
   TouchPages pages_;
   std::optional<touch_model_t> newest_;
   std::optional<sync::HostTime> arrival_, unfinished_since_;

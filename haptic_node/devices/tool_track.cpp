@@ -24,7 +24,7 @@ DeviceState device_of(const tool_state_t& m) {
 void ToolTrack::follow(int tool) {
   tool_ = tool;
   events_.emplace(feed_.from_begin());
-  simulation_ = sync::SimFollower(own());
+  simulation_ = sync::SimClockTracker(own());
   incarnation_ = 0;
 }
 

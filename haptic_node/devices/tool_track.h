@@ -7,7 +7,7 @@
 
 #include "haptic_node/devices/device.h"
 #include "sync/log/log_feed.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 namespace tactus::haptic {
 
@@ -45,7 +45,7 @@ class ToolTrack {
   const sync::LogFeed& feed_;
   std::optional<sync::TimestampedEvents> events_;
   int tool_ = -1;
-  sync::SimFollower simulation_{own()};
+  sync::SimClockTracker simulation_{own()};
   std::int64_t incarnation_ = 0;
   sync::HostTime heard_{};  // of that
 };

@@ -20,7 +20,7 @@
 #include "sync/bus/bus.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/assets/scene_exchange.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 namespace tactus::live {
 
@@ -65,7 +65,7 @@ class Controls {
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<degradation_t>& degradations_;
   sync::SceneReceiver scene_;
-  sync::SimFollower simulation_;
+  sync::SimClockTracker simulation_;
   Hand hand_;
   std::optional<tool_state_t> tool_;
   std::optional<sim_clock_t> clock_;

@@ -36,7 +36,7 @@
 #include "sync/random/chance.h"
 #include "sync/bus/identity.h"
 #include "sync/node/node.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 using namespace tactus;
 using nlohmann::json;
@@ -277,7 +277,7 @@ class Conductor {
   Enforcement enforcement_;
   Interview interview_;
   std::optional<Hand> hand_;
-  sync::SimFollower simulation_;
+  sync::SimClockTracker simulation_;
   sync::Queue<node_health_t>& healths_;
   sync::Queue<contact_frame_t>& frames_;
   sync::Queue<contact_events_t>& events_;

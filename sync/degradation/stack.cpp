@@ -15,7 +15,7 @@ enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicate
 
 constexpr std::size_t kRememberedValues = 4096;
 constexpr std::size_t kMostStreams = 256;  // more channels, groups and tools than a sense reads
-// Simulated time that falls back by more is a world that began anew, as in sync/clocks/sim_follower.h.
+// Simulated time that falls back by more is a world that began anew, as in sync/clocks/sim_clock_tracker.h.
 constexpr Nanoseconds kAnew{1'000'000'000};
 
 double slot_s(const RateDef& rate, std::int64_t slot) {

@@ -27,7 +27,7 @@
 #include "sync/playout/follower.h"
 #include "sync/playout/lockstep.h"
 #include "sync/presentation/presentation_reporter.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 namespace tactus::sync {
 
@@ -160,7 +160,7 @@ class ModalityEndpoint {
   Decisions decisions_;
   HostTime next_decisions_{};
   std::vector<std::unique_ptr<AnyStream>> streams_;
-  SimFollower simulation_;
+  SimClockTracker simulation_;
   PlayoutFollower playout_;
   std::optional<Lockstep> lockstep_;
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};

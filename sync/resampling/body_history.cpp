@@ -45,13 +45,13 @@ SampleStatus past(Nanoseconds newest) {
 
 void BodyHistory::push(const world_state_t& page, HostTime arrival) {
   switch (follower_.follow(page.header, page.clock, arrival)) {
-    case Follow::kIgnore: return;
-    case Follow::kRestart:
+    case TrackResult::kIgnore: return;
+    case TrackResult::kRestart:
       bodies_.clear();
       samples_kept_ = 0;
       newest_.reset();
       break;
-    case Follow::kSame: break;
+    case TrackResult::kSame: break;
   }
   const SimTime time = sim_time(page.header.sim_time_ns), latest = follower_.latest_credible();
   if (newest_ && *newest_ > latest) forget_after(latest);
@@ -88,7 +88,7 @@ bool BodyHistory::place(Samples& samples, Stamped fresh) {
     // in the order of its times, so nothing before a sample that holds needs to be looked at.
     for (auto s = at; s != samples.begin();) {
       if ((--s)->ahead && s->seq < fresh.seq && s->time < fresh.time) break;
-      if (!s->ahead && s->seq > fresh.seq && fresh.time - s->time <= SimFollower::kFar) return false;
+      if (!s->ahead && s->seq > fresh.seq && fresh.time - s->time <= SimClockTracker::kFar) return false;
     }
   } else {
     take_back(samples, fresh);
@@ -110,7 +110,7 @@ void BodyHistory::take_back(Samples& samples, const Stamped& now) {
   const auto end =
       std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= now.time; }).base();
   const auto void_now = [&](const Stamped& s) {
-    return s.ahead && s.seq < now.seq && s.time - now.time <= SimFollower::kFar;
+    return s.ahead && s.seq < now.seq && s.time - now.time <= SimClockTracker::kFar;
   };
   const auto kept = std::remove_if(end, samples.end(), void_now);
   samples_kept_ -= static_cast<std::size_t>(samples.end() - kept);

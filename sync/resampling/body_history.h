@@ -14,7 +14,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/sample_status.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -69,7 +69,7 @@ class BodyHistory {
   using Samples = std::deque<Stamped>;  // in order of time, one per instant
   bool place(Samples& samples, Stamped fresh);
   void take_back(Samples& samples, const Stamped& now);
-  SimFollower follower_;
+  SimClockTracker follower_;
   std::map<int, Samples> bodies_;
   std::size_t samples_kept_ = 0;
   Nanoseconds span_ = kSpan;

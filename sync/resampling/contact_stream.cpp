@@ -35,9 +35,9 @@ Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
 
 bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
   const std::int64_t before = follower_.incarnation();
-  const Follow verdict = follower_.follow(header, clock, arrival);
-  if (verdict == Follow::kIgnore) return false;
-  if (verdict == Follow::kRestart) {
+  const TrackResult verdict = follower_.follow(header, clock, arrival);
+  if (verdict == TrackResult::kIgnore) return false;
+  if (verdict == TrackResult::kRestart) {
     if (before != 0) ++restarts_;
     pending_.clear();
     seen_.clear();

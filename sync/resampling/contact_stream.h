@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sync/resampling/sample_status.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -123,7 +123,7 @@ class ContactStream {
   bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;
   static void keep_last_told(std::vector<Candidate>& list);
 
-  SimFollower follower_;
+  SimClockTracker follower_;
   std::int64_t restarts_ = 0;
   std::int64_t duplicates_ = 0;
   std::int64_t refused_ = 0;

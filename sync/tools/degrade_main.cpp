@@ -13,7 +13,7 @@
 #include "sync/node/node.h"
 #include "sync/clocks/pacing.h"
 #include "sync/text/printable.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 using namespace tactus;
 
@@ -56,7 +56,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
-  sync::SimFollower simulation(bus.clocks());
+  sync::SimClockTracker simulation(bus.clocks());
   std::map<std::string, bool> senses;  // whether each has taken it
   std::set<std::string> modalities;    // that are there
   const sync::HostTime begin = sync::host_now();

@@ -6,8 +6,8 @@ namespace tactus::visual {
 
 void RoomClockReader::hear(const header_t& header, const sim_clock_t& clock, sync::HostTime arrival) {
   switch (follower_.follow(header, clock, arrival)) {
-    case sync::Follow::kIgnore: return;
-    case sync::Follow::kRestart:
+    case sync::TrackResult::kIgnore: return;
+    case sync::TrackResult::kRestart:
       told_.clear();
       if (clocks_ == 0 || header.clock != last_.clock || header.run_id != last_.run_id ||
           header.publish_time_ns < last_.publish_time_ns) {
@@ -15,7 +15,7 @@ void RoomClockReader::hear(const header_t& header, const sim_clock_t& clock, syn
         sender_ = sync::SenderClock(own_);
       }
       break;
-    case sync::Follow::kSame: break;
+    case sync::TrackResult::kSame: break;
   }
   sender_.observe(header, arrival);
   last_ = header;

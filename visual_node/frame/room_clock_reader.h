@@ -8,7 +8,7 @@
 #include <tactus/sim_clock_t.hpp>
 
 #include "sync/clocks/sender_clock.h"
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 #include "visual_node/frame/room_time.h"
 
 namespace tactus::visual {
@@ -47,7 +47,7 @@ class RoomClockReader {
     sim_clock_t clock;
   };
   sync::OwnClock own_;
-  sync::SimFollower follower_;
+  sync::SimClockTracker follower_;
   sync::SenderClock sender_;
   header_t last_{};
   std::int64_t clocks_ = 0;

@@ -13,13 +13,13 @@
 
 namespace tactus::sync {
 
-enum class Follow {
+enum class TrackResult {
   kSame,     // of the simulation that we follow
   kRestart,  // of a new one, or of the same whose time fell back: everything known before has ended
   kIgnore,   // of one that was replaced, or its time contradicts what was heard just now
 };
 
-class SimFollower {
+class SimClockTracker {
  public:
   // A replaced incarnation is heard again only when its successor has been silent for so long.
   static constexpr Nanoseconds kSilence{300'000'000};
@@ -30,9 +30,9 @@ class SimFollower {
   static constexpr Nanoseconds kFar{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;
 
-  explicit SimFollower(OwnClock own) : own_(own) {}
+  explicit SimClockTracker(OwnClock own) : own_(own) {}
 
-  Follow follow(const header_t& header, const sim_clock_t& clock, HostTime arrival);
+  TrackResult follow(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   // Nothing before the first message.
   std::optional<TimeMap> map(HostTime now) const;
   std::int64_t incarnation() const { return incarnation_; }

@@ -1,4 +1,4 @@
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ Nanoseconds distance(SimTime a, SimTime b) { return a < b ? b - a : a - b; }
 }  // namespace
 
 // Compares on the sender's clock. The rate may have changed at any instant since, so either is good enough.
-bool SimFollower::contradicts(const header_t& header, const sim_clock_t& clock) const {
+bool SimClockTracker::contradicts(const header_t& header, const sim_clock_t& clock) const {
   const HostTime t = host_time(header.publish_time_ns);
   const TimeMap told{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};
   const auto far = [&](double rate) {
@@ -21,23 +21,23 @@ bool SimFollower::contradicts(const header_t& header, const sim_clock_t& clock) 
   return far(clock_.rate) && far(clock.rate);
 }
 
-Follow SimFollower::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
-  Follow verdict = Follow::kSame;
+TrackResult SimClockTracker::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  TrackResult verdict = TrackResult::kSame;
   if (header.incarnation != incarnation_) {
     const bool replaced = std::find(replaced_.begin(), replaced_.end(), header.incarnation) != replaced_.end();
-    if (replaced && arrival - last_arrival_ < kSilence) return Follow::kIgnore;
+    if (replaced && arrival - last_arrival_ < kSilence) return TrackResult::kIgnore;
     if (incarnation_ != 0) replaced_.push_back(incarnation_);
     std::erase(replaced_, header.incarnation);
     if (replaced_.size() > kRemembered) replaced_.pop_front();
     incarnation_ = header.incarnation;
-    verdict = Follow::kRestart;
+    verdict = TrackResult::kRestart;
   } else if (header.publish_time_ns < newest_publish_ns_ - kEpoch.count()) {
-    verdict = Follow::kRestart;
+    verdict = TrackResult::kRestart;
   } else if (contradicts(header, clock) && arrival - confirmed_ < kSilence) {
-    return Follow::kIgnore;
+    return TrackResult::kIgnore;
   }
   confirmed_ = arrival;
-  if (verdict == Follow::kRestart) {
+  if (verdict == TrackResult::kRestart) {
     sender_ = SenderClock(own_);
     newest_publish_ns_ = 0;
   }
@@ -50,7 +50,7 @@ Follow SimFollower::follow(const header_t& header, const sim_clock_t& clock, Hos
   return verdict;
 }
 
-std::optional<TimeMap> SimFollower::map(HostTime now) const {
+std::optional<TimeMap> SimClockTracker::map(HostTime now) const {
   if (incarnation_ == 0) return std::nullopt;
   return TimeMap{sim_time(clock_.sim_ns), sender_.to_host(clock_.host_ns, now), clock_.rate};
 }

@@ -1,4 +1,4 @@
-#include "sync/clocks/sim_follower.h"
+#include "sync/clocks/sim_clock_tracker.h"
 
 #include <catch2/catch.hpp>
 
@@ -18,20 +18,20 @@ header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t 
 }  // namespace
 
 TEST_CASE("The first simulation heard is followed, a new one replaces it, the old one is ignored") {
-  SimFollower f(1);
+  SimClockTracker f(1);
   CHECK_FALSE(f.map(host_time(0)));
-  CHECK(f.follow(header(1, 0), {0, 0, 1}, host_time(0)) == Follow::kRestart);
-  CHECK(f.follow(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == Follow::kSame);
-  CHECK(f.follow(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == Follow::kRestart);
-  CHECK(f.follow(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == Follow::kIgnore);
+  CHECK(f.follow(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
+  CHECK(f.follow(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
+  CHECK(f.follow(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
+  CHECK(f.follow(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
   SECTION("until its successor has been silent for 0.3 s") {
-    CHECK(f.follow(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == Follow::kRestart);
+    CHECK(f.follow(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
     CHECK(f.incarnation() == 1);
   }
 }
 
 TEST_CASE("A message that was overtaken does not turn the map back") {
-  SimFollower f(1);
+  SimClockTracker f(1);
   f.follow(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
   f.follow(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
   CHECK(f.map(host_time(11 * kMs))->sim == sim_time(5 * kMs));
@@ -39,34 +39,34 @@ TEST_CASE("A message that was overtaken does not turn the map back") {
 }
 
 TEST_CASE("A forged clock moves nobody's time") {
-  SimFollower f(1);
+  SimClockTracker f(1);
   const auto hear = [&](std::int64_t ms, sim_clock_t clock) {
     return f.follow(header(1, ms * kMs), clock, host_time(ms * kMs));
   };
   const auto honest = [](std::int64_t ms, double rate = 1) { return sim_clock_t{ms * kMs, ms * kMs, rate}; };
-  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != Follow::kIgnore);
+  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != TrackResult::kIgnore);
   SECTION("ahead or behind") {
-    CHECK(hear(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == Follow::kIgnore);
-    CHECK(hear(5100, {0, 5100 * kMs, 1}) == Follow::kIgnore);
+    CHECK(hear(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == TrackResult::kIgnore);
+    CHECK(hear(5100, {0, 5100 * kMs, 1}) == TrackResult::kIgnore);
     CHECK(f.map(host_time(5100 * kMs))->to_sim(host_time(5100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("nor does a forged rate, for longer than until the next message") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 100}) == Follow::kSame);
-    CHECK(hear(5130, honest(5130)) == Follow::kSame);
+    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 100}) == TrackResult::kSame);
+    CHECK(hear(5130, honest(5130)) == TrackResult::kSame);
     CHECK(f.map(host_time(5130 * kMs))->rate == 1);
   }
   SECTION("but a simulation that was stopped for 5 s is believed when it speaks again") {
-    CHECK(hear(10100, {5100 * kMs, 10100 * kMs, 1}) == Follow::kSame);
+    CHECK(hear(10100, {5100 * kMs, 10100 * kMs, 1}) == TrackResult::kSame);
     CHECK(f.map(host_time(10100 * kMs))->to_sim(host_time(10100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("and so is one that was paused, or slow") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 0}) == Follow::kSame);
-    CHECK(hear(5200, {5100 * kMs, 5200 * kMs, 0}) == Follow::kSame);
-    CHECK(hear(9000, {5100 * kMs, 9000 * kMs, 0.3}) == Follow::kSame);
-    CHECK(hear(9100, {5130 * kMs, 9100 * kMs, 0.3}) == Follow::kSame);
+    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 0}) == TrackResult::kSame);
+    CHECK(hear(5200, {5100 * kMs, 5200 * kMs, 0}) == TrackResult::kSame);
+    CHECK(hear(9000, {5100 * kMs, 9000 * kMs, 0.3}) == TrackResult::kSame);
+    CHECK(hear(9100, {5130 * kMs, 9100 * kMs, 0.3}) == TrackResult::kSame);
   }
   SECTION("and a lie that was there first is found out within 0.3 s") {
-    SimFollower late(1);
+    SimClockTracker late(1);
     late.follow(header(1, 0), {3'600'000 * kMs, 0, 1}, host_time(0));
     for (int ms = 1; ms <= 301; ++ms) late.follow(header(1, ms * kMs), honest(ms), host_time(ms * kMs));
     CHECK(late.map(host_time(301 * kMs))->to_sim(host_time(301 * kMs)) == sim_time(301 * kMs));
