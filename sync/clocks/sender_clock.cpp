@@ -4,7 +4,7 @@ namespace tactus::sync {
 
 bool SenderClock::observe(const header_t& h, HostTime arrival) {
   if (heard_ && (h.clock != clock_ || h.run_id != run_id_)) {
-    one_way_ = OneWayClock{};
+    one_way_ = OneWayOffsetEstimator{};
     distrust_until_ = HostTime{};
   }
   heard_ = true;

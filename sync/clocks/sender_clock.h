@@ -5,7 +5,7 @@
 #include <tactus/header_t.hpp>
 
 #include "sync/clocks/clock_maps.h"
-#include "sync/clocks/one_way_clock.h"
+#include "sync/clocks/one_way_offset_estimator.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -47,7 +47,7 @@ class SenderClock {
   std::int64_t run_id_ = 0;
   std::int32_t clock_ = 0;
   HostTime distrust_until_{};
-  OneWayClock one_way_;
+  OneWayOffsetEstimator one_way_;
 };
 
 }  // namespace tactus::sync

@@ -14,7 +14,7 @@ namespace tactus::sync {
 // A clock that was put forward gives a larger bound: taken at once. One that was put back looks like latency; it is told
 // from it because latency comes and goes: when all bounds of kWindow lie below the kept one, the best of them is taken. What
 // is smaller than kNoticed is made good by the relaxation, within kNoticed / kMaxDrift = 25 s.
-class OneWayClock {
+class OneWayOffsetEstimator {
  public:
   // Worst relative drift of two quartz clocks: 200 ppm is twice the usual +-100 ppm tolerance of one.
   static constexpr double kMaxDrift = 200e-6;

@@ -1,4 +1,4 @@
-#include "sync/clocks/one_way_clock.h"
+#include "sync/clocks/one_way_offset_estimator.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -27,7 +27,7 @@ TEST_CASE("The bias is never negative and at most the smallest latency plus the 
     for (const double offset_s : {-5000.0, 0.5, 90000.0}) {
       const Sender sender{offset_s * kSecond, drift};
       std::exponential_distribution<double> latency_ns(1 / 3e6);
-      OneWayClock clock;
+      OneWayOffsetEstimator clock;
       std::vector<std::pair<double, double>> heard;  // when, latency
       double now = 10 * kSecond;
       for (int i = 0; i < 3000; ++i) {
@@ -41,7 +41,7 @@ TEST_CASE("The bias is never negative and at most the smallest latency plus the 
                             now;
         double bound = 1e18;
         for (const auto& [when, l] : heard)
-          bound = std::min(bound, l + 2 * OneWayClock::kMaxDrift * (now - when + l));
+          bound = std::min(bound, l + 2 * OneWayOffsetEstimator::kMaxDrift * (now - when + l));
         INFO("drift " << drift << ", step " << i);
         // Each of the two conversions rounds by a nanosecond.
         REQUIRE(bias >= -2);
@@ -51,14 +51,14 @@ TEST_CASE("The bias is never negative and at most the smallest latency plus the 
   }
 }
 
-TEST_CASE("An unknown clock maps to itself") { CHECK(OneWayClock().to_host(77, host_time(5)) == host_time(77)); }
+TEST_CASE("An unknown clock maps to itself") { CHECK(OneWayOffsetEstimator().to_host(77, host_time(5)) == host_time(77)); }
 
 TEST_CASE("A clock that jumps is noticed and learned anew at once") {
-  OneWayClock clock;
+  OneWayOffsetEstimator clock;
   const auto now = [](double s) { return host_time(static_cast<std::int64_t>(s * kSecond)); };
   clock.observe(5 * 1'000'000'000LL, now(100));
   for (const double jump_s : {+3600.0, -3600.0, +2.5, -2.5}) {
-    OneWayClock c = clock;
+    OneWayOffsetEstimator c = clock;
     const auto stamp = static_cast<std::int64_t>((6 + jump_s) * kSecond);
     CHECK(c.observe(stamp, now(101)));
     CHECK(c.to_host(stamp, now(101)) == now(101));
@@ -73,7 +73,7 @@ TEST_CASE("A clock that was put back by less than two seconds is noticed within 
   std::mt19937 random(2);
   for (const double back_ms : {1.0, 4.0, 6.0, 20.0, 300.0, 1900.0}) {
     for (const double rate_Hz : {10.0, 1000.0}) {
-      OneWayClock clock;
+      OneWayOffsetEstimator clock;
       std::exponential_distribution<double> latency_ns(1 / 0.5e6);
       double now = 0, noticed_s = -1;
       const double jump_at = 20 * kSecond;
@@ -95,7 +95,7 @@ TEST_CASE("A clock that was put back by less than two seconds is noticed within 
 }
 
 TEST_CASE("A network that is slow for a while is no jump, if now and then a message is quick") {
-  OneWayClock clock;
+  OneWayOffsetEstimator clock;
   for (int i = 0; i < 600; ++i) {
     const std::int64_t now = (i + 1) * 100'000'000LL;
     const std::int64_t latency = i < 10 || i % 15 == 0 ? 200'000 : 40'000'000;

@@ -1,20 +1,20 @@
-#include "sync/clocks/one_way_clock.h"
+#include "sync/clocks/one_way_offset_estimator.h"
 
 namespace tactus::sync {
 
-Nanoseconds OneWayClock::offset_at(HostTime now) const {
+Nanoseconds OneWayOffsetEstimator::offset_at(HostTime now) const {
   const double age_ns = static_cast<double>((now - improved_).count());
   return offset_ - Nanoseconds(static_cast<std::int64_t>(age_ns * kMaxDrift));
 }
 
-void OneWayClock::take(Nanoseconds bound, HostTime arrival) {
+void OneWayOffsetEstimator::take(Nanoseconds bound, HostTime arrival) {
   offset_ = bound;
   improved_ = arrival;
   known_ = true;
   low_ = 0;
 }
 
-bool OneWayClock::low_for_long(Nanoseconds bound, HostTime arrival) {
+bool OneWayOffsetEstimator::low_for_long(Nanoseconds bound, HostTime arrival) {
   if (offset_at(arrival) - bound <= kNoticed) {
     low_ = 0;
     return false;
@@ -27,7 +27,7 @@ bool OneWayClock::low_for_long(Nanoseconds bound, HostTime arrival) {
   return low_ >= kWindowStamps && arrival - low_since_ >= kWindow;
 }
 
-bool OneWayClock::observe(std::int64_t stamp_ns, HostTime arrival) {
+bool OneWayOffsetEstimator::observe(std::int64_t stamp_ns, HostTime arrival) {
   const Nanoseconds bound(stamp_ns - to_ns(arrival));
   const bool jumped = known_ && (bound - offset_at(arrival) > kJump || offset_at(arrival) - bound > kJump);
   if (!known_ || jumped || bound >= offset_at(arrival)) {
@@ -39,7 +39,7 @@ bool OneWayClock::observe(std::int64_t stamp_ns, HostTime arrival) {
   return true;
 }
 
-HostTime OneWayClock::to_host(std::int64_t sender_ns, HostTime now) const {
+HostTime OneWayOffsetEstimator::to_host(std::int64_t sender_ns, HostTime now) const {
   if (!known_) return host_time(sender_ns);
   return host_time(sender_ns) - offset_at(now);
 }
