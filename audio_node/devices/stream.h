@@ -55,7 +55,7 @@ class Stream : public Card {
 
   // Of the callback's thread.
   DacClock dac_;
-  sync::BusyGuard guard_;
+  sync::OverrunGuard guard_;
   bool entered_ = false;
   std::int64_t next_pair_frame_ = 0;
   sync::Nanoseconds used_{0};  // by the block before

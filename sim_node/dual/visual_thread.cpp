@@ -35,7 +35,7 @@ VisualThread::~VisualThread() {
 
 void VisualThread::loop() {
   if (sync::is_realtime()) sync::set_realtime(sync::Realtime::kTry, kPriority);
-  sync::BusyGuard guard;
+  sync::OverrunGuard guard;
   while (true) {
     const int state = state_.load(std::memory_order_acquire);
     if (state == kEnd) return;

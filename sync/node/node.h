@@ -117,7 +117,7 @@ class Node {
   bool demoted_ = false;
   Bus bus_;
   Loop loop_;
-  BusyGuard guard_;
+  OverrunGuard guard_;
   Tags tags_;
   Queue<tag_request_t> tag_requests_;
   Phases phases_{host_now};

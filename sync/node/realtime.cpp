@@ -50,7 +50,7 @@ void leave_realtime() {
 
 bool is_realtime() { return sched_getscheduler(0) == SCHED_FIFO; }
 
-bool BusyGuard::tick(HostTime begin, HostTime end) {
+bool OverrunGuard::tick(HostTime begin, HostTime end) {
   if (window_begin_ == HostTime{}) window_begin_ = begin;
   busy_ += end - begin;
   const Nanoseconds span = end - window_begin_;

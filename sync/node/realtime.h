@@ -20,7 +20,7 @@ void leave_realtime();
 bool is_realtime();
 
 // A FIFO loop that uses more than 80 % of its time for 100 ms must give up its priority. Pure.
-class BusyGuard {
+class OverrunGuard {
  public:
   // One tick: when it began, when it ended, and when the next may begin. True when the loop must be demoted.
   bool tick(HostTime begin, HostTime end);

@@ -11,7 +11,7 @@ namespace {
 int demotions(double busy_share, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> wobble(0.9, 1.1);
-  BusyGuard guard;
+  OverrunGuard guard;
   int called = 0;
   for (int i = 0; i < 1000; ++i) {
     const HostTime begin = host_time(1'000'000'000LL + i * 1'000'000LL);
@@ -31,7 +31,7 @@ TEST_CASE("A loop that uses more than 80 % of its time for 100 ms is called to o
 }
 
 TEST_CASE("One long tick between idle ones is forgiven, a standstill of 100 ms is not") {
-  BusyGuard guard;
+  OverrunGuard guard;
   const auto at = [](int ms) { return host_time(1'000'000'000LL + ms * 1'000'000LL); };
   CHECK_FALSE(guard.tick(at(0), at(1)));
   CHECK_FALSE(guard.tick(at(20), at(70)));
@@ -40,7 +40,7 @@ TEST_CASE("One long tick between idle ones is forgiven, a standstill of 100 ms i
 }
 
 TEST_CASE("A loop is calm for as long as it has left time to others without a break") {
-  BusyGuard guard;
+  OverrunGuard guard;
   HostTime now = host_time(1'000'000'000);
   const auto run = [&](int ms, std::int64_t busy_us) {
     for (const HostTime end = now + Nanoseconds(ms * 1'000'000LL); now < end; now += Nanoseconds(1'000'000))
