@@ -226,7 +226,7 @@ int tactus::audio::run(int argc, char** argv) try {
       }
     }
     if (impacts && sampler) {
-      const sync::InPhase rendering(sync::Phase::kRender);
+      const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
       // A log is heard as fast as it can be, however long a tick of it takes.
       const sync::HostTime begun = sync::host_now();
       const auto goes_on = [&] { return !machine_time || sync::host_now() - begun < kStrikesFor; };

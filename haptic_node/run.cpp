@@ -174,7 +174,7 @@ int tactus::haptic::run(int argc, char** argv) try {
         session->push(m->message, m->arrival);
     for (const std::string& news : live.step(now, change)) std::cerr << options.name << ": " << news << "\n";
     if (!session || (offline && !offline->in_tick())) continue;
-    std::optional<sync::InPhase> rendering(sync::Phase::kRender);
+    std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
     haptic::TickOutput& out = session->step(now,
                                             {.delay = sense.delay(),
                                              .touch_delay = sense.profile_delay(),

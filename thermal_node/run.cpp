@@ -127,7 +127,7 @@ int tactus::thermal::run(int argc, char** argv) try {
     if (!renderer) continue;
     const thermal::Tick tick =
         ticks.next(stream, now, sense.newest_arrival(), choice.tool, choice.tool_body, sense.delay());
-    std::optional<sync::InPhase> rendering(sync::Phase::kRender);
+    std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
     const double command_degC = element_degC.value_or(choice.settings.skin_rest_degC);
     const auto plate = device ? device->step(command_degC, renderer->load_W(), now) : std::nullopt;
     thermal_state_t state = renderer->step(tick, {.response_s = sense.output().response_s,

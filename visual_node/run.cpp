@@ -173,7 +173,7 @@ int tactus::visual::run(int argc, char** argv) try {
   node.tags().add("quality", "1", [&] { return stage.quality().step(); });
   node.tags().add("flashed", "1", &flashed);
   const auto draw = [&](sync::HostTime now, const std::optional<visual::AgreedFrame>& agreed) {
-    const sync::InPhase rendering(sync::Phase::kRender);
+    const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
     const sync::OutputDef output = sense.output();
     overlays.tint(composer, scenes.scene() ? scenes.scene()->bodies.size() : 0);
     const sync::HostTime heard = world.count().newest_arrival;

@@ -210,7 +210,7 @@ void Solver::join(Manifold& c) {
 
 void Solver::step() {
   if (impulse_) return impulse_->step(settings_.step_s);
-  const sync::InPhase phase(sync::Phase::kSolve);  // which integrates, too
+  const sync::ScopedPhaseTimer phase(sync::Phase::kSolve);  // which integrates, too
   // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
@@ -235,7 +235,7 @@ void Solver::step() {
   for (std::size_t i = 0; i < fall_m_s_.size(); ++i) fall_m_s_[i] = inert_[i].gravity_m_s;
   std::swap(contacts_, solved_);
   read_bodies();
-  const sync::InPhase collision(sync::Phase::kCollision);
+  const sync::ScopedPhaseTimer collision(sync::Phase::kCollision);
   engine_->shapes->collide(contacts_);
 }
 

@@ -96,7 +96,7 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
 
 void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,
                          std::vector<Manifold>& out) {
-  const sync::InPhase phase(sync::Phase::kCollision);
+  const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
   out.clear();
   for (const NearPair& pair : near_.find(bodies, active, h_s)) look(pair, out);
 }

@@ -91,7 +91,7 @@ void Simulation::look() {
   const std::span<BodyMotion> motions = mechanics_->motions();
   place_tools(motions);
   game_.step(now(), motions);
-  const sync::InPhase phase(sync::Phase::kCollision);
+  const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     ToolTouch& touch = tools_[i].touch;
     touch.look_only_at(mechanics_->near_tools());

@@ -173,7 +173,7 @@ void Node::serve_tags(HostTime now) {
 void Node::begin_tick(HostTime now) {
   tick_begin_ = now;
   phases_.begin(tags_.wanted());
-  const InPhase decoding(Phase::kDecode);
+  const ScopedPhaseTimer decoding(Phase::kDecode);
   bus_.drain(now);
 }
 
@@ -211,7 +211,7 @@ HostTime Node::wait() {
 
 HostTime Node::poll() {
   const HostTime now = host_now();
-  const InPhase decoding(Phase::kDecode);
+  const ScopedPhaseTimer decoding(Phase::kDecode);
   bus_.drain(now);
   return now;
 }

@@ -2,7 +2,7 @@
 
 namespace tactus::sync {
 
-thread_local constinit Phases* InPhase::current = nullptr;
+thread_local constinit Phases* ScopedPhaseTimer::current = nullptr;
 
 const char* name(Phase phase) {
   constexpr std::array names{"other", "decode", "collision", "solve", "integrate", "render"};
@@ -11,7 +11,7 @@ const char* name(Phase phase) {
 }
 
 void Phases::begin(bool measured) {
-  InPhase::current = measured ? this : nullptr;
+  ScopedPhaseTimer::current = measured ? this : nullptr;
   if (!measured) return;
   spent_.fill({});
   now_ = Phase::kOther;
@@ -19,9 +19,9 @@ void Phases::begin(bool measured) {
 }
 
 void Phases::end() {
-  if (InPhase::current != this) return;
+  if (ScopedPhaseTimer::current != this) return;
   enter(Phase::kOther);
-  InPhase::current = nullptr;
+  ScopedPhaseTimer::current = nullptr;
   for (std::size_t i = 0; i < kPhases; ++i) told_us_[i] = static_cast<double>(spent_[i].count()) / 1000;
 }
 

@@ -1,6 +1,6 @@
 // Where the time of a tick goes. Code says what it is at by a scope:
 //
-//   const sync::InPhase phase(sync::Phase::kCollision);
+//   const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
 //
 // and costs one comparison while nobody wants to know. Which tick it is part of is a matter of the thread: the
 // loop of a process has its phases, threads beside it have none, and a library needs no argument for it and
@@ -32,7 +32,7 @@ class Phases {
   const double* told(Phase phase) const { return &told_us_[static_cast<std::size_t>(phase)]; }
 
  private:
-  friend class InPhase;
+  friend class ScopedPhaseTimer;
   Phase enter(Phase phase);
 
   Clock clock_;
@@ -42,16 +42,16 @@ class Phases {
   HostTime since_{};
 };
 
-class InPhase {
+class ScopedPhaseTimer {
  public:
-  explicit InPhase(Phase phase) : phases_(current) {
+  explicit ScopedPhaseTimer(Phase phase) : phases_(current) {
     if (phases_ != nullptr) before_ = phases_->enter(phase);
   }
-  ~InPhase() {
+  ~ScopedPhaseTimer() {
     if (phases_ != nullptr) phases_->enter(before_);
   }
-  InPhase(const InPhase&) = delete;
-  InPhase& operator=(const InPhase&) = delete;
+  ScopedPhaseTimer(const ScopedPhaseTimer&) = delete;
+  ScopedPhaseTimer& operator=(const ScopedPhaseTimer&) = delete;
 
  private:
   friend class Phases;

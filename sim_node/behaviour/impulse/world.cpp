@@ -258,7 +258,7 @@ void World::sweep(double h) {
 }
 
 void World::finish(double h) {
-  const sync::InPhase phase(sync::Phase::kIntegrate);
+  const sync::ScopedPhaseTimer phase(sync::Phase::kIntegrate);
   for (const int unit : active_) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
@@ -340,7 +340,7 @@ void World::tell(std::span<Manifold> contacts, double h) const {
 }
 
 void World::step(std::span<Manifold> contacts, double h) {
-  const sync::InPhase phase(sync::Phase::kSolve);
+  const sync::ScopedPhaseTimer phase(sync::Phase::kSolve);
   start_velocities(contacts, h);
   build_rows(contacts, h);
   build_joints(h);

@@ -19,17 +19,17 @@ TEST_CASE("Each phase is told what was spent in it, what is inside another only 
   phases.begin(true);
   pass_us(5);
   {
-    const InPhase solve(Phase::kSolve);
+    const ScopedPhaseTimer solve(Phase::kSolve);
     pass_us(20);
     {
-      const InPhase collision(Phase::kCollision);
+      const ScopedPhaseTimer collision(Phase::kCollision);
       pass_us(7);
     }
     pass_us(1);
   }
   pass_us(2);
   {
-    const InPhase collision(Phase::kCollision);
+    const ScopedPhaseTimer collision(Phase::kCollision);
     pass_us(3);
   }
   phases.end();
@@ -48,12 +48,12 @@ TEST_CASE("A tick that nobody measures reads no clock, nor does another thread o
   static int read = 0;
   Phases phases([] { return ++read, HostTime{}; });
   phases.begin(false);
-  { const InPhase solve(Phase::kSolve); }
+  { const ScopedPhaseTimer solve(Phase::kSolve); }
   phases.end();
   CHECK(read == 0);
   phases.begin(true);
   const int before = read;
-  std::thread([] { const InPhase solve(Phase::kSolve); }).join();
+  std::thread([] { const ScopedPhaseTimer solve(Phase::kSolve); }).join();
   CHECK(read == before);
   phases.end();
 }
