@@ -160,7 +160,7 @@ int tactus::visual::run(int argc, char** argv) try {
     for (const std::string& sentence : trouble) say(sentence);
     lock.load(*scenes.scene(), settings);
     node.set_state(node_health_t::WAITING, "prepares the pictures of the scene");
-    stage.load(view, composer.frame(now, 0).list, settings, [&] { if (!offline) node.still_here(); });
+    stage.load(view, composer.frame(now, 0).list, settings, [&] { if (!offline) node.heartbeat(); });
     if (offline) offline->begin(view.width(), view.height(), settings);
     else if (stage.draws()) recording.begin(view.width(), view.height(), settings);
     if (stage.draws()) stream.begin(view.width(), view.height(), settings);

@@ -54,7 +54,7 @@ class Bus {
   }
 
   // An inbox of the caller's, which outlives the bus' last drain and is not among inboxes().
-  void hear_also(InboxBase& inbox) { subscribe(inbox.count().channel.c_str(), &inbox, Port::kRealtime); }
+  void attach(InboxBase& inbox) { subscribe(inbox.count().channel.c_str(), &inbox, Port::kRealtime); }
 
   // Heeds the clock maps of this run from now on. For processes that drain; call before the first drain.
   void follow_clocks();

@@ -113,7 +113,7 @@ Node::Node(NodeDescriptor declaration, NodeOptions options)
       tags_(options_.name, options_.run_id),
       tag_requests_(channels::kTagRequest, kMostTagRequests) {
   bus_.follow_clocks();
-  bus_.hear_also(tag_requests_);
+  bus_.attach(tag_requests_);
   tag_work();
   health_.tool = -1;
   health_.nominal_rate_Hz = declaration_.rate_Hz;

@@ -84,7 +84,7 @@ class Node {
   const Deadlines& deadlines() const { return loop_.deadlines(); }
 
   // Between the parts of work that takes many ticks: reports health when that is due, and nothing else.
-  void still_here() {
+  void heartbeat() {
     if (const HostTime now = host_now(); now >= next_report_) report(now);
   }
 
