@@ -220,7 +220,7 @@ void Bus::wait(Nanoseconds at_most) {
   ppoll(&fd, 1, &timeout, nullptr);
 }
 
-void Bus::renew() {
+void Bus::begin_incarnation() {
   identity_.incarnation = Identity::fresh(identity_.node, identity_.run_id).incarnation;
   next_seq_.clear();
 }

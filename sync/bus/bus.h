@@ -85,7 +85,7 @@ class Bus {
   const Identity& identity() const { return identity_; }
   // To everyone this process is another from here on, as if it had been started anew: a fresh incarnation, numbered from
   // the beginning. Throws as Identity::fresh does.
-  void renew();
+  void begin_incarnation();
   const std::vector<std::unique_ptr<InboxBase>>& inboxes() const { return inboxes_; }
 
  private:

@@ -139,8 +139,8 @@ void Node::set_state(std::int8_t state, std::string note) {
   note_ = std::move(note);
 }
 
-void Node::renew() {
-  bus_.renew();
+void Node::begin_incarnation() {
+  bus_.begin_incarnation();
   ticks_before_ = event_ticks_ > 0 ? event_ticks_ : loop_.deadlines().ticks();
   missed_before_ = loop_.deadlines().missed();
   tick_ = wake_ = Histogram();

@@ -70,7 +70,7 @@ class Node {
   HostTime wait_for_event();
 
   // To everyone this process is another from here on, as if it had been started anew; its health counts from zero.
-  void renew();
+  void begin_incarnation();
 
   Bus& bus() { return bus_; }
   // Variables of this process that can be recorded; the time of each phase of its tick is among them.

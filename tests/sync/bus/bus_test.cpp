@@ -59,7 +59,7 @@ TEST_CASE("A process that begins anew is another incarnation to who hears it, no
   const std::int64_t before = bus.identity().incarnation;
   asset_request_t m = request(0);
   for (int i = 0; i < 5; ++i) bus.publish("A", m);
-  bus.renew();
+  bus.begin_incarnation();
   for (int i = 0; i < 3; ++i) bus.publish("A", m);
   bus.drain(kNow);
   for (int i = 0; i < 8; ++i) {
