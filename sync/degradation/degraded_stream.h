@@ -23,14 +23,14 @@
 namespace tactus::sync {
 
 // One decision, for the log.
-struct Decision {
+struct DecisionRecord {
   std::uint64_t key = 0;
   bool is_event = false;
   SimTime time{};
   Verdict verdict;
   HostTime arrival{};
 };
-using Decisions = std::vector<Decision>;
+using Decisions = std::vector<DecisionRecord>;
 
 // What waits to be let through, in order of its time; what is let through at the same time keeps its order.
 // Bounded: when full the oldest is dropped and counted.

@@ -113,7 +113,7 @@ void ModalityEndpoint::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
   for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
     const HostTime arrived = arrivals_.at(*id);
     if (arrived < since) break;
-    Decision d;
+    DecisionRecord d;
     d.key = static_cast<std::uint64_t>(*id);
     d.is_event = true;
     d.time = sim_now - (now - arrived);
@@ -189,7 +189,7 @@ void ModalityEndpoint::publish_decisions() {
   m.modality = declaration_.modality;
   m.profile = profile_hash_;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
-    const Decision& d = decisions_[i];
+    const DecisionRecord& d = decisions_[i];
     decision_t out{};
     out.key = static_cast<std::int64_t>(d.key);
     out.is_event = d.is_event ? 1 : 0;

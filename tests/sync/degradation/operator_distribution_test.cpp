@@ -186,7 +186,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
       events.push(m, host_time(ms * 1'000'000ll), stack, &decisions);
     }
     std::vector<Verdict> all;
-    for (const Decision& d : decisions) all.push_back(d.verdict);
+    for (const DecisionRecord& d : decisions) all.push_back(d.verdict);
     return all;
   };
   const auto once = decided(1), often = decided(50);
