@@ -8,7 +8,7 @@ import numpy as np
 # Channels that a report is made of; the large ones are left in the log.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
-WHY = ("let through", "rate", "deadband", "loss", "off", "freeze")          # sync::Why, sync/degradation/stack.h
+WHY = ("let through", "rate", "deadband", "loss", "off", "freeze")          # sync::Why, sync/degradation/operator_chain.h
 PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that came out (docs/results.md)
 POLICIES = ("asap", "aligned", "experiment", "local_haptic_first", "itouch2005")  # lcmtypes/types/control/playout_t.lcm
 SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is that of the later in this list

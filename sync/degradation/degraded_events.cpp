@@ -29,7 +29,7 @@ bool DegradedEvents::first_heard(std::int64_t id) {
   return true;
 }
 
-void DegradedEvents::push(const contact_events_t& m, HostTime arrival, Stack& stack, Decisions* decisions) {
+void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
   const bool replaced = m.header.incarnation != newest_.header.incarnation ||
                         m.header.publish_time_ns < newest_.header.publish_time_ns - 1'000'000'000;
   if (replaced) seen_.clear(), order_.clear();  // a log that is played anew brings the same ids
@@ -47,7 +47,7 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, Stack& st
   waiting_.push(arrival, newest_, arrival);
   for (const contact_event_t& heard : m.events) {
     if (!first_heard(heard.event_id)) continue;
-    const Verdict v = stack.decide(item_of(heard, m.header.incarnation, arrival));
+    const Decision v = stack.decide(item_of(heard, m.header.incarnation, arrival));
     const bool later = stack.presentation_delay(sim_time(heard.time_ns)) > Nanoseconds(0);
     if (decisions && (v.touched || later))
       decisions->push_back(

@@ -18,7 +18,7 @@
 
 #include "sync/random/chance.h"
 #include "sync/degradation/snapshot.h"
-#include "sync/degradation/stack.h"
+#include "sync/degradation/operator_chain.h"
 
 namespace tactus::sync {
 
@@ -27,7 +27,7 @@ struct DecisionRecord {
   std::uint64_t key = 0;
   bool is_event = false;
   SimTime time{};
-  Verdict verdict;
+  Decision verdict;
   HostTime arrival{};
 };
 using Decisions = std::vector<DecisionRecord>;
@@ -72,7 +72,7 @@ template <class Message>
 class DegradedSnapshots {
  public:
   // decisions: where those are noted; null: nowhere.
-  void push(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
+  void push(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
     note_newest(m, arrival);
     const SimTime time = sim_time(m.header.sim_time_ns);
     if constexpr (requires { m.pages; })
@@ -82,7 +82,7 @@ class DegradedSnapshots {
     if constexpr (requires { m.pages; })
       if (stack.compares() && m.pages > 1 && !verdicts_.contains(snapshot_key(m)))
         return gather(std::move(m), arrival, stack, decisions);
-    const Verdict v = verdict_on(m, arrival, signals_of(m), stack, decisions);
+    const Decision v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
   }
   // From now on another profile decides. The snapshots whose pages are just arriving were begun under the one
@@ -124,7 +124,7 @@ class DegradedSnapshots {
     return now.split;
   }
 
-  void put(Message m, HostTime arrival, const Verdict& v, Stack& stack) {
+  void put(Message m, HostTime arrival, const Decision& v, OperatorChain& stack) {
     if (v.dropped()) {
       if (v.conceal != Conceal::kZero || !make_zero(m)) return;
     } else if (stack.changes_values()) {
@@ -136,7 +136,7 @@ class DegradedSnapshots {
     waiting_.push(release, std::move(m), arrival);
   }
 
-  void gather(Message m, HostTime arrival, Stack& stack, Decisions* decisions) {
+  void gather(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
     auto it = std::find_if(gathering_.begin(), gathering_.end(), [&](const auto& g) { return g.first == key; });
     if (it == gathering_.end()) it = gathering_.insert(it, {key, {}});
@@ -154,11 +154,11 @@ class DegradedSnapshots {
       const std::vector<Signal> more = signals_of(page.first);
       signals.insert(signals.end(), more.begin(), more.end());
     }
-    const Verdict v = verdict_on(whole.begin()->second.first, arrival, signals, stack, decisions);
+    const Decision v = verdict_on(whole.begin()->second.first, arrival, signals, stack, decisions);
     for (const auto& [number, page] : whole) put(page.first, page.second, v, stack);
   }
 
-  Verdict verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, Stack& stack,
+  Decision verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& stack,
                      Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
     if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
@@ -170,7 +170,7 @@ class DegradedSnapshots {
               .signals = signals};
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
-    const Verdict v = stack.decide(item);
+    const Decision v = stack.decide(item);
     verdicts_.emplace(key, v);
     order_.push_back(key);
     if (order_.size() > kRemembered) {
@@ -199,7 +199,7 @@ class DegradedSnapshots {
   Waiting<Message> waiting_;
   std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
   std::map<std::uint64_t, Arriving> arriving_;                // by stream
-  std::map<std::uint64_t, Verdict> verdicts_;
+  std::map<std::uint64_t, Decision> verdicts_;
   std::deque<std::uint64_t> order_;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
@@ -209,7 +209,7 @@ class DegradedSnapshots {
 // Events: each is decided on once, by its id, when it is first heard of; repetitions change nothing.
 class DegradedEvents {
  public:
-  void push(const contact_events_t& m, HostTime arrival, Stack& stack, Decisions* decisions);
+  void push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions);
   // The next message that is let through by now, and when its events arrived: one with only its header and clock
   // comes through at once.
   std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);

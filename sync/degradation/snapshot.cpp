@@ -15,7 +15,7 @@ std::uint64_t key(const header_t& h, std::uint64_t which) {
 // Passes the values of one thing through the stack.
 class Changer {
  public:
-  Changer(Stack& stack, SimTime t, std::int64_t id, std::int32_t material_a = -1, std::int32_t material_b = -1,
+  Changer(OperatorChain& stack, SimTime t, std::int64_t id, std::int32_t material_a = -1, std::int32_t material_b = -1,
           std::int32_t body_a = -1, std::int32_t body_b = -1)
       : stack_(stack),
         t_(t),
@@ -38,7 +38,7 @@ class Changer {
   }
 
  private:
-  Stack& stack_;
+  OperatorChain& stack_;
   SimTime t_;
   std::int64_t id_;
   std::int32_t material_a_, material_b_, body_a_, body_b_;
@@ -99,7 +99,7 @@ std::vector<Signal> signals_of(const tool_state_t& m) {
           {m.tool, Quantity::kForce, to_eigen(m.force_N)}};
 }
 
-void change_values(contact_frame_t& m, Stack& stack) {
+void change_values(contact_frame_t& m, OperatorChain& stack) {
   for (contact_t& c : m.contacts) {
     Changer change(stack, sim_time(m.header.sim_time_ns), c.contact_id, c.material_a, c.material_b, c.body_a,
                    c.body_b);
@@ -110,7 +110,7 @@ void change_values(contact_frame_t& m, Stack& stack) {
   }
 }
 
-void change_values(world_state_t& m, Stack& stack) {
+void change_values(world_state_t& m, OperatorChain& stack) {
   for (body_state_t& b : m.bodies) {
     Changer change(stack, sim_time(m.header.sim_time_ns), b.body, -1, -1, b.body, -1);
     change.vector(Quantity::kPosition, b.position_m);
@@ -118,7 +118,7 @@ void change_values(world_state_t& m, Stack& stack) {
   }
 }
 
-void change_values(touch_model_t& m, Stack& stack) {
+void change_values(touch_model_t& m, OperatorChain& stack) {
   for (touch_plane_t& p : m.planes) {
     Changer change(stack, sim_time(m.header.sim_time_ns), p.contact_id, p.material, -1, p.body, -1);
     change(Quantity::kForce, p.stiffness_N_m, 0);  // what a surface answers with
@@ -127,7 +127,7 @@ void change_values(touch_model_t& m, Stack& stack) {
   }
 }
 
-void change_values(tool_state_t& m, Stack& stack) {
+void change_values(tool_state_t& m, OperatorChain& stack) {
   Changer change(stack, sim_time(m.header.sim_time_ns), m.tool);
   change.vector(Quantity::kForce, m.force_N);
   change.vector(Quantity::kPosition, m.device.position_m);
@@ -136,7 +136,7 @@ void change_values(tool_state_t& m, Stack& stack) {
   change.vector(Quantity::kVelocity, m.proxy_velocity_m_s);
 }
 
-void change_values(contact_event_t& e, Stack& stack) {
+void change_values(contact_event_t& e, OperatorChain& stack) {
   Changer change(stack, sim_time(e.time_ns), e.contact_id, e.material_a, e.material_b, e.body_a, e.body_b);
   change(Quantity::kVelocity, e.approach_speed_m_s, 0);
 }

@@ -10,7 +10,7 @@
 #include <tactus/world_state_t.hpp>
 #include <vector>
 
-#include "sync/degradation/stack.h"
+#include "sync/degradation/operator_chain.h"
 
 namespace tactus::sync {
 
@@ -34,11 +34,11 @@ std::vector<Signal> signals_of(const touch_model_t&);
 std::vector<Signal> signals_of(const tool_state_t&);
 
 // Passes every value that may be degraded through the stack; what must not be negative stays so.
-void change_values(contact_frame_t&, Stack&);
-void change_values(world_state_t&, Stack&);
-void change_values(touch_model_t&, Stack&);
-void change_values(tool_state_t&, Stack&);
-void change_values(contact_event_t&, Stack&);
+void change_values(contact_frame_t&, OperatorChain&);
+void change_values(world_state_t&, OperatorChain&);
+void change_values(touch_model_t&, OperatorChain&);
+void change_values(tool_state_t&, OperatorChain&);
+void change_values(contact_event_t&, OperatorChain&);
 
 // Nothing touches. False, and nothing is changed: there is no such thing as no pose, so such a message is not let through.
 bool make_zero(contact_frame_t&);

@@ -65,7 +65,7 @@ void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   const NodeDescriptor& d = declaration_;
   try {
     const Profile parsed = parse_profile(profile.text, "profile");
-    stack_ = Stack(parsed, d.modality, profile.start);
+    stack_ = OperatorChain(parsed, d.modality, profile.start);
     stack_.set_scene(names_);
     for (const auto& stream : streams_) stream->change_profile();
     profile_hash_ = profile.hash;

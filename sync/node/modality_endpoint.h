@@ -154,7 +154,7 @@ class ModalityEndpoint {
   ProfileReceiver receiver_;
   std::int64_t profile_hash_ = 0;
   std::string profile_name_;
-  Stack stack_;
+  OperatorChain stack_;
   SceneNames names_;
   int tool_ = -1;
   Decisions decisions_;

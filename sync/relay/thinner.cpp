@@ -38,7 +38,7 @@ class Thinner::Compared : public Comparison {
   }
 
  private:
-  Stack stack_;
+  OperatorChain stack_;
   DegradedSnapshots<Message> stream_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kPlanes = 20, kBooks = 3;  // three pages
 
-sync::Stack stack_of(const std::string& attributes) {
+sync::OperatorChain stack_of(const std::string& attributes) {
   return {sync::parse_profile("<profile><degrade modality=\"haptic\" " + attributes + "/></profile>", "p.xml"),
           "haptic",
           {}};
@@ -26,7 +26,7 @@ sync::Stack stack_of(const std::string& attributes) {
 // The way of the touch models as in the node's loop. A tick comes between the pages of each model: the last of
 // them arrive a tick later.
 struct TouchWay {
-  sync::Stack stack;
+  sync::OperatorChain stack;
   sync::DegradedSnapshots<touch_model_t> degraded;
   TouchInput input{0, 1};
   std::vector<touch_model_t> late;  // pages that come with the next tick
@@ -148,7 +148,7 @@ TEST_CASE("A profile that comes between the pages of a model splits none: that m
   int came = 0;
   for (std::int64_t ms = 0; ms < 60; ++ms) {
     if (ms == 30) {
-      way.stack = after.empty() ? sync::Stack() : stack_of(after);
+      way.stack = after.empty() ? sync::OperatorChain() : stack_of(after);
       way.degraded.change_profile();
     }
     const touch_model_t* m = way.tick(ms, model_at(ms));

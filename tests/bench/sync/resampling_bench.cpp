@@ -122,9 +122,9 @@ struct Second {
   }
 };
 
-Stack stack_of(bool degraded) {
+OperatorChain stack_of(bool degraded) {
   if (!degraded) return {};
-  return Stack(
+  return OperatorChain(
       parse_profile(R"(<profile><degrade modality="m" delay="5ms network" jitter="2ms normal" loss="5% burst=3"
                                 deadband="10% force floor=0.01N"/></profile>)",
                     "bench"),
@@ -133,7 +133,7 @@ Stack stack_of(bool degraded) {
 
 // A sense that takes in a millisecond at a time.
 struct ModalityEndpoint {
-  Stack stack;
+  OperatorChain stack;
   DegradedSnapshots<contact_frame_t> contacts;
   DegradedSnapshots<world_state_t> world;
   DegradedEvents events;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kEpoch = 5'000'000'000'000;  // of the host's clock
 
-Stack stack_of(const std::string& attributes) {
-  return Stack(parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml"),
+OperatorChain stack_of(const std::string& attributes) {
+  return OperatorChain(parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml"),
                "audio", {});
 }
 
@@ -74,7 +74,7 @@ contact_frame_t page_at(int ms, int page, int pages, std::int64_t seq) {
 }  // namespace
 
 TEST_CASE("Without a profile everything passes at once, as it is") {
-  Stack none;
+  OperatorChain none;
   DegradedSnapshots<contact_frame_t> frames;
   DegradedEvents events;
   frames.push(page_at(3, 0, 1, 0), arrival(3), none, nullptr);
@@ -89,7 +89,7 @@ TEST_CASE("Without a profile everything passes at once, as it is") {
 }
 
 TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") {
-  Stack stack = stack_of("loss=\"50%\"");
+  OperatorChain stack = stack_of("loss=\"50%\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   for (int ms = 0; ms < 200; ++ms)
@@ -104,7 +104,7 @@ TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") 
 
 TEST_CASE(
     "A profile that comes between the pages of a snapshot drops those that are still to come, and no others") {
-  Stack stack;
+  OperatorChain stack;
   DegradedSnapshots<contact_frame_t> frames;
   for (int ms = 0; ms < 10; ++ms)
     for (int page = 0; page < 3; ++page) {
@@ -125,7 +125,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A profile that comes between the pages of two streams of one channel splits neither") {
-  Stack stack;
+  OperatorChain stack;
   DegradedSnapshots<contact_frame_t> frames;
   const auto push = [&](int ms, int page, std::int8_t group) {
     contact_frame_t m = page_at(ms, page, 3, 6 * ms + page);
@@ -157,12 +157,12 @@ TEST_CASE(
     "While the world stands still the same snapshot comes again, and the first whole one under another profile is "
     "let through") {
   const bool between_pages = GENERATE(true, false);
-  Stack stack = stack_of("off=\"true\"");
+  OperatorChain stack = stack_of("off=\"true\"");
   DegradedSnapshots<contact_frame_t> frames;
   for (int k = 0; k < 10; ++k)
     for (int page = 0; page < 3; ++page) {
       if (k == 5 && page == (between_pages ? 1 : 0)) {
-        stack = Stack();
+        stack = OperatorChain();
         frames.change_profile();
       }
       frames.push(page_at(7, page, 3, 3 * k + page), arrival(7 + k), stack, nullptr);
@@ -174,7 +174,7 @@ TEST_CASE(
 
 TEST_CASE("What a tool reports while the world stands still is late and lost each by itself") {
   const bool late = GENERATE(true, false);
-  Stack stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
+  OperatorChain stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
   DegradedSnapshots<tool_state_t> tools;
   int came = 0;
   for (int ms = 0; ms < 1000; ++ms) {
@@ -195,7 +195,7 @@ TEST_CASE("What a tool reports while the world stands still is late and lost eac
 }
 
 TEST_CASE("An event is decided on once: what is lost is not brought back by its repetitions") {
-  Stack stack = stack_of("loss=\"40%\"");
+  OperatorChain stack = stack_of("loss=\"40%\"");
   DegradedEvents degraded;
   Decisions decisions;
   std::vector<contact_event_t> all;
@@ -216,7 +216,7 @@ TEST_CASE("An event is decided on once: what is lost is not brought back by its 
 
 TEST_CASE("A long network delay is no restart: all events come, once, later by just the delay") {
   const int delay_ms = GENERATE(40, 500, 3000);
-  Stack stack = stack_of("delay=\"" + std::to_string(delay_ms) + "ms network\"");
+  OperatorChain stack = stack_of("delay=\"" + std::to_string(delay_ms) + "ms network\"");
   DegradedEvents degraded;
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<contact_event_t> all;
@@ -243,7 +243,7 @@ TEST_CASE("A long network delay is no restart: all events come, once, later by j
 }
 
 TEST_CASE("A frozen stream that shows zero lets go of every contact") {
-  Stack stack = stack_of("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
+  OperatorChain stack = stack_of("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
   DegradedSnapshots<contact_frame_t> frames;
   for (int ms = 0; ms < 30; ++ms) frames.push(page_at(ms, 0, 1, ms), arrival(ms), stack, nullptr);
   int n = 0;
@@ -258,7 +258,7 @@ TEST_CASE("A frozen stream that shows zero lets go of every contact") {
 
 TEST_CASE("A sense that is off is told of no pose, for there is no such thing as none") {
   for (const char* what : {"off=\"true\"", "freeze=\"zero\"", "loss=\"100%\" conceal=\"zero\""}) {
-    Stack stack = stack_of(std::string(what) + " from=\"10ms\" until=\"20ms\"");
+    OperatorChain stack = stack_of(std::string(what) + " from=\"10ms\" until=\"20ms\"");
     DegradedSnapshots<world_state_t> poses;
     for (int ms = 0; ms < 30; ++ms) {
       world_state_t m{};
@@ -278,7 +278,7 @@ TEST_CASE("A sense that is off is told of no pose, for there is no such thing as
 }
 
 TEST_CASE("A log played anew brings its events again") {
-  Stack stack = stack_of("delay=\"10ms network\"");
+  OperatorChain stack = stack_of("delay=\"10ms network\"");
   DegradedEvents degraded;
   int heard = 0;
   for (int round = 0; round < 2; ++round)
@@ -291,11 +291,11 @@ TEST_CASE("A log played anew brings its events again") {
 }
 
 TEST_CASE("Values are changed in each message, and stay valid") {
-  Stack stack = stack_of("gain=\"-2\"");
+  OperatorChain stack = stack_of("gain=\"-2\"");
   DegradedSnapshots<contact_frame_t> frames;
   frames.push(page_at(3, 0, 1, 0), arrival(3), stack, nullptr);
   CHECK(frames.pop(arrival(3))->first.contacts.at(0).normal_force_N == 0);
-  Stack half = stack_of("gain=\"0.5 velocity\"");
+  OperatorChain half = stack_of("gain=\"0.5 velocity\"");
   DegradedEvents events;
   events.push(events_at(3, {event(1, 2)}, 0), arrival(3), half, nullptr);
   float speed = 0;
@@ -319,7 +319,7 @@ TEST_CASE("What is held back says nothing about the clock of who sent it") {
   maps.observe(map, host_time(kEpoch) + kBehind);
   REQUIRE(maps.read(host_time(kEpoch), kTheirs, kOurs));
   SenderClock clock({1, kOurs, &maps});
-  Stack stack = stack_of(GENERATE("delay=\"40ms network\"", "jitter=\"10ms uniform\"", "rate=\"60Hz\""));
+  OperatorChain stack = stack_of(GENERATE("delay=\"40ms network\"", "jitter=\"10ms uniform\"", "rate=\"60Hz\""));
   DegradedSnapshots<contact_frame_t> snapshots;
   DegradedEvents events;
   std::size_t heard = 0;

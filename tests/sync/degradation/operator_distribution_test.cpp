@@ -18,8 +18,8 @@ namespace {
 constexpr int kN = 20'000;
 constexpr double kSigmas = 4.5;
 
-Stack stack_of(const std::string& attributes, int seed = 1) {
-  return Stack(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"a\" " +
+OperatorChain stack_of(const std::string& attributes, int seed = 1) {
+  return OperatorChain(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"a\" " +
                                  attributes + "/></profile>",
                              "p"),
                "a", SimTime{});
@@ -36,14 +36,14 @@ Item item(int i, bool is_event) {
           .signals = {}};
 }
 
-std::vector<Verdict> verdicts(const std::string& attributes, bool is_event, int seed = 1, int n = kN) {
-  Stack stack = stack_of(attributes, seed);
-  std::vector<Verdict> out;
+std::vector<Decision> verdicts(const std::string& attributes, bool is_event, int seed = 1, int n = kN) {
+  OperatorChain stack = stack_of(attributes, seed);
+  std::vector<Decision> out;
   for (int i = 0; i < n; ++i) out.push_back(stack.decide(item(i, is_event)));
   return out;
 }
 
-std::vector<double> held_s(const std::vector<Verdict>& all, bool is_event) {
+std::vector<double> held_s(const std::vector<Decision>& all, bool is_event) {
   std::vector<double> out;
   for (int i = 0; i < static_cast<int>(all.size()); ++i)
     out.push_back(to_seconds(all[static_cast<std::size_t>(i)].release - item(i, is_event).arrival));
@@ -54,9 +54,9 @@ void check_share(double count, double p, double n = kN) {
   CHECK(std::abs(count - p * n) <= kSigmas * std::sqrt(p * (1 - p) * n));
 }
 
-std::uint64_t fingerprint(const std::vector<Verdict>& all) {
+std::uint64_t fingerprint(const std::vector<Decision>& all) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const Verdict& v : all)
+  for (const Decision& v : all)
     for (const std::int64_t word :
          {std::int64_t{static_cast<std::int8_t>(v.why)}, to_ns(v.release), v.shift.count(), std::int64_t{v.twice}})
       hash = fnv1a_64(hash, &word, sizeof word);
@@ -147,7 +147,7 @@ TEST_CASE("Reordering holds its share back by just its time, and duplication dou
   const auto held = held_s(all, true);
   check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.010)), 0.05);
   CHECK(std::count(held.begin(), held.end(), 0.010) + std::count(held.begin(), held.end(), 0.0) == kN);
-  check_share(static_cast<double>(std::count_if(all.begin(), all.end(), [](const Verdict& v) { return v.twice; })),
+  check_share(static_cast<double>(std::count_if(all.begin(), all.end(), [](const Decision& v) { return v.twice; })),
               0.03);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
       "loss=\"20% burst=3\" delay=\"5ms network\" jitter=\"3ms normal correlation=0.5 order=free\" "
       "duplicate=\"10%\"";
   const auto decided = [&](int repetitions) {
-    Stack stack = stack_of(everything, 5);
+    OperatorChain stack = stack_of(everything, 5);
     DegradedEvents events;
     Decisions decisions;
     for (int ms = 0; ms < 4000; ++ms) {
@@ -185,7 +185,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
       m.count = static_cast<std::int32_t>(m.events.size());
       events.push(m, host_time(ms * 1'000'000ll), stack, &decisions);
     }
-    std::vector<Verdict> all;
+    std::vector<Decision> all;
     for (const DecisionRecord& d : decisions) all.push_back(d.verdict);
     return all;
   };
@@ -197,7 +197,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
 
 TEST_CASE("Frozen at the last a touch goes on until it is stale. Frozen to nothing it ends at once") {
   const bool zero = GENERATE(true, false);
-  Stack stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
+  OperatorChain stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
   DegradedSnapshots<contact_frame_t> frames;
   ContactStream stream(1);
   for (int ms = 0; ms < 200; ++ms) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-Stack stack_of(const std::string& attributes, SimTime start = {}) {
-  return Stack(parse_profile("<profile><degrade modality=\"thermal\" " + attributes + "/></profile>", "p.xml"),
+OperatorChain stack_of(const std::string& attributes, SimTime start = {}) {
+  return OperatorChain(parse_profile("<profile><degrade modality=\"thermal\" " + attributes + "/></profile>", "p.xml"),
                "thermal", start);
 }
 
@@ -45,7 +45,7 @@ Item event(std::uint64_t id, std::int64_t ms, std::int64_t incarnation) {
 
 // Both groups of CONTACTS as they are told: that of the tool each step, the others 16 ms ahead of their time.
 // Returns the instants of those that come through, by group, ms.
-std::map<int, std::vector<std::int64_t>> both_groups(Stack& stack, double (*force_N)(int group, std::int64_t ms)) {
+std::map<int, std::vector<std::int64_t>> both_groups(OperatorChain& stack, double (*force_N)(int group, std::int64_t ms)) {
   DegradedSnapshots<contact_frame_t> frames;
   std::map<int, std::vector<std::int64_t>> kept;
   for (std::int64_t ms = 0; ms < 2000; ++ms) {
@@ -61,7 +61,7 @@ std::map<int, std::vector<std::int64_t>> both_groups(Stack& stack, double (*forc
 }  // namespace
 
 TEST_CASE("A rate thins each stream by itself: one that runs ahead takes nothing from the other") {
-  Stack stack = stack_of("rate=\"5Hz\"");
+  OperatorChain stack = stack_of("rate=\"5Hz\"");
   auto kept = both_groups(stack, [](int, std::int64_t) { return 1.0; });
   REQUIRE(kept[contact_frame_t::TOOL].size() == 10);
   for (std::size_t i = 0; i < 10; ++i) CHECK(kept[contact_frame_t::TOOL][i] == static_cast<std::int64_t>(200 * i));
@@ -69,14 +69,14 @@ TEST_CASE("A rate thins each stream by itself: one that runs ahead takes nothing
 }
 
 TEST_CASE("A deadband compares each stream with itself: another between two of its snapshots is no change") {
-  Stack stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = stack_of("deadband=\"10% force\"");
   auto kept = both_groups(stack, [](int group, std::int64_t ms) { return group == 0 && ms >= 1000 ? 2.0 : 1.0; });
   CHECK(kept[contact_frame_t::TOOL] == std::vector<std::int64_t>{0, 1000});
   CHECK(kept[contact_frame_t::OTHER].size() == 1);
 }
 
 TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they come, and they share its fate") {
-  Stack stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = stack_of("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   std::map<std::int64_t, int> kept;
@@ -101,7 +101,7 @@ TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they c
 TEST_CASE(
     "Under a deadband a snapshot of which a page is lost is judged by what came of it, once newer ones have "
     "overtaken it") {
-  Stack stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = stack_of("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;
   for (std::int64_t ms = 0; ms < 10; ++ms) {
@@ -114,7 +114,7 @@ TEST_CASE(
 }
 
 TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in between") {
-  Stack stack = stack_of("loss=\"20% burst=5\"");
+  OperatorChain stack = stack_of("loss=\"20% burst=5\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   constexpr int kN = 40'000;
@@ -137,7 +137,7 @@ TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in be
 
 TEST_CASE("When the world begins anew, a rate goes on in it at once") {
   const bool replayed = GENERATE(false, true);  // the same incarnation from its beginning, or a new one
-  Stack stack = stack_of("rate=\"5Hz\"");
+  OperatorChain stack = stack_of("rate=\"5Hz\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;
   for (std::int64_t ms = 0; ms < 20'000; ++ms)
@@ -154,7 +154,7 @@ TEST_CASE("When the world begins anew, a rate goes on in it at once") {
 }
 
 TEST_CASE("When the world begins anew, so do the times of a rule and its low-pass") {
-  Stack stack = stack_of("off=\"true\" from=\"1s\" until=\"2s\"", sim_time(50'000 * kMs));
+  OperatorChain stack = stack_of("off=\"true\" from=\"1s\" until=\"2s\"", sim_time(50'000 * kMs));
   const auto dropped = [&](std::int64_t ms, std::int64_t incarnation) {
     return stack.decide(event(1, ms, incarnation)).dropped();
   };
@@ -165,7 +165,7 @@ TEST_CASE("When the world begins anew, so do the times of a rule and its low-pas
   CHECK(dropped(1500, 2));
   CHECK_FALSE(dropped(2500, 2));
 
-  Stack smooth = stack_of("lowpass=\"1Hz\"");
+  OperatorChain smooth = stack_of("lowpass=\"1Hz\"");
   const auto force = [&](double value, std::int64_t ms) {
     return smooth.changed(Quantity::kForce, 7, 0, value, sim_time(ms * kMs), -1, -1, -1, -1);
   };
@@ -175,7 +175,7 @@ TEST_CASE("When the world begins anew, so do the times of a rule and its low-pas
 }
 
 TEST_CASE("The longest delay that a profile may ask for holds a stream of 1 kHz without loss") {
-  Stack stack = stack_of("delay=\"60s network\"");
+  OperatorChain stack = stack_of("delay=\"60s network\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::int64_t next = 0;
   bool in_turn = true;

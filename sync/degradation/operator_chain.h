@@ -29,16 +29,16 @@ struct Item {
   std::int32_t body_a = -1, body_b = -1, material_a = -1, material_b = -1;
 };
 
-enum class Why : std::int8_t { kKept = 0, kRate, kDeadband, kLoss, kOff, kFreeze };
+enum class DropReason : std::int8_t { kKept = 0, kRate, kDeadband, kLoss, kOff, kFreeze };
 
-struct Verdict {
-  Why why = Why::kKept;              // kKept: it is let through
+struct Decision {
+  DropReason why = DropReason::kKept;              // kKept: it is let through
   Conceal conceal = Conceal::kHold;  // what a missing snapshot is replaced by
   HostTime release{};                // when it is let through
   Nanoseconds shift{0};              // of the instant of an event that a filtered presentation delay concerns
   bool twice = false;
   bool touched = false;  // an operator was asked: worth a line in the log
-  bool dropped() const { return why != Why::kKept; }
+  bool dropped() const { return why != DropReason::kKept; }
 };
 
 // What the scene calls its bodies and materials, by index.
@@ -46,16 +46,16 @@ struct SceneNames {
   std::vector<std::string> bodies, materials;
 };
 
-class Stack {
+class OperatorChain {
  public:
-  Stack() = default;
+  OperatorChain() = default;
   // start: when the profile came into force; its from and until count from there.
-  Stack(const Profile& profile, const std::string& modality, SimTime start);
+  OperatorChain(const Profile& profile, const std::string& modality, SimTime start);
 
   bool empty() const { return rules_.empty(); }
   void set_scene(SceneNames names) { names_ = std::move(names); }
 
-  Verdict decide(const Item& item);
+  Decision decide(const Item& item);
   // True: this message, which is one of several that repeat or page the same thing, is lost on the wire. message:
   // what tells it from all others.
   bool lost_on_wire(std::uint64_t message, SimTime now);
@@ -98,8 +98,8 @@ class Stack {
   static Chain& chain_of(Active& a, const Item& item);
   bool concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                 std::int32_t body_b) const;
-  bool dropped(Active& a, Chain& chain, const Item& item, Verdict& v);
-  void held(Active& a, Chain& chain, const Item& item, Verdict& v);
+  bool dropped(Active& a, Chain& chain, const Item& item, Decision& v);
+  void held(Active& a, Chain& chain, const Item& item, Decision& v);
 
   std::vector<Active> rules_;
   SceneNames names_;

@@ -1,4 +1,4 @@
-#include "sync/degradation/stack.h"
+#include "sync/degradation/operator_chain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ double slot_s(const RateDef& rate, std::int64_t slot) {
 
 }  // namespace
 
-Stack::Stack(const Profile& profile, const std::string& modality, SimTime start) : start_(start) {
+OperatorChain::OperatorChain(const Profile& profile, const std::string& modality, SimTime start) : start_(start) {
   for (std::size_t i = 0; i < profile.rules.size(); ++i) {
     const Rule& rule = profile.rules[i];
     if (rule.modality != modality) continue;
@@ -37,14 +37,14 @@ Stack::Stack(const Profile& profile, const std::string& modality, SimTime start)
 }
 
 // Since the profile came into force; when the world began anew after that, since then.
-double Stack::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kAnew ? t - SimTime{} : t - start_); }
+double OperatorChain::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kAnew ? t - SimTime{} : t - start_); }
 
-bool Stack::in_time(const Rule& rule, SimTime t) const {
+bool OperatorChain::in_time(const Rule& rule, SimTime t) const {
   const double s = elapsed_s(t);
   return s >= rule.from_s && (!rule.until_s || s < *rule.until_s);
 }
 
-Stack::Chain& Stack::chain_of(Active& a, const Item& item) {
+OperatorChain::Chain& OperatorChain::chain_of(Active& a, const Item& item) {
   if (a.chains.size() > kMostStreams) a.chains.clear();
   const auto [it, fresh] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
   Chain& chain = it->second;
@@ -60,7 +60,7 @@ Stack::Chain& Stack::chain_of(Active& a, const Item& item) {
   return chain;
 }
 
-bool Stack::concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
+bool OperatorChain::concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                      std::int32_t body_b) const {
   const auto named = [](const std::vector<std::string>& names, std::int32_t i, const std::string& name) {
     return i >= 0 && i < static_cast<std::int32_t>(names.size()) && names[static_cast<std::size_t>(i)] == name;
@@ -76,29 +76,29 @@ bool Stack::concerns(const Rule& rule, std::int32_t material_a, std::int32_t mat
 
 // Rate, deadband, loss, off, freeze: what is not let through at all. An event that a rate makes wait is not
 // dropped.
-bool Stack::dropped(Active& a, Chain& chain, const Item& item, Verdict& v) {
+bool OperatorChain::dropped(Active& a, Chain& chain, const Item& item, Decision& v) {
   const Rule& rule = a.rule;
-  const auto drop = [&](Why why, Conceal conceal) {
+  const auto drop = [&](DropReason why, Conceal conceal) {
     v.why = why;
     v.conceal = conceal;
     return true;
   };
-  if (rule.off) return drop(Why::kOff, Conceal::kZero);
-  if (rule.freeze) return drop(Why::kFreeze, *rule.freeze);
+  if (rule.off) return drop(DropReason::kOff, Conceal::kZero);
+  if (rule.freeze) return drop(DropReason::kFreeze, *rule.freeze);
   if (rule.rate && !item.is_event) {
     const auto slot =
         static_cast<std::int64_t>(std::floor((elapsed_s(item.time) - rule.rate->phase_s) * rule.rate->rate_Hz));
-    if (slot <= chain.newest_slot) return drop(Why::kRate, Conceal::kHold);
+    if (slot <= chain.newest_slot) return drop(DropReason::kRate, Conceal::kHold);
     chain.newest_slot = slot;
   }
   if (chain.deadband && !item.is_event && !chain.deadband->send(item.time, item.signals, item.speed_m_s))
-    return drop(Why::kDeadband, Conceal::kHold);
+    return drop(DropReason::kDeadband, Conceal::kHold);
   if (chain.loss && chain.loss->lose(uniform(mixed(a.seed, kLossDraw), item.key)))
-    return drop(Why::kLoss, rule.conceal);
+    return drop(DropReason::kLoss, rule.conceal);
   return false;
 }
 
-void Stack::held(Active& a, Chain& chain, const Item& item, Verdict& v) {
+void OperatorChain::held(Active& a, Chain& chain, const Item& item, Decision& v) {
   const Rule& rule = a.rule;
   Nanoseconds hold{0};
   if (rule.rate && item.is_event) {
@@ -123,8 +123,8 @@ void Stack::held(Active& a, Chain& chain, const Item& item, Verdict& v) {
   if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) v.twice = true;
 }
 
-Verdict Stack::decide(const Item& item) {
-  Verdict v;
+Decision OperatorChain::decide(const Item& item) {
+  Decision v;
   v.release = item.arrival;
   for (Active& a : rules_) {
     // A snapshot holds many things: only its values can be told apart by what they concern.
@@ -138,14 +138,14 @@ Verdict Stack::decide(const Item& item) {
   return v;
 }
 
-bool Stack::lost_on_wire(std::uint64_t message, SimTime now) {
+bool OperatorChain::lost_on_wire(std::uint64_t message, SimTime now) {
   return std::any_of(rules_.begin(), rules_.end(), [&](const Active& a) {
     return a.rule.wire_loss && in_time(a.rule, now) &&
            uniform(mixed(a.seed, kWireDraw), message) < *a.rule.wire_loss;
   });
 }
 
-Nanoseconds Stack::presentation_delay(SimTime now) const {
+Nanoseconds OperatorChain::presentation_delay(SimTime now) const {
   Nanoseconds sum{0};
   for (const Active& a : rules_) {
     if (!in_time(a.rule, now) || a.rule.filtered()) continue;
@@ -155,7 +155,7 @@ Nanoseconds Stack::presentation_delay(SimTime now) const {
   return sum;
 }
 
-OutputDef Stack::output(SimTime now) const {
+OutputDef OperatorChain::output(SimTime now) const {
   OutputDef sum;
   const auto worse = [](double& a, double b) { a = a == 0 ? b : b == 0 ? a : std::min(a, b); };
   for (const Active& a : rules_) {
@@ -170,7 +170,7 @@ OutputDef Stack::output(SimTime now) const {
   return sum;
 }
 
-double Stack::changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+double OperatorChain::changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                       std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b) {
   for (Active& a : rules_) {
     const Rule& r = a.rule;

@@ -1,4 +1,4 @@
-#include "sync/degradation/stack.h"
+#include "sync/degradation/operator_chain.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -12,8 +12,8 @@ namespace {
 SimTime at(double s) { return sim_time(std::llround(s * 1e9)); }
 HostTime host(double s) { return host_time(std::llround(s * 1e9)); }
 
-Stack stack_of(const std::string& attributes, std::uint64_t seed = 1) {
-  return Stack(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"audio\" " +
+OperatorChain stack_of(const std::string& attributes, std::uint64_t seed = 1) {
+  return OperatorChain(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"audio\" " +
                                  attributes + "/></profile>",
                              "p.xml"),
                "audio", SimTime{});
@@ -28,39 +28,39 @@ Item snapshot(double t) {
           .arrival = host(t + 0.001),
           .signals = {}};
 }
-double held_s(const Verdict& v, const Item& i) { return to_seconds(v.release - i.arrival); }
+double held_s(const Decision& v, const Item& i) { return to_seconds(v.release - i.arrival); }
 
 }  // namespace
 
 TEST_CASE("A rule for another sense changes nothing") {
   const Profile p = parse_profile("<profile><degrade modality=\"visual\" off=\"true\"/></profile>", "p.xml");
-  Stack stack(p, "audio", {});
+  OperatorChain stack(p, "audio", {});
   CHECK(stack.empty());
   const Item i = event(1, 0);
-  const Verdict v = stack.decide(i);
+  const Decision v = stack.decide(i);
   CHECK_FALSE(v.dropped());
   CHECK_FALSE(v.touched);
   CHECK(v.release == i.arrival);
 }
 
 TEST_CASE("A network delay holds news back. A presentation delay moves the whole sense") {
-  Stack network = stack_of("delay=\"40ms network\"");
+  OperatorChain network = stack_of("delay=\"40ms network\"");
   const Item i = snapshot(1);
   CHECK(held_s(network.decide(i), i) == Approx(0.040));
   CHECK(network.presentation_delay(at(1)).count() == 0);
-  Stack presentation = stack_of("delay=\"40ms\"");
+  OperatorChain presentation = stack_of("delay=\"40ms\"");
   CHECK(held_s(presentation.decide(i), i) == 0);
   CHECK(presentation.presentation_delay(at(1)) == std::chrono::milliseconds(40));
 }
 
 TEST_CASE("Skew falls behind ever more") {
-  Stack stack = stack_of("skew=\"1000ppm\" from=\"2s\"");
+  OperatorChain stack = stack_of("skew=\"1000ppm\" from=\"2s\"");
   CHECK(stack.presentation_delay(at(1)).count() == 0);
   CHECK(to_seconds(stack.presentation_delay(at(12))) == Approx(0.010));
 }
 
 TEST_CASE("A rate lets one snapshot a period through, at its phase, and makes events wait for it") {
-  Stack stack = stack_of("rate=\"5Hz phase=50ms\"");
+  OperatorChain stack = stack_of("rate=\"5Hz phase=50ms\"");
   std::vector<double> kept;
   for (int ms = 0; ms < 2000; ++ms)
     if (!stack.decide(snapshot(ms / 1000.0)).dropped()) kept.push_back(ms / 1000.0);
@@ -75,7 +75,7 @@ TEST_CASE("A rate lets one snapshot a period through, at its phase, and makes ev
 
 TEST_CASE("Off and freeze drop everything within their time") {
   for (const std::string op : {"off=\"true\"", "freeze=\"hold\""}) {
-    Stack stack = stack_of(op + " from=\"1s\" until=\"2s\"");
+    OperatorChain stack = stack_of(op + " from=\"1s\" until=\"2s\"");
     CHECK_FALSE(stack.decide(event(1, 0.999)).dropped());
     CHECK(stack.decide(event(2, 1.0)).dropped());
     CHECK(stack.decide(snapshot(1.999)).dropped());
@@ -89,8 +89,8 @@ TEST_CASE("The same seed decides the same, in whatever order and company things 
   std::vector<Item> items;
   for (int i = 0; i < kN; ++i) items.push_back(event(static_cast<std::uint64_t>(i + 1), i * 0.001));
   const auto decide_all = [&](const std::vector<Item>& order, bool company, std::uint64_t seed) {
-    Stack stack = stack_of(ops, seed);
-    std::map<std::uint64_t, Verdict> verdicts;
+    OperatorChain stack = stack_of(ops, seed);
+    std::map<std::uint64_t, Decision> verdicts;
     for (const Item& i : order) {
       if (company) stack.decide(snapshot(to_seconds(i.time - SimTime{})));
       verdicts[i.key] = stack.decide(i);
@@ -115,7 +115,7 @@ TEST_CASE("The same seed decides the same, in whatever order and company things 
 TEST_CASE("Two rules and two senses draw different numbers") {
   const Profile p = parse_profile(
       R"(<profile><degrade modality="a" loss="50%"/><degrade modality="b" loss="50%"/></profile>)", "p");
-  Stack a(p, "a", {}), b(p, "b", {});
+  OperatorChain a(p, "a", {}), b(p, "b", {});
   int same = 0;
   for (std::uint64_t k = 0; k < 1000; ++k)
     same += a.decide(event(k, 0)).dropped() == b.decide(event(k, 0)).dropped();
@@ -123,19 +123,19 @@ TEST_CASE("Two rules and two senses draw different numbers") {
 }
 
 TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") {
-  Stack kept = stack_of("jitter=\"20ms uniform\"");
+  OperatorChain kept = stack_of("jitter=\"20ms uniform\"");
   HostTime last{};
   for (int i = 0; i < 1000; ++i) {
-    const Verdict v = kept.decide(snapshot(i * 0.001));
+    const Decision v = kept.decide(snapshot(i * 0.001));
     CHECK(v.release >= last);
     CHECK(v.release >= host(i * 0.001 + 0.001));
     last = v.release;
   }
-  Stack free = stack_of("reorder=\"20% by=10ms\"");
+  OperatorChain free = stack_of("reorder=\"20% by=10ms\"");
   int overtaken = 0;
   last = {};
   for (int i = 0; i < 1000; ++i) {
-    const Verdict v = free.decide(snapshot(i * 0.001));
+    const Decision v = free.decide(snapshot(i * 0.001));
     overtaken += v.release < last;
     last = std::max(last, v.release);
   }
@@ -143,7 +143,7 @@ TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") 
 }
 
 TEST_CASE("A filtered rule concerns its pair or its material only") {
-  Stack stack = stack_of("off=\"true\" material=\"steel\"");
+  OperatorChain stack = stack_of("off=\"true\" material=\"steel\"");
   stack.set_scene({{"floor", "ball", "cup"}, {"oak", "steel"}});
   Item e = event(1, 0);
   e.material_a = 0, e.material_b = 1;
@@ -152,7 +152,7 @@ TEST_CASE("A filtered rule concerns its pair or its material only") {
   CHECK_FALSE(stack.decide(e).dropped());
   CHECK_FALSE(stack.decide(snapshot(0)).dropped());
 
-  Stack pair = stack_of("delay=\"30ms\" bodies=\"ball floor\"");
+  OperatorChain pair = stack_of("delay=\"30ms\" bodies=\"ball floor\"");
   pair.set_scene({{"floor", "ball", "cup"}, {}});
   e.body_a = 0, e.body_b = 1;
   CHECK(pair.decide(e).shift == std::chrono::milliseconds(30));
@@ -166,7 +166,7 @@ TEST_CASE("Rules of one sense act one after the other") {
     <degrade modality="audio" delay="10ms network"/><degrade modality="audio" delay="20ms network" gain="2"/>
     <degrade modality="audio" quantise="1N"/></profile>)",
                                   "p.xml");
-  Stack stack(p, "audio", {});
+  OperatorChain stack(p, "audio", {});
   const Item i = event(1, 0);
   CHECK(held_s(stack.decide(i), i) == Approx(0.030));
   CHECK(stack.changed(Quantity::kForce, 1, 0, 0.8, at(0), -1, -1, -1, -1) == Approx(2));  // 1.6, rounded
@@ -174,12 +174,12 @@ TEST_CASE("Rules of one sense act one after the other") {
 }
 
 TEST_CASE("Within a rule values are quantised first, then scaled") {
-  Stack stack = stack_of("quantise=\"1N\" gain=\"0.5\"");
+  OperatorChain stack = stack_of("quantise=\"1N\" gain=\"0.5\"");
   CHECK(stack.changed(Quantity::kForce, 1, 0, 2.8, at(0), -1, -1, -1, -1) == Approx(1.5));
 }
 
 TEST_CASE("Loss on the wire is each message's own fate") {
-  Stack stack = stack_of("wire_loss=\"30%\"");
+  OperatorChain stack = stack_of("wire_loss=\"30%\"");
   int lost = 0;
   for (std::uint64_t m = 0; m < 10'000; ++m) lost += stack.lost_on_wire(m, at(0));
   CHECK(std::abs(lost - 3000) < 5 * std::sqrt(2100));
