@@ -3,7 +3,7 @@
 namespace tactus::sync {
 namespace {
 
-Item item_of(const contact_event_t& e, std::int64_t incarnation, HostTime arrival) {
+StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime arrival) {
   return {.key = static_cast<std::uint64_t>(e.event_id),
           .is_event = true,
           .incarnation = incarnation,

@@ -35,7 +35,7 @@ using Decisions = std::vector<DecisionRecord>;
 // What waits to be let through, in order of its time; what is let through at the same time keeps its order.
 // Bounded: when full the oldest is dropped and counted.
 template <class Message>
-class Waiting {
+class DelayQueue {
  public:
   // The longest delay of a profile, a minute, of a stream of 1 kHz.
   static constexpr std::size_t kMost = 1 << 16;
@@ -162,7 +162,7 @@ class DegradedSnapshots {
                      Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
     if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
-    Item item{.key = key,
+    StreamItem item{.key = key,
               .stream = stream_of(m),
               .incarnation = m.header.incarnation,
               .time = sim_time(m.header.sim_time_ns),
@@ -196,7 +196,7 @@ class DegradedSnapshots {
     if constexpr (requires { m.clock; }) m.clock = newest_clock_;
   }
 
-  Waiting<Message> waiting_;
+  DelayQueue<Message> waiting_;
   std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
   std::map<std::uint64_t, Arriving> arriving_;                // by stream
   std::map<std::uint64_t, Decision> verdicts_;
@@ -221,7 +221,7 @@ class DegradedEvents {
   static constexpr std::size_t kMostDropped = 4096;
   bool first_heard(std::int64_t id);
 
-  Waiting<contact_events_t> waiting_;
+  DelayQueue<contact_events_t> waiting_;
   contact_events_t newest_{};  // header and clock
   HostTime newest_arrival_{};  // of that
   std::set<std::int64_t> seen_;

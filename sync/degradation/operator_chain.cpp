@@ -44,7 +44,7 @@ bool OperatorChain::in_time(const Rule& rule, SimTime t) const {
   return s >= rule.from_s && (!rule.until_s || s < *rule.until_s);
 }
 
-OperatorChain::Chain& OperatorChain::chain_of(Active& a, const Item& item) {
+OperatorChain::Chain& OperatorChain::chain_of(Active& a, const StreamItem& item) {
   if (a.chains.size() > kMostStreams) a.chains.clear();
   const auto [it, fresh] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
   Chain& chain = it->second;
@@ -76,7 +76,7 @@ bool OperatorChain::concerns(const Rule& rule, std::int32_t material_a, std::int
 
 // Rate, deadband, loss, off, freeze: what is not let through at all. An event that a rate makes wait is not
 // dropped.
-bool OperatorChain::dropped(Active& a, Chain& chain, const Item& item, Decision& v) {
+bool OperatorChain::dropped(Active& a, Chain& chain, const StreamItem& item, Decision& v) {
   const Rule& rule = a.rule;
   const auto drop = [&](DropReason why, Conceal conceal) {
     v.why = why;
@@ -98,7 +98,7 @@ bool OperatorChain::dropped(Active& a, Chain& chain, const Item& item, Decision&
   return false;
 }
 
-void OperatorChain::held(Active& a, Chain& chain, const Item& item, Decision& v) {
+void OperatorChain::held(Active& a, Chain& chain, const StreamItem& item, Decision& v) {
   const Rule& rule = a.rule;
   Nanoseconds hold{0};
   if (rule.rate && item.is_event) {
@@ -123,7 +123,7 @@ void OperatorChain::held(Active& a, Chain& chain, const Item& item, Decision& v)
   if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) v.twice = true;
 }
 
-Decision OperatorChain::decide(const Item& item) {
+Decision OperatorChain::decide(const StreamItem& item) {
   Decision v;
   v.release = item.arrival;
   for (Active& a : rules_) {

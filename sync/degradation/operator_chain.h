@@ -14,7 +14,7 @@
 namespace tactus::sync {
 
 // What an event or a snapshot is judged by.
-struct Item {
+struct StreamItem {
   std::uint64_t key = 0;  // an event's id, a snapshot's channel and instant: what its random numbers are drawn for
   bool is_event = false;
   // Of a snapshot: whose sequence it belongs to, its channel and what that tells apart. And the life of the
@@ -55,7 +55,7 @@ class OperatorChain {
   bool empty() const { return rules_.empty(); }
   void set_scene(SceneNames names) { names_ = std::move(names); }
 
-  Decision decide(const Item& item);
+  Decision decide(const StreamItem& item);
   // True: this message, which is one of several that repeat or page the same thing, is lost on the wire. message:
   // what tells it from all others.
   bool lost_on_wire(std::uint64_t message, SimTime now);
@@ -95,11 +95,11 @@ class OperatorChain {
 
   double elapsed_s(SimTime t) const;
   bool in_time(const Rule& rule, SimTime t) const;
-  static Chain& chain_of(Active& a, const Item& item);
+  static Chain& chain_of(Active& a, const StreamItem& item);
   bool concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                 std::int32_t body_b) const;
-  bool dropped(Active& a, Chain& chain, const Item& item, Decision& v);
-  void held(Active& a, Chain& chain, const Item& item, Decision& v);
+  bool dropped(Active& a, Chain& chain, const StreamItem& item, Decision& v);
+  void held(Active& a, Chain& chain, const StreamItem& item, Decision& v);
 
   std::vector<Active> rules_;
   SceneNames names_;

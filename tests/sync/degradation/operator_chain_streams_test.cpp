@@ -34,7 +34,7 @@ contact_frame_t frame(std::int8_t group, std::int64_t sim_ms, std::int64_t sent_
   return m;
 }
 
-Item event(std::uint64_t id, std::int64_t ms, std::int64_t incarnation) {
+StreamItem event(std::uint64_t id, std::int64_t ms, std::int64_t incarnation) {
   return {.key = id,
           .is_event = true,
           .incarnation = incarnation,

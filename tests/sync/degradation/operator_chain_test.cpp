@@ -19,16 +19,16 @@ OperatorChain stack_of(const std::string& attributes, std::uint64_t seed = 1) {
                "audio", SimTime{});
 }
 
-Item event(std::uint64_t key, double t) {
+StreamItem event(std::uint64_t key, double t) {
   return {.key = key, .is_event = true, .time = at(t), .arrival = host(t + 0.001), .signals = {}};
 }
-Item snapshot(double t) {
+StreamItem snapshot(double t) {
   return {.key = static_cast<std::uint64_t>(std::llround(t * 1e9)),
           .time = at(t),
           .arrival = host(t + 0.001),
           .signals = {}};
 }
-double held_s(const Decision& v, const Item& i) { return to_seconds(v.release - i.arrival); }
+double held_s(const Decision& v, const StreamItem& i) { return to_seconds(v.release - i.arrival); }
 
 }  // namespace
 
@@ -36,7 +36,7 @@ TEST_CASE("A rule for another sense changes nothing") {
   const Profile p = parse_profile("<profile><degrade modality=\"visual\" off=\"true\"/></profile>", "p.xml");
   OperatorChain stack(p, "audio", {});
   CHECK(stack.empty());
-  const Item i = event(1, 0);
+  const StreamItem i = event(1, 0);
   const Decision v = stack.decide(i);
   CHECK_FALSE(v.dropped());
   CHECK_FALSE(v.touched);
@@ -45,7 +45,7 @@ TEST_CASE("A rule for another sense changes nothing") {
 
 TEST_CASE("A network delay holds news back. A presentation delay moves the whole sense") {
   OperatorChain network = stack_of("delay=\"40ms network\"");
-  const Item i = snapshot(1);
+  const StreamItem i = snapshot(1);
   CHECK(held_s(network.decide(i), i) == Approx(0.040));
   CHECK(network.presentation_delay(at(1)).count() == 0);
   OperatorChain presentation = stack_of("delay=\"40ms\"");
@@ -67,9 +67,9 @@ TEST_CASE("A rate lets one snapshot a period through, at its phase, and makes ev
   REQUIRE(kept.size() == 11);
   for (std::size_t i = 1; i < kept.size(); ++i)
     CHECK(kept[i] == Approx(0.05 + 0.2 * static_cast<double>(i - 1)).margin(0.0011));
-  const Item e = event(1, 0.1);
+  const StreamItem e = event(1, 0.1);
   CHECK(held_s(stack.decide(e), e) == Approx(0.150));
-  const Item exact = event(2, 0.25);
+  const StreamItem exact = event(2, 0.25);
   CHECK(held_s(stack.decide(exact), exact) == Approx(0).margin(1e-9));
 }
 
@@ -86,12 +86,12 @@ TEST_CASE("Off and freeze drop everything within their time") {
 TEST_CASE("The same seed decides the same, in whatever order and company things arrive") {
   constexpr int kN = 2000;
   const std::string ops = "loss=\"20%\" jitter=\"5ms normal order=free\" duplicate=\"10%\" reorder=\"10% by=7ms\"";
-  std::vector<Item> items;
+  std::vector<StreamItem> items;
   for (int i = 0; i < kN; ++i) items.push_back(event(static_cast<std::uint64_t>(i + 1), i * 0.001));
-  const auto decide_all = [&](const std::vector<Item>& order, bool company, std::uint64_t seed) {
+  const auto decide_all = [&](const std::vector<StreamItem>& order, bool company, std::uint64_t seed) {
     OperatorChain stack = stack_of(ops, seed);
     std::map<std::uint64_t, Decision> verdicts;
-    for (const Item& i : order) {
+    for (const StreamItem& i : order) {
       if (company) stack.decide(snapshot(to_seconds(i.time - SimTime{})));
       verdicts[i.key] = stack.decide(i);
     }
@@ -145,7 +145,7 @@ TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") 
 TEST_CASE("A filtered rule concerns its pair or its material only") {
   OperatorChain stack = stack_of("off=\"true\" material=\"steel\"");
   stack.set_scene({{"floor", "ball", "cup"}, {"oak", "steel"}});
-  Item e = event(1, 0);
+  StreamItem e = event(1, 0);
   e.material_a = 0, e.material_b = 1;
   CHECK(stack.decide(e).dropped());
   e.material_b = 0;
@@ -167,7 +167,7 @@ TEST_CASE("Rules of one sense act one after the other") {
     <degrade modality="audio" quantise="1N"/></profile>)",
                                   "p.xml");
   OperatorChain stack(p, "audio", {});
-  const Item i = event(1, 0);
+  const StreamItem i = event(1, 0);
   CHECK(held_s(stack.decide(i), i) == Approx(0.030));
   CHECK(stack.changed(Quantity::kForce, 1, 0, 0.8, at(0), -1, -1, -1, -1) == Approx(2));  // 1.6, rounded
   CHECK(stack.changed(Quantity::kVelocity, 1, 0, 0.8, at(0), -1, -1, -1, -1) == 0.8);

@@ -26,7 +26,7 @@ OperatorChain stack_of(const std::string& attributes, int seed = 1) {
 }
 
 // The i-th of a millisecond clock: an event with an id as sim_node gives them, or a snapshot.
-Item item(int i, bool is_event) {
+StreamItem item(int i, bool is_event) {
   const std::uint64_t key =
       is_event ? (0xabcdefull << 40) + static_cast<std::uint64_t>(i) : mixed(7, static_cast<std::uint64_t>(i));
   return {.key = key,
