@@ -99,7 +99,7 @@ void ModalityEndpoint::step(HostTime now) {
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
   const Nanoseconds delay_before = std::exchange(profile_delay_, stack_.presentation_delay(sim_now));
-  if (profile_delay_ > delay_before) delay_what_is_on_its_way(now, sim_now);
+  if (profile_delay_ > delay_before) log_in_flight_delays(now, sim_now);
   output_ = stack_.output(sim_now);
   lockstep_ = map && playout_.lockstep_Hz() > 0 ? std::optional(Lockstep{*map, playout_.lockstep_Hz()}) : std::nullopt;
   serial_delay_ = playout_.step(now) + profile_delay_;
@@ -108,7 +108,7 @@ void ModalityEndpoint::step(HostTime now) {
   for (const auto& stream : streams_) stream->step(*this, now, lets);
 }
 
-void ModalityEndpoint::delay_what_is_on_its_way(HostTime now, SimTime sim_now) {
+void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
   const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
   for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
     const HostTime arrived = arrivals_.at(*id);

@@ -138,7 +138,7 @@ class ModalityEndpoint {
   }
 
   // A delay of a profile begins: it holds for events too that have come and are not out yet. That is decided, and logged, here.
-  void delay_what_is_on_its_way(HostTime now, SimTime sim_now);
+  void log_in_flight_delays(HostTime now, SimTime sim_now);
   void take_control(HostTime now);
   void put_in_force(const ProfileInForce& profile);
   void note_arrivals(const contact_events_t& m, HostTime arrival);
