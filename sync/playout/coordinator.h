@@ -9,7 +9,7 @@
 #include <tactus/playout_request_t.hpp>
 #include <tactus/playout_t.hpp>
 
-#include "sync/playout/needs.h"
+#include "sync/playout/latency_demand.h"
 
 namespace tactus::sync {
 
@@ -30,7 +30,7 @@ class PlayoutCoordinator {
   bool take(const playout_request_t& m);
   // What another sync_node says; its own is ignored.
   void take(const playout_t& m, HostTime now);
-  Needs& needs() { return needs_; }
+  LatencyDemand& needs() { return needs_; }
 
   // What to publish now, ten times a second; nothing while another speaks.
   std::optional<playout_t> due(HostTime now);
@@ -43,7 +43,7 @@ class PlayoutCoordinator {
   std::int64_t own_clock_;
   PlayoutPlan plan_;
   std::int64_t generation_ = 0;
-  Needs needs_;
+  LatencyDemand needs_;
   std::map<std::string, Nanoseconds> said_;
   double lockstep_Hz_ = 0;
   std::optional<HostTime> heard_;  // of a lower clock

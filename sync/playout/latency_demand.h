@@ -16,9 +16,9 @@
 
 namespace tactus::sync {
 
-class Needs {
+class LatencyDemand {
  public:
-  explicit Needs(const PlayoutPlan& plan) { set_plan(plan); }
+  explicit LatencyDemand(const PlayoutPlan& plan) { set_plan(plan); }
 
   // The last events are estimated anew.
   void set_plan(const PlayoutPlan& plan);

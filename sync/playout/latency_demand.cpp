@@ -1,10 +1,10 @@
-#include "sync/playout/needs.h"
+#include "sync/playout/latency_demand.h"
 
 #include <algorithm>
 
 namespace tactus::sync {
 
-void Needs::set_plan(const PlayoutPlan& plan) {
+void LatencyDemand::set_plan(const PlayoutPlan& plan) {
   plan_ = plan;
   for (auto& [name, sense] : senses_) {
     sense.aligner = make_aligner(plan_.aligner, plan_.base);
@@ -14,11 +14,11 @@ void Needs::set_plan(const PlayoutPlan& plan) {
 }
 
 // In a serial loop everyone waits for everyone, however long.
-bool Needs::counts(Nanoseconds needed) const {
+bool LatencyDemand::counts(Nanoseconds needed) const {
   return needed <= plan_.budget || plan_.policy == Policy::kItouch2005;
 }
 
-Needs::ModalityEndpoint* Needs::of(const std::string& modality) {
+LatencyDemand::ModalityEndpoint* LatencyDemand::of(const std::string& modality) {
   const auto it = senses_.find(modality);
   if (it != senses_.end()) return &it->second;
   if (senses_.size() >= kMaxSenses) return nullptr;
@@ -27,7 +27,7 @@ Needs::ModalityEndpoint* Needs::of(const std::string& modality) {
   return &sense;
 }
 
-void Needs::know(const std::string& modality, bool slow) {
+void LatencyDemand::know(const std::string& modality, bool slow) {
   if (of(modality) == nullptr) return;
   if (slow)
     slow_.insert(modality);
@@ -35,7 +35,7 @@ void Needs::know(const std::string& modality, bool slow) {
     slow_.erase(modality);
 }
 
-void Needs::add(const std::string& modality, Nanoseconds needed) {
+void LatencyDemand::add(const std::string& modality, Nanoseconds needed) {
   ModalityEndpoint* sense = of(modality);
   if (sense == nullptr) return;
   needed = std::max(needed, Nanoseconds(0));
@@ -44,7 +44,7 @@ void Needs::add(const std::string& modality, Nanoseconds needed) {
   if (counts(needed)) sense->aligner->add(needed);
 }
 
-std::optional<Nanoseconds> Needs::needed(const std::string& modality) const {
+std::optional<Nanoseconds> LatencyDemand::needed(const std::string& modality) const {
   const auto it = senses_.find(modality);
   if (it == senses_.end() || it->second.last.empty()) return std::nullopt;
   const auto& last = it->second.last;
@@ -54,7 +54,7 @@ std::optional<Nanoseconds> Needs::needed(const std::string& modality) const {
   return it->second.aligner->delay();
 }
 
-std::map<std::string, Nanoseconds> Needs::all() const {
+std::map<std::string, Nanoseconds> LatencyDemand::all() const {
   std::map<std::string, Nanoseconds> all;
   for (const auto& [name, sense] : senses_) all[name] = needed(name).value_or(Nanoseconds(0));
   return all;
