@@ -17,7 +17,7 @@ Relay::Relay(RelayRules rules, std::vector<LineEnd> sites, std::int64_t run_id)
   for (const LineEnd& site : sites_) outboxes_.emplace_back(site.bit_per_s);
 }
 
-Thinner& Relay::thinner(const PassRule& rule) { return thinners_.try_emplace(&rule, rule).first->second; }
+Decimator& Relay::thinner(const PassRule& rule) { return thinners_.try_emplace(&rule, rule).first->second; }
 
 void Relay::hear_bus(const ChannelBytes& m, bool bulk, HostTime now) {
   const PassRule* rule = rules_.find(m.channel);

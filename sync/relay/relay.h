@@ -14,7 +14,7 @@
 #include "sync/relay/outbox.h"
 #include "sync/relay/rules.h"
 #include "sync/relay/sides.h"
-#include "sync/relay/thinner.h"
+#include "sync/relay/decimator.h"
 
 namespace tactus::sync {
 
@@ -52,7 +52,7 @@ class Relay {
   std::string note(HostTime now);
 
  private:
-  Thinner& thinner(const PassRule& rule);
+  Decimator& thinner(const PassRule& rule);
 
   RelayRules rules_;
   std::vector<LineEnd> sites_;
@@ -61,7 +61,7 @@ class Relay {
   std::vector<HostTime> heard_;
   std::vector<OutboxCounts> noted_counts_;
   HostTime noted_{};
-  std::map<const PassRule*, Thinner> thinners_;
+  std::map<const PassRule*, Decimator> thinners_;
   Sides sides_;
   RelayCounts counts_;
 };

@@ -1,4 +1,4 @@
-#include "sync/relay/thinner.h"
+#include "sync/relay/decimator.h"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ bool in_pages(const std::string& channel) {
 }  // namespace
 
 template <class Message>
-class Thinner::Compared : public Comparison {
+class Decimator::Compared : public Comparison {
  public:
   explicit Compared(const Rule& rule) : stack_({"", 1, {rule}}, rule.modality, SimTime{}) {}
 
@@ -42,11 +42,11 @@ class Thinner::Compared : public Comparison {
   DegradedSnapshots<Message> stream_;
 };
 
-Thinner::Thinner(const PassRule& rule) : rule_(rule) {}
-Thinner::~Thinner() = default;
-Thinner::Thinner(Thinner&&) noexcept = default;
+Decimator::Decimator(const PassRule& rule) : rule_(rule) {}
+Decimator::~Decimator() = default;
+Decimator::Decimator(Decimator&&) noexcept = default;
 
-std::unique_ptr<Thinner::Comparison> Thinner::comparison() const {
+std::unique_ptr<Decimator::Comparison> Decimator::comparison() const {
   Rule rule = rule_.thinning;
   if (!in_pages(rule_.channel)) rule.rate.reset();  // decided on before, by due()
   if (!rule.rate && !rule.deadband) return nullptr;
@@ -57,7 +57,7 @@ std::unique_ptr<Thinner::Comparison> Thinner::comparison() const {
 }
 
 // So many a second in the mean: one that comes a little early waits for no whole period more.
-bool Thinner::due(Sender& s, const header_t& h) const {
+bool Decimator::due(Sender& s, const header_t& h) const {
   if (!rule_.thinning.rate || in_pages(rule_.channel)) return true;
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rule_.thinning.rate->rate_Hz));
   if (h.publish_time_ns < s.newest_ns - kAnew_ns) s.next_ns = h.publish_time_ns;
@@ -67,7 +67,7 @@ bool Thinner::due(Sender& s, const header_t& h) const {
   return true;
 }
 
-void Thinner::take(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
+void Decimator::take(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
   if (!rule_.thins()) return out(message);
   if (senders_.size() >= kMostSenders && !senders_.contains(h.source)) senders_.clear();
   Sender& sender = senders_[h.source];

@@ -18,15 +18,15 @@
 
 namespace tactus::sync {
 
-class Thinner {
+class Decimator {
  public:
   using Out = std::function<void(std::span<const std::uint8_t>)>;
   // Senders on a channel; more are of false messages, and all begin anew.
   static constexpr std::size_t kMostSenders = 256;
 
-  explicit Thinner(const PassRule& rule);
-  ~Thinner();
-  Thinner(Thinner&&) noexcept;
+  explicit Decimator(const PassRule& rule);
+  ~Decimator();
+  Decimator(Decimator&&) noexcept;
 
   // Calls out(message) for what may pass now: this one or none, or with the last page of a snapshot all of them.
   void take(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
