@@ -112,7 +112,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
         simulation.mechanics().set_visual_rate(*rate_Hz);
         std::cerr << "sim_node: visual steps follow " << m->message.node << " at " << *rate_Hz << " Hz" << std::endl;
       }
-      if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.welcome();
+      if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.request_full_state();
     }
     for (int left = kCommandsPerTick; left > 0; --left)
       if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.take(m->message);

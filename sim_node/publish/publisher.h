@@ -9,7 +9,7 @@
 
 #include "sim_node/game/game.h"
 #include "sim_node/publish/snapshots.h"
-#include "sim_node/publish/young_events.h"
+#include "sim_node/publish/event_repeater.h"
 #include "sync/bus/bus.h"
 
 namespace tactus::sim {
@@ -31,7 +31,7 @@ class Publisher {
 
   void publish(const StepView& view, const sync::TimeMap& map);
   // Somebody new is listening: every body goes out as soon as the budget allows.
-  void welcome() { snapshots_.want_full(); }
+  void request_full_state() { snapshots_.want_full(); }
 
  private:
   void publish_events(const StepView& view, const sim_clock_t& clock);
@@ -46,7 +46,7 @@ class Publisher {
   sync::SimTime pace_{-std::chrono::hours(1)};
   int game_ticks_ = 0;  // since it was told last
   touch_model_t touch_page_{};
-  YoungEvents young_;
+  EventRepeater young_;
   Snapshots snapshots_;
 };
 

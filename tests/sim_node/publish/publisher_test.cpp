@@ -155,7 +155,7 @@ TEST_CASE("Each step: touch, events, contacts of tools, and only then what is sl
 }
 
 TEST_CASE("Every event is repeated each step for 50 ms, and a storm loses none") {
-  YoungEvents young(4);
+  EventRepeater young(4);
   std::map<std::int64_t, int> sent;
   std::int64_t id = 0;
   const int per_step = GENERATE(1, 20, 60);

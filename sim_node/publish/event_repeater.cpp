@@ -1,10 +1,10 @@
-#include "sim_node/publish/young_events.h"
+#include "sim_node/publish/event_repeater.h"
 
 #include <algorithm>
 
 namespace tactus::sim {
 
-void YoungEvents::add(const std::vector<contact_event_t>& events, sync::SimTime now) {
+void EventRepeater::add(const std::vector<contact_event_t>& events, sync::SimTime now) {
   for (const contact_event_t& e : events) {
     if (young_.size() >= kMost) {
       const auto most_sent = std::max_element(young_.begin(), young_.end(),
@@ -16,7 +16,7 @@ void YoungEvents::add(const std::vector<contact_event_t>& events, sync::SimTime 
   }
 }
 
-const std::vector<contact_event_t>& YoungEvents::due(sync::SimTime now) {
+const std::vector<contact_event_t>& EventRepeater::due(sync::SimTime now) {
   std::erase_if(young_, [now](const Young& y) { return now - y.known >= kRepeated && y.sent > 0; });
   if (young_.size() > most_per_step_)
     std::stable_sort(young_.begin(), young_.end(), [](const Young& a, const Young& b) { return a.sent < b.sent; });

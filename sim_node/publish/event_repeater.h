@@ -10,7 +10,7 @@
 
 namespace tactus::sim {
 
-class YoungEvents {
+class EventRepeater {
  public:
   static constexpr sync::Nanoseconds kRepeated{50'000'000};
   // A contact_event_t has 81 bytes; so many fit beside the rest of a page.
@@ -18,7 +18,7 @@ class YoungEvents {
   // Bounded: in a storm beyond this the oldest give way, after they have been sent.
   static constexpr std::size_t kMost = 4096;
 
-  explicit YoungEvents(std::size_t most_pages) : most_per_step_(most_pages * kPerPage) {}
+  explicit EventRepeater(std::size_t most_pages) : most_per_step_(most_pages * kPerPage) {}
 
   // Events that became known in this step. An event counts as young from when it became known: one whose time lies
   // back, as an end does, is repeated as long as any other.
