@@ -213,13 +213,13 @@ void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies,
   begin(now, own_ways_, true, bodies, {}, tools, true);
 }
 
-void Grouping::begin_step(sync::SimTime now, const Ways& ways, std::span<const BodyMotion> bodies,
+void Grouping::begin_step(sync::SimTime now, const SweptTrajectories& ways, std::span<const BodyMotion> bodies,
                           std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
                           bool may_leave) {
   begin(now, ways, false, bodies, touching, tools, may_leave);
 }
 
-void Grouping::begin(sync::SimTime now, const Ways& ways, bool of_all, std::span<const BodyMotion> bodies,
+void Grouping::begin(sync::SimTime now, const SweptTrajectories& ways, bool of_all, std::span<const BodyMotion> bodies,
                      std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
                      bool may_leave) {
   step_began_ = now;

@@ -21,7 +21,7 @@
 
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/group_tool.h"
-#include "sim_node/dual/ways.h"
+#include "sim_node/dual/swept_trajectories.h"
 #include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 
@@ -57,7 +57,7 @@ class Grouping {
   // enter. may_leave: false: there is nobody who would take them. A body leaves only when it can reach nothing
   // outside in this step, so that it may be computed by itself. Cost: of the group. Realtime-safe once its lists
   // have grown.
-  void begin_step(sync::SimTime now, const Ways& ways, std::span<const BodyMotion> bodies,
+  void begin_step(sync::SimTime now, const SweptTrajectories& ways, std::span<const BodyMotion> bodies,
                   std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
                   bool may_leave = true);
   // The same with the ways of all bodies in the group and outside, by how far each will be at most from its
@@ -77,7 +77,7 @@ class Grouping {
 
   // All but the ways: after reading, resume() with those of the step that is going on. Throws BadState.
   void archive(StateArchive& a);
-  void resume(const Ways& ways) {
+  void resume(const SweptTrajectories& ways) {
     ways_ = &ways;
     all_have_ways_ = false;
   }
@@ -103,7 +103,7 @@ class Grouping {
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
   void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
   double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
-  void begin(sync::SimTime now, const Ways& ways, bool of_all, std::span<const BodyMotion> bodies,
+  void begin(sync::SimTime now, const SweptTrajectories& ways, bool of_all, std::span<const BodyMotion> bodies,
              std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools, bool may_leave);
   void note(std::span<const std::pair<int, int>> touching);
   void tell(sync::SimTime now);
@@ -122,8 +122,8 @@ class Grouping {
   std::vector<std::vector<int>> systems_;      // bodies of each
   std::vector<std::pair<int, int>> touching_;  // both ways round, sorted
   sync::SimTime step_began_{};
-  const Ways* ways_ = nullptr;
-  Ways own_ways_;
+  const SweptTrajectories* ways_ = nullptr;
+  SweptTrajectories own_ways_;
   // Bodies that have just left: nobody has computed their ways yet.
   std::vector<int> late_;
   std::vector<SweptSphere> late_ways_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim_node/model/body_motion.h"
-#include "sim_node/dual/ways.h"
+#include "sim_node/dual/swept_trajectories.h"
 #include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 

@@ -12,7 +12,7 @@
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/contacts/contact_tracker.h"
-#include "sim_node/dual/ways.h"
+#include "sim_node/dual/swept_trajectories.h"
 #include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 
@@ -54,7 +54,7 @@ struct VisualStep {
   std::vector<std::vector<impulse::UnitState>> states;
   std::vector<std::vector<LiveContact>> live;
   std::vector<BodyMotion> begin, end;   // of every body of the world; of those not in the group nothing is known
-  Ways ways;                            // from the beginning on
+  SweptTrajectories ways;                            // from the beginning on
   std::vector<contact_event_t> events;  // on that clock; those of who entered are from the step before
   std::int64_t asleep = 0;              // bodies that rested and were not computed
 

@@ -1,4 +1,4 @@
-#include "sim_node/dual/ways.h"
+#include "sim_node/dual/swept_trajectories.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t kMostPairs = 1 << 18;
 }  // namespace
 
-void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
+void SweptTrajectories::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
                std::span<const std::pair<int, int>> touching, double horizon_s) {
   for (const int body : members_) at_[index(body)] = -1;
   at_.resize(bodies, -1);
@@ -31,7 +31,7 @@ void Ways::set(std::size_t bodies, std::span<const int> members, std::span<const
   }
 }
 
-void Ways::archive(StateArchive& a, std::size_t bodies) {
+void SweptTrajectories::archive(StateArchive& a, std::size_t bodies) {
   std::vector<int> members = members_;
   std::vector<SweptSphere> ways = ways_;
   std::vector<std::pair<int, int>> touching;
@@ -51,13 +51,13 @@ void Ways::archive(StateArchive& a, std::size_t bodies) {
   if (a.reads()) set(bodies, members, ways, touching, horizon_s_);
 }
 
-void Ways::find(const Bounds& query, std::vector<int>& found) const {
+void SweptTrajectories::find(const Bounds& query, std::vector<int>& found) const {
   const std::size_t begin = found.size();
   grid_.find(query, found);
   for (std::size_t k = begin; k < found.size(); ++k) found[k] = members_[index(found[k])];
 }
 
-std::span<const int> Ways::beside(int body) const {
+std::span<const int> SweptTrajectories::beside(int body) const {
   if (index(body) + 1 >= first_.size()) return {};
   const auto from = first_[index(body)], to = first_[index(body) + 1];
   return std::span(beside_).subspan(index(from), index(to - from));

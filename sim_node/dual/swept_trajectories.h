@@ -11,7 +11,7 @@
 
 namespace tactus::sim {
 
-class Ways {
+class SweptTrajectories {
  public:
   // members: ascending numbers of bodies of the world, which has so many; ways: of each, from the beginning of the
   // step on. touching: pairs of bodies. Realtime-safe once its lists have grown.
