@@ -60,7 +60,7 @@ ImpulseSolver::ImpulseSolver(const WorldDef& world, const Settings& settings)
   std::vector<int> units(index(world_->units()));
   for (std::size_t i = 0; i < units.size(); ++i) units[i] = static_cast<int>(i);
   world_->set_active(units);
-  look();
+  detect_contacts();
 }
 
 void ImpulseSolver::read() {
@@ -69,7 +69,7 @@ void ImpulseSolver::read() {
 }
 
 // After something was set: the motions and contacts of now.
-void ImpulseSolver::look() {
+void ImpulseSolver::detect_contacts() {
   read();
   source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, step_s_), contacts_);
 }
@@ -88,21 +88,21 @@ bool ImpulseSolver::apply(const impulse::SceneChange& change) {
 
 bool ImpulseSolver::set_pose(int body, const Eigen::Isometry3d& pose) {
   if (!scene_.set_pose(*world_, body, pose)) return false;
-  look();
+  detect_contacts();
   return true;
 }
 
 bool ImpulseSolver::set_velocity(int body, const Eigen::Vector3d& v) {
   if (!world_->moves(body)) return false;
   world_->set_velocity(body, v);
-  look();
+  detect_contacts();
   return true;
 }
 
 bool ImpulseSolver::set_spin(int body, const Eigen::Vector3d& w) {
   if (!world_->moves(body)) return false;
   world_->set_spin(body, w);
-  look();
+  detect_contacts();
   return true;
 }
 

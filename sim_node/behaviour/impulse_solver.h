@@ -68,7 +68,7 @@ class ImpulseSolver {
 
  private:
   void read();
-  void look();
+  void detect_contacts();
 
   std::unique_ptr<impulse::World> world_;
   SceneContacts source_;

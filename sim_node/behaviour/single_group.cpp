@@ -16,16 +16,16 @@ void SingleGroup::read() {
     if (solver_.bodies()[i].moves()) motions_[i] = solver_.bodies()[i];
 }
 
-void SingleGroup::look(sync::SimTime now, std::vector<contact_event_t>& events) {
+void SingleGroup::detect_contacts(sync::SimTime now, std::vector<contact_event_t>& events) {
   read();
   tracker_.update(now, step_, motions_, solver_.contacts(), solver_.solved(), events);
 }
 
-void SingleGroup::start(std::span<const GroupTool>, std::vector<contact_event_t>& events) { look({}, events); }
+void SingleGroup::start(std::span<const GroupTool>, std::vector<contact_event_t>& events) { detect_contacts({}, events); }
 
 void SingleGroup::tick(sync::SimTime now, std::span<const GroupTool>, std::vector<contact_event_t>& events) {
   solver_.step();
-  look(now + step_, events);
+  detect_contacts(now + step_, events);
 }
 
 void SingleGroup::contacts(std::vector<contact_t>& out) {

@@ -51,7 +51,7 @@ class SingleGroup : public Mechanics {
     return done;
   }
   void read();
-  void look(sync::SimTime now, std::vector<contact_event_t>& events);
+  void detect_contacts(sync::SimTime now, std::vector<contact_event_t>& events);
 
   sync::Nanoseconds step_;
   Solver solver_;

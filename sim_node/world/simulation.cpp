@@ -49,7 +49,7 @@ void Simulation::start(std::int64_t incarnation) {
   ids_.restart(incarnation);
   find_tools();
   mechanics_->start(group_tools_, events_);
-  look();
+  detect_contacts();
   begin_ = save();
 }
 
@@ -76,7 +76,7 @@ void Simulation::step(std::span<const tool_state_t> messages) {
   mechanics_->tick(now(), group_tools_, events_);
   ++steps_;
   for (Tool& tool : tools_) tool.push.settle(mechanics_->motions());
-  look();
+  detect_contacts();
 }
 
 void Simulation::find_tools() {
@@ -86,7 +86,7 @@ void Simulation::find_tools() {
 }
 
 // After a step, and at the first instant.
-void Simulation::look() {
+void Simulation::detect_contacts() {
   tool_contacts_.clear();
   const std::span<BodyMotion> motions = mechanics_->motions();
   place_tools(motions);

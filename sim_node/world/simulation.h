@@ -91,7 +91,7 @@ class Simulation {
     std::vector<tool_state_t> news;
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
-  void look();
+  void detect_contacts();
   void place_tools(std::span<BodyMotion> motions);
   void find_tools();
   void sort_news(std::span<const tool_state_t> messages);
