@@ -23,7 +23,7 @@
 
 #include "haptic_node/contact/contact_book.h"
 #include "haptic_node/contact/surfaces.h"
-#include "haptic_node/safety/unseen_work.h"
+#include "haptic_node/safety/pending_energy.h"
 
 namespace tactus::haptic {
 
@@ -71,7 +71,7 @@ class Passivity {
     std::int64_t contact_id = 0;
     Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the body, now
     Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the opposite of what is felt of it
-    UnseenWork unseen;
+    PendingEnergyEstimator unseen;
     double energy_J = 0, before_J = 0;  // told; of that before the episode or its first mention
     double idle_s = 0;                  // without a force
     bool told = false;

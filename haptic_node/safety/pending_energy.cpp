@@ -1,4 +1,4 @@
-#include "haptic_node/safety/unseen_work.h"
+#include "haptic_node/safety/pending_energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kTrust_s = 0.04;
 
 }  // namespace
 
-void UnseenWork::tell(const Told& told, double most_N) {
+void PendingEnergyEstimator::tell(const Told& told, double most_N) {
   if (told_.sim_ns >= 0 && told.sim_ns > told_.sim_ns) {
     // Newton: what the body's motion changed by, less the push, is what others did.
     const double dt = 1e-9 * static_cast<double>(told.sim_ns - told_.sim_ns);
@@ -29,18 +29,18 @@ void UnseenWork::tell(const Told& told, double most_N) {
   fresh_ = true;
 }
 
-void UnseenWork::tell(const Eigen::Vector3d& impulse_N_s) {
+void PendingEnergyEstimator::tell(const Eigen::Vector3d& impulse_N_s) {
   told_.impulse_N_s = impulse_N_s;
   fresh_ = true;
 }
 
-void UnseenWork::settle(const Eigen::Vector3d& impulse_N_s) {
+void PendingEnergyEstimator::settle(const Eigen::Vector3d& impulse_N_s) {
   given_N_s_ = told_.impulse_N_s = impulse_N_s;
   count_ = 0;
   work_J_ = 0;
 }
 
-void UnseenWork::give(const Eigen::Vector3d& force_N, double dt) {
+void PendingEnergyEstimator::give(const Eigen::Vector3d& force_N, double dt) {
   given_N_s_ += dt * force_N;
   const double push_N = std::max(0.0, -force_N.dot(told_.normal));
   if (count_ == 0 || pushes_[newest_].dt >= kPush_s) {
@@ -53,7 +53,7 @@ void UnseenWork::give(const Eigen::Vector3d& force_N, double dt) {
   if (told_.sim_ns >= 0) advance(push_N, dt);
 }
 
-void UnseenWork::advance(double push_N, double dt) {
+void PendingEnergyEstimator::advance(double push_N, double dt) {
   const bool trusted = since_s_ < kTrust_s;
   double held_N = trusted ? held_N_ : std::min(held_N_, 0.0);
   since_s_ += dt;
@@ -66,10 +66,10 @@ void UnseenWork::advance(double push_N, double dt) {
 }
 
 // One that came may swing: so much faster it then goes along with the push.
-double UnseenWork::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
+double PendingEnergyEstimator::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
 
 // Those of the last window_s, as far back as they add up to what is unseen; what is missing came before them.
-void UnseenWork::play(double window_s, double unseen_N_s) {
+void PendingEnergyEstimator::play(double window_s, double unseen_N_s) {
   const auto push = [&](std::size_t back) { return pushes_[(newest_ + pushes_.size() - back) % pushes_.size()]; };
   std::size_t first = 0;
   double time_s = 0, missing_N_s = unseen_N_s, share = 1;  // of the first of them, which may be unseen in part
@@ -90,7 +90,7 @@ void UnseenWork::play(double window_s, double unseen_N_s) {
   }
 }
 
-double UnseenWork::energy_J(double window_s, double most_N) {
+double PendingEnergyEstimator::energy_J(double window_s, double most_N) {
   if (told_.sim_ns < 0) return 0;
   Eigen::Vector3d unseen_N_s = given_N_s_ - told_.impulse_N_s;
   const double size = unseen_N_s.norm(), most_N_s = most_N * window_s;

@@ -20,7 +20,7 @@
 
 namespace tactus::haptic {
 
-class UnseenWork {
+class PendingEnergyEstimator {
  public:
   // As the touch model of sim_ns told of a body; impulse_N_s: that of all that give() was told of it, which had
   // reached the body then.

@@ -1,4 +1,4 @@
-#include "haptic_node/safety/unseen_work.h"
+#include "haptic_node/safety/pending_energy.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -24,9 +24,9 @@ struct Pushed {
 
   double work_J = 0, impulse_N_s = 0;
   int ms = 0, age_ms = 0;
-  UnseenWork unseen{};
+  PendingEnergyEstimator unseen{};
   struct News {
-    UnseenWork::Told told;
+    PendingEnergyEstimator::Told told;
     double work_J;
   };
   std::deque<News> on_the_way{};
