@@ -44,15 +44,15 @@ TransientShape transient_shape(const Settings& s) {
 
 // So many as a message tells of; the others' share goes to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
-  if (forces.size() <= ContactBook::kMaxTold || forces.size() > kMaxHalfSpaces) return;
+  if (forces.size() <= ContactImpulses::kMaxTold || forces.size() > kMaxHalfSpaces) return;
   std::array<double, kMaxHalfSpaces> sizes;
   for (std::size_t i = 0; i < forces.size(); ++i) sizes[i] = forces[i].squaredNorm();
-  const auto last = sizes.begin() + ContactBook::kMaxTold - 1;
+  const auto last = sizes.begin() + ContactImpulses::kMaxTold - 1;
   std::nth_element(sizes.begin(), last, sizes.begin() + static_cast<std::ptrdiff_t>(forces.size()),
                    std::greater<>());
   std::size_t kept = 0;
   for (Eigen::Vector3d& f : forces)
-    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactBook::kMaxTold)) f.setZero();
+    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactImpulses::kMaxTold)) f.setZero();
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
   felt_.reserve(kMaxHalfSpaces);
   out_.reports.reserve(256);
   out_.state.tool = tool;
-  out_.state.constraints.reserve(ContactBook::kMaxTold);
+  out_.state.constraints.reserve(ContactImpulses::kMaxTold);
 }
 
 void Renderer::change(const Settings& settings) {

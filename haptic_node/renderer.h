@@ -11,7 +11,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
-#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/devices/device.h"
 #include "haptic_node/rendering/handover.h"
@@ -106,7 +106,7 @@ class Renderer {
   Transients transients_;
   Safety& safety_;
   Fade fade_;
-  ContactBook book_;
+  ContactImpulses book_;
   OwedBegins owed_;
 
   bool begun_ = false;

@@ -25,7 +25,7 @@ void OwedBegins::add(std::int64_t event_id, std::int64_t contact_id, sync::HostT
     reports.push_back(report_of(event_id, scheduled, -1, sync::Nanoseconds(0)));
 }
 
-void OwedBegins::step(sync::HostTime now, const ContactBook& book, sync::Nanoseconds uncertainty,
+void OwedBegins::step(sync::HostTime now, const ContactImpulses& book, sync::Nanoseconds uncertainty,
                       std::vector<presentation_t>& reports) {
   std::erase_if(waiting_, [&](const Waiting& w) {
     const auto felt = book.first_felt(w.contact_id);

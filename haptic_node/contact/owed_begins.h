@@ -6,7 +6,7 @@
 #include <tactus/presentation_t.hpp>
 #include <vector>
 
-#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/contact_impulses.h"
 #include "sync/time/time.h"
 
 namespace tactus::haptic {
@@ -24,7 +24,7 @@ class OwedBegins {
            bool surface_known, std::vector<presentation_t>& reports);
   // Each begin gets exactly one report: PRESENTED at the first force; after the patience PRESENTED at the tick
   // that took it, if its surface was known then, else DROPPED_LATE.
-  void step(sync::HostTime now, const ContactBook& book, sync::Nanoseconds uncertainty,
+  void step(sync::HostTime now, const ContactImpulses& book, sync::Nanoseconds uncertainty,
             std::vector<presentation_t>& reports);
 
  private:

@@ -44,7 +44,7 @@ Passivity::Book* Passivity::find(std::int64_t contact_id) {
 }
 
 Passivity::Book& Passivity::add(std::int64_t contact_id) {
-  if (books_.size() >= ContactBook::kMaxContacts)
+  if (books_.size() >= ContactImpulses::kMaxContacts)
     books_.erase(std::max_element(books_.begin(), books_.end(),
                                   [](const Book& x, const Book& y) { return x.idle_s < y.idle_s; }));
   Book& b = books_.emplace_back();

@@ -21,7 +21,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 
-#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/safety/pending_energy.h"
 
@@ -42,7 +42,7 @@ struct Stored {
 class Passivity {
  public:
   explicit Passivity(const PassivityLimits& limits) : limits_(limits) {
-    books_.reserve(ContactBook::kMaxContacts);
+    books_.reserve(ContactImpulses::kMaxContacts);
   }
 
   void change(const PassivityLimits& limits) { limits_ = limits; }

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/contact/owed_begins.h"
 #include "tests/haptic_node/support/world.h"
 
@@ -14,7 +14,7 @@ FeltForce felt(std::int64_t id, double newton) { return {id, 0, Vector3d::Zero()
 }  // namespace
 
 TEST_CASE("A contact book sums force over time per contact, also the last share") {
-  ContactBook book;
+  ContactImpulses book;
   std::vector<tool_constraint_t> told;
   for (int ms = 0; ms < 10; ++ms) book.step(host_ms(ms), 1e-3, std::vector{felt(7, 2)});
   book.tell(host_ms(9), told);
@@ -36,18 +36,18 @@ TEST_CASE("A contact book sums force over time per contact, also the last share"
 }
 
 TEST_CASE("A contact book is bounded, and forgets what was felt longest ago") {
-  ContactBook book;
+  ContactImpulses book;
   std::vector<tool_constraint_t> told;
   for (int i = 0; i < 1000; ++i) book.step(host_ms(i), 1e-3, std::vector{felt(i, 1)});
   CHECK_FALSE(book.first_felt(0));
   CHECK(book.first_felt(999) == host_ms(999));
   book.tell(host_ms(999), told);
-  CHECK(told.size() == ContactBook::kMaxTold);
+  CHECK(told.size() == ContactImpulses::kMaxTold);
   CHECK(told[0].contact_id == 999);
 }
 
 TEST_CASE("A begin is presented when its force was first felt, before or after the event is known") {
-  ContactBook book;
+  ContactImpulses book;
   OwedBegins owed;
   std::vector<presentation_t> reports;
   book.step(host_ms(5), 1e-3, std::vector{felt(7, 1)});
@@ -68,7 +68,7 @@ TEST_CASE("A begin is presented when its force was first felt, before or after t
 }
 
 TEST_CASE("A begin without force is reported once, by whether its surface was known") {
-  const ContactBook book;
+  const ContactImpulses book;
   OwedBegins owed;
   std::vector<presentation_t> reports;
   owed.add(1, 7, host_ms(6), host_ms(8), true, reports);
@@ -84,7 +84,7 @@ TEST_CASE("A begin without force is reported once, by whether its surface was kn
 }
 
 TEST_CASE("More begins than can wait are reported at once, none is lost") {
-  const ContactBook book;
+  const ContactImpulses book;
   OwedBegins owed;
   std::vector<presentation_t> reports;
   for (int i = 0; i < 500; ++i) owed.add(i, i, host_ms(0), host_ms(0), false, reports);

@@ -42,6 +42,6 @@ TEST_CASE(
     CHECK((moment - out.torque_N_m).norm() < 1e-4);
   }
   CHECK(bench.tick(200, {0.0003, 0.0001, 0.007}).force_N.z() > 1);
-  CHECK(most <= ContactBook::kMaxTold);
+  CHECK(most <= ContactImpulses::kMaxTold);
   CHECK(most > 2);
 }

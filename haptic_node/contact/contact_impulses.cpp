@@ -1,4 +1,4 @@
-#include "haptic_node/contact/contact_book.h"
+#include "haptic_node/contact/contact_impulses.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace tactus::haptic {
 
-ContactBook::Entry& ContactBook::entry(std::int64_t contact_id, sync::HostTime now) {
+ContactImpulses::Entry& ContactImpulses::entry(std::int64_t contact_id, sync::HostTime now) {
   const auto known = std::find_if(contacts_.begin(), contacts_.end(),
                                   [&](const Entry& e) { return e.felt.contact_id == contact_id; });
   if (known != contacts_.end()) return *known;
@@ -18,7 +18,7 @@ ContactBook::Entry& ContactBook::entry(std::int64_t contact_id, sync::HostTime n
   return e;
 }
 
-void ContactBook::step(sync::HostTime now, double dt, std::span<const FeltForce> forces) {
+void ContactImpulses::step(sync::HostTime now, double dt, std::span<const FeltForce> forces) {
   for (Entry& e : contacts_) {
     e.impulse_N_s += dt * e.felt.force_N;
     e.felt.force_N.setZero();
@@ -32,13 +32,13 @@ void ContactBook::step(sync::HostTime now, double dt, std::span<const FeltForce>
   }
 }
 
-std::optional<sync::HostTime> ContactBook::first_felt(std::int64_t contact_id) const {
+std::optional<sync::HostTime> ContactImpulses::first_felt(std::int64_t contact_id) const {
   for (const Entry& e : contacts_)
     if (e.felt.contact_id == contact_id) return e.first;
   return std::nullopt;
 }
 
-void ContactBook::tell(sync::HostTime now, std::vector<tool_constraint_t>& out) const {
+void ContactImpulses::tell(sync::HostTime now, std::vector<tool_constraint_t>& out) const {
   out.clear();
   const auto add = [&](bool acting) {
     for (const Entry& e : contacts_) {

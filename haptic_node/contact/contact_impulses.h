@@ -21,13 +21,13 @@ struct FeltForce {
   Eigen::Vector3d force_N = Eigen::Vector3d::Zero();  // on the hand
 };
 
-class ContactBook {
+class ContactImpulses {
  public:
   static constexpr std::size_t kMaxContacts = 128;            // remembered; the least recently felt is forgotten
   static constexpr std::size_t kMaxTold = 12;                 // in one message
   static constexpr sync::Nanoseconds kToldAfter{50'000'000};  // the end of its force
 
-  ContactBook() { contacts_.reserve(kMaxContacts); }
+  ContactImpulses() { contacts_.reserve(kMaxContacts); }
 
   // One tick: adds what the forces of the last tick did until now, then notes those that act from now on.
   void step(sync::HostTime now, double dt, std::span<const FeltForce> forces);
