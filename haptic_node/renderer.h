@@ -15,7 +15,7 @@
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/devices/device.h"
 #include "haptic_node/rendering/handover.h"
-#include "haptic_node/contact/owed_begins.h"
+#include "haptic_node/contact/pending_onsets.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/contact/reliefs.h"
 #include "haptic_node/rendering/rendering.h"
@@ -107,7 +107,7 @@ class Renderer {
   Safety& safety_;
   Fade fade_;
   ContactImpulses book_;
-  OwedBegins owed_;
+  PendingOnsets owed_;
 
   bool begun_ = false;
   sync::HostTime last_{};

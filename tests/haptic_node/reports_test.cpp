@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "haptic_node/contact/contact_impulses.h"
-#include "haptic_node/contact/owed_begins.h"
+#include "haptic_node/contact/pending_onsets.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -48,7 +48,7 @@ TEST_CASE("A contact book is bounded, and forgets what was felt longest ago") {
 
 TEST_CASE("A begin is presented when its force was first felt, before or after the event is known") {
   ContactImpulses book;
-  OwedBegins owed;
+  PendingOnsets owed;
   std::vector<presentation_t> reports;
   book.step(host_ms(5), 1e-3, std::vector{felt(7, 1)});
   owed.add(1, 7, host_ms(6), host_ms(8), true, reports);
@@ -69,7 +69,7 @@ TEST_CASE("A begin is presented when its force was first felt, before or after t
 
 TEST_CASE("A begin without force is reported once, by whether its surface was known") {
   const ContactImpulses book;
-  OwedBegins owed;
+  PendingOnsets owed;
   std::vector<presentation_t> reports;
   owed.add(1, 7, host_ms(6), host_ms(8), true, reports);
   owed.add(2, 8, host_ms(6), host_ms(8), false, reports);
@@ -85,7 +85,7 @@ TEST_CASE("A begin without force is reported once, by whether its surface was kn
 
 TEST_CASE("More begins than can wait are reported at once, none is lost") {
   const ContactImpulses book;
-  OwedBegins owed;
+  PendingOnsets owed;
   std::vector<presentation_t> reports;
   for (int i = 0; i < 500; ++i) owed.add(i, i, host_ms(0), host_ms(0), false, reports);
   owed.step(host_ms(1000), book, kUncertain, reports);

@@ -1,4 +1,4 @@
-#include "haptic_node/contact/owed_begins.h"
+#include "haptic_node/contact/pending_onsets.h"
 
 namespace tactus::haptic {
 namespace {
@@ -17,7 +17,7 @@ presentation_t report_of(std::int64_t event_id, sync::HostTime scheduled, std::i
 
 }  // namespace
 
-void OwedBegins::add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
+void PendingOnsets::add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
                      bool surface_known, std::vector<presentation_t>& reports) {
   if (waiting_.size() < kMaxWaiting)
     waiting_.push_back({event_id, contact_id, scheduled, now, surface_known});
@@ -25,7 +25,7 @@ void OwedBegins::add(std::int64_t event_id, std::int64_t contact_id, sync::HostT
     reports.push_back(report_of(event_id, scheduled, -1, sync::Nanoseconds(0)));
 }
 
-void OwedBegins::step(sync::HostTime now, const ContactImpulses& book, sync::Nanoseconds uncertainty,
+void PendingOnsets::step(sync::HostTime now, const ContactImpulses& book, sync::Nanoseconds uncertainty,
                       std::vector<presentation_t>& reports) {
   std::erase_if(waiting_, [&](const Waiting& w) {
     const auto felt = book.first_felt(w.contact_id);

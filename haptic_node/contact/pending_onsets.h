@@ -11,13 +11,13 @@
 
 namespace tactus::haptic {
 
-class OwedBegins {
+class PendingOnsets {
  public:
   static constexpr std::size_t kMaxWaiting = 64;
   // So long a contact may stay without force, a graze, before it is reported all the same.
   static constexpr sync::Nanoseconds kPatience{100'000'000};
 
-  OwedBegins() { waiting_.reserve(kMaxWaiting); }
+  PendingOnsets() { waiting_.reserve(kMaxWaiting); }
 
   // surface_known: the touch model holds the surface of that contact, so the proxy already respects it.
   void add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
