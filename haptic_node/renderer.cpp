@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {

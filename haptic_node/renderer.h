@@ -14,7 +14,7 @@
 #include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/devices/device.h"
-#include "haptic_node/rendering/handover.h"
+#include "haptic_node/rendering/force_crossfade.h"
 #include "haptic_node/contact/pending_onsets.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/contact/reliefs.h"
@@ -99,7 +99,7 @@ class Renderer {
   Surfaces surfaces_;
   Reliefs reliefs_;
   Rendering rendering_;
-  Handover handover_, torque_handover_;
+  ForceCrossfade handover_, torque_handover_;
   LoopDelay loop_delay_;
   sync::Nanoseconds touch_delay_{0};  // of the tick before
   Passivity passivity_;

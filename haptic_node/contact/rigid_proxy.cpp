@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "haptic_node/contact/direct.h"
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 
 namespace tactus::haptic {
 namespace {

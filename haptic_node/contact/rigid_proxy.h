@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 #include <span>
 
-#include "haptic_node/contact/pose_programme.h"
+#include "haptic_node/contact/pose_qp.h"
 #include "haptic_node/contact/surfaces.h"
 
 namespace tactus::haptic {

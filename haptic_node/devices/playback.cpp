@@ -1,6 +1,6 @@
 #include "haptic_node/devices/playback.h"
 
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 
 namespace tactus::haptic {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 
 namespace tactus::haptic {
 namespace {

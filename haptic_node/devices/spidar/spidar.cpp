@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 
 namespace tactus::haptic {
 namespace {

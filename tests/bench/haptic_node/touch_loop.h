@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "haptic_node/renderer.h"
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 #include "sim_node/world/simulation.h"
 
 namespace tactus::test {

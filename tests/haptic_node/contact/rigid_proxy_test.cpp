@@ -7,7 +7,7 @@
 #include <random>
 
 #include "haptic_node/rendering/rigid_coupling.h"
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 
 using namespace tactus::haptic;
 using Eigen::Quaterniond;

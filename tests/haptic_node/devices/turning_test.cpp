@@ -6,7 +6,7 @@
 #include "haptic_node/devices/spidar/simulated_strings.h"
 #include "haptic_node/devices/spidar/spidar.h"
 #include "haptic_node/devices/virtual_hand.h"
-#include "haptic_node/contact/turns.h"
+#include "haptic_node/contact/rotation_math.h"
 #include "lcmtypes/vectors.h"
 
 using namespace tactus;

@@ -1,11 +1,11 @@
-#include "haptic_node/rendering/handover.h"
+#include "haptic_node/rendering/force_crossfade.h"
 
 #include <algorithm>
 
 namespace tactus::haptic {
 
 // Whether others bind than in the last tick; notes those that do.
-bool Handover::changed(std::span<const Surface> surfaces) {
+bool ForceCrossfade::changed(std::span<const Surface> surfaces) {
   std::size_t bound = 0;
   bool same = true;
   for (const Surface& s : surfaces) {
@@ -20,7 +20,7 @@ bool Handover::changed(std::span<const Surface> surfaces) {
   return !same;
 }
 
-Eigen::Vector3d Handover::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
+Eigen::Vector3d ForceCrossfade::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
   const bool was_pressed = !last_set_.empty() && !last_.isZero(0);
   const bool other = changed(surfaces) || renewed_;
   renewed_ = false;

@@ -1,4 +1,4 @@
-#include "haptic_node/contact/pose_programme.h"
+#include "haptic_node/contact/pose_qp.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -13,10 +13,10 @@
 
 namespace tactus::haptic {
 
-class Handover {
+class ForceCrossfade {
  public:
   // A change of less than step_N_s per second is passed at once.
-  Handover(double recovery_time_s, double step_N_s) : time_s_(recovery_time_s), step_N_s_(step_N_s) {
+  ForceCrossfade(double recovery_time_s, double step_N_s) : time_s_(recovery_time_s), step_N_s_(step_N_s) {
     last_set_.reserve(kMaxHalfSpaces);
   }
 

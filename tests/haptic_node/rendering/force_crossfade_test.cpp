@@ -1,4 +1,4 @@
-#include "haptic_node/rendering/handover.h"
+#include "haptic_node/rendering/force_crossfade.h"
 
 #include <catch2/catch.hpp>
 
@@ -23,7 +23,7 @@ Surface bound(std::int64_t id, double depth_m = 0.001) {
 
 TEST_CASE("The force of the surfaces goes over to that of others within the recovery time, in even steps") {
   const double dt = GENERATE(1e-3, 0.5e-3, 0.25e-3);
-  Handover handover(kRecovery_s, kAtOnce_N_s);
+  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
   const std::vector<Surface> before{bound(1), bound(2, 0)}, after{bound(1, 0), bound(2)};
   const Vector3d old(0, 0, 3), next(2, 0, 3);
   for (int i = 0; i < 5; ++i) CHECK(handover.step(before, old, dt) == old);
@@ -41,7 +41,7 @@ TEST_CASE("The force of the surfaces goes over to that of others within the reco
 }
 
 TEST_CASE("The first touch, the release and all that happens on the same surfaces pass as they are") {
-  Handover handover(kRecovery_s, kAtOnce_N_s);
+  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
   const std::vector<Surface> free{bound(1, 0)}, one{bound(1)};
   CHECK(handover.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
   CHECK(handover.step(one, {0, 0, 4}, kDt) == Vector3d(0, 0, 4));
@@ -51,7 +51,7 @@ TEST_CASE("The first touch, the release and all that happens on the same surface
 }
 
 TEST_CASE("What is left of the old surfaces does not hold a hand that has left them all") {
-  Handover handover(kRecovery_s, kAtOnce_N_s);
+  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
   handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
   handover.step(std::vector{bound(2)}, {3, 0, 0}, kDt);
   CHECK(handover.step(std::vector{bound(2, 0)}, Vector3d::Zero(), kDt) == Vector3d::Zero());
@@ -59,7 +59,7 @@ TEST_CASE("What is left of the old surfaces does not hold a hand that has left t
 }
 
 TEST_CASE("A small change of the surfaces passes at once") {
-  Handover handover(kRecovery_s, kAtOnce_N_s);
+  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
   handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
   CHECK(handover.step(std::vector{bound(1), bound(2)}, {0.1, 0, 3}, kDt) == Vector3d(0.1, 0, 3));
 }
