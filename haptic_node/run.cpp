@@ -65,7 +65,7 @@ int tactus::haptic::run(int argc, char** argv) try {
   app.add_option("--trace", of_log.trace, "file for what the hand feels in the log, CSV with the columns of haptic.csv")
       ->needs("--log")->excludes("--device");
   sync::parse_or_exit(app, declaration.node, argc, argv);
-  const auto given = haptic::choose(scene_t{}, tool_name, options.set);
+  const auto given = haptic::resolve_config(scene_t{}, tool_name, options.set);
   if (!given.refused.empty()) throw std::runtime_error(given.refused.front());
   std::shared_ptr<const haptic::DeviceSpec> device_given;
   if (!device_spec.empty())
@@ -83,7 +83,7 @@ int tactus::haptic::run(int argc, char** argv) try {
   auto& device_states = node.bus().queue<device_state_t>(channels::kDeviceState, 64);
   auto& device_forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
   haptic::Safety safety(haptic::safety_limits(given.settings));  // one for all scenes
-  haptic::Choice choice;
+  haptic::NodeConfig choice;
   haptic::Quality quality(given.settings);
   std::optional<sync::BackgroundTask<haptic::Device>> device;
   // Read in a thread of its own; what is not there yet is smooth.
@@ -112,7 +112,7 @@ int tactus::haptic::run(int argc, char** argv) try {
     const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
     sense.step(now);
     if (scenes.poll(now)) {
-      choice = haptic::choose(*scenes.scene(), tool_name, options.set);
+      choice = haptic::resolve_config(*scenes.scene(), tool_name, options.set);
       own = choice.settings;
       live.set_scene(*scenes.scene());
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";

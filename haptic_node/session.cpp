@@ -13,7 +13,7 @@ constexpr sync::Nanoseconds kLongestWay{10'000'000};
 
 }  // namespace
 
-std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given) {
+std::unique_ptr<Device> device_of(const scene_t& scene, const NodeConfig& choice, const DeviceSpec* given) {
   const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
   const auto& body = scene.bodies[static_cast<std::size_t>(tool.body)];
   const DeviceSpec spec = given ? *given : tool.device.empty() ? DeviceSpec{} : parse_device_spec(tool.device);
@@ -21,7 +21,7 @@ std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, co
                      to_eigen(body.pose.orientation).normalized());
 }
 
-Session::Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, sync::OwnClock own,
+Session::Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
                  Safety& safety)
     : device_(std::move(device)),
       safety_(safety),

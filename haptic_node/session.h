@@ -6,7 +6,7 @@
 #include <optional>
 #include <tactus/contact_events_t.hpp>
 
-#include "haptic_node/devices/selection/choice.h"
+#include "haptic_node/devices/selection/node_config.h"
 #include "haptic_node/devices/selection/make_device.h"
 #include "haptic_node/renderer.h"
 #include "haptic_node/contact/touch_input.h"
@@ -25,13 +25,13 @@ struct Degraded {
 
 // The device of the tool that was chosen. given: from the command line; null: as the tool says, maybe from a
 // file, so not for a loop. Throws std::runtime_error with one sentence when there is no such device.
-std::unique_ptr<Device> device_of(const scene_t& scene, const Choice& choice, const DeviceSpec* given = nullptr);
+std::unique_ptr<Device> device_of(const scene_t& scene, const NodeConfig& choice, const DeviceSpec* given = nullptr);
 
 class Session {
  public:
   // choice.tool must be one of the scene's. safety: of the process, outlives this; it goes on with the limits of
   // this scene.
-  Session(const scene_t& scene, const Choice& choice, std::unique_ptr<Device> device, sync::OwnClock own,
+  Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
           Safety& safety);
 
   void push(const touch_model_t& model, sync::HostTime arrival) {

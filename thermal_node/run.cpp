@@ -21,7 +21,7 @@
 #include "sync/clocks/pacing.h"
 #include "sync/assets/scene_exchange.h"
 #include "sync/node/modality_endpoint.h"
-#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/node_config.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/make_device.h"
 #include "thermal_node/offline.h"
@@ -53,12 +53,12 @@ int tactus::thermal::run(int argc, char** argv) try {
   app.add_option("--trace", of_log.trace, "file for what the skin feels in the log, CSV with the columns of thermal.csv")
       ->needs("--log");
   sync::parse_or_exit(app, declaration.node, argc, argv);
-  const auto wrong = thermal::choose(scene_t{}, "", options.set).refused;
+  const auto wrong = thermal::resolve_config(scene_t{}, "", options.set).refused;
   if (!wrong.empty()) throw std::runtime_error(wrong.front());
   std::optional<thermal::Offline> offline;
   if (!of_log.log.empty()) {
     if (of_log.trace.empty()) throw std::runtime_error("--log needs --trace FILE, which what the skin feels is written to");
-    offline.emplace(of_log, thermal::choose(scene_t{}, "", options.set).settings.rate_Hz, sync::host_now());
+    offline.emplace(of_log, thermal::resolve_config(scene_t{}, "", options.set).settings.rate_Hz, sync::host_now());
     offline->run().adapt(options);
   }
 
@@ -69,7 +69,7 @@ int tactus::thermal::run(int argc, char** argv) try {
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 4096);
   auto& answers = node.bus().queue<thermal_device_t>(channels::kThermalDevice, 64);
   sync::ContactStream stream(node.bus().clocks());
-  thermal::Choice choice;
+  thermal::NodeConfig choice;
   thermal::Ticks ticks;
   thermal::Quality quality(choice.settings);
   std::optional<thermal::Renderer> renderer;
@@ -102,7 +102,7 @@ int tactus::thermal::run(int argc, char** argv) try {
       // Not that of a log which is played meanwhile: its plate is not under this finger.
       if (device && m->message.header.run_id == options.run_id) device->receive(m->message, m->arrival);
     if (scenes.poll(now)) {
-      choice = thermal::choose(*scenes.scene(), tool_name, options.set);
+      choice = thermal::resolve_config(*scenes.scene(), tool_name, options.set);
       for (const std::string& refused : choice.refused) std::cerr << refused << "\n";
       own = choice.settings;
       live.set_scene(*scenes.scene());

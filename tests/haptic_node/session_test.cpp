@@ -29,7 +29,7 @@ contact_events_t events_of(double sim_ms, std::vector<contact_event_t> list) {
   return m;
 }
 
-Choice choice_of(const scene_t& s) { return choose(s, "", {}); }
+NodeConfig choice_of(const scene_t& s) { return choose(s, "", {}); }
 
 // The tool rests 2 mm under the floor of z = 0.005 + ...: see the bodies' pose.
 scene_t pressing_scene() {
@@ -83,7 +83,7 @@ TEST_CASE("A scene cannot loosen what protects the hand. The command line can") 
     s.settings[0].node = "haptic_node";
     s.settings[0].name = name;
     s.settings[0].value = value;
-    const Choice refused = choose(s, "", {});
+    const NodeConfig refused = choose(s, "", {});
     REQUIRE(refused.refused.size() == 1);
     CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
     CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
@@ -198,7 +198,7 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
 TEST_CASE("When the scene changes the force goes on from where it is, through the limits") {
   const scene_t s = pressing_scene();
   // So slow that the way from 0.4 N takes 40 ms.
-  const Choice slow = choose(s, "", {"slew_limit=10", "energy_limit=0.4"});
+  const NodeConfig slow = choose(s, "", {"slew_limit=10", "energy_limit=0.4"});
   Safety safety{safety_limits(slow.settings)};
   std::optional<Session> session(std::in_place, s, slow, device_of(s, slow), 1, safety);
   Vector3d last = Vector3d::Zero();

@@ -14,7 +14,7 @@
 #include <iostream>
 
 #include "sync/node/node.h"
-#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/node_config.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/simulated_peltier.h"
 
@@ -32,7 +32,7 @@ int main(int argc, char** argv) try {
   int tool = 0;
   app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
   sync::parse_or_exit(app, declaration.node, argc, argv);
-  const thermal::Choice choice = thermal::choose(scene_t{}, "", options.set);
+  const thermal::NodeConfig choice = thermal::resolve_config(scene_t{}, "", options.set);
   if (!choice.refused.empty()) throw std::runtime_error(choice.refused.front());
   const thermal::Settings& settings = choice.settings;
 

@@ -30,7 +30,7 @@ OfflineWorld::OfflineWorld(const sim::WorldDef& world, const sim::Settings& sett
   simulation_.start(99);
   hand_forces_N_.resize(hands ? scene_.tools.size() : 0, Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < hand_forces_N_.size(); ++i) {
-    const haptic::Choice choice = haptic::choose(scene_, scene_.tools[i].name, {});
+    const haptic::NodeConfig choice = haptic::resolve_config(scene_, scene_.tools[i].name, {});
     auto hand = std::make_unique<Hand>(Hand{haptic::Safety(haptic::safety_limits(choice.settings)), nullptr});
     hand->session = std::make_unique<haptic::Session>(scene_, choice, haptic::device_of(scene_, choice),
                                                       sync::OwnClock(kRun, kClock), hand->safety);

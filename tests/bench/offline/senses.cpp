@@ -11,7 +11,7 @@
 #include "sync/bus/decode.h"
 #include "sync/log/log_reader.h"
 #include "tests/bench/offline/offline_world.h"
-#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/node_config.h"
 #include "thermal_node/renderer.h"
 #include "thermal_node/display/ticks.h"
 #include "visual_node/frame/frame_composer.h"
@@ -139,7 +139,7 @@ class Pictures {
 class Warmth {
  public:
   explicit Warmth(const scene_t& scene)
-      : choice_(thermal::choose(scene, "", {})), stream_(sync::OwnClock(kRun, kClock)) {
+      : choice_(thermal::resolve_config(scene, "", {})), stream_(sync::OwnClock(kRun, kClock)) {
     if (choice_.tool >= 0)
       renderer_ =
           std::make_unique<thermal::Renderer>(choice_.settings, scene.materials, choice_.tool, choice_.tool_body);
@@ -161,7 +161,7 @@ class Warmth {
   }
 
  private:
-  thermal::Choice choice_;
+  thermal::NodeConfig choice_;
   sync::ContactStream stream_;
   thermal::Ticks ticks_;
   std::unique_ptr<thermal::Renderer> renderer_;

@@ -43,7 +43,7 @@ struct Rig {
   double push() { return device->force.norm(); }
 
   scene_t world = scene();
-  Choice choice;
+  NodeConfig choice;
   Safety safety;
   Fickle* device;
   std::optional<Session> session;

@@ -1,11 +1,11 @@
-#include "haptic_node/devices/selection/choice.h"
+#include "haptic_node/devices/selection/node_config.h"
 
 #include <sstream>
 
 namespace tactus::haptic {
 
-Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
-  Choice c;
+NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+  NodeConfig c;
   c.refused = sync::apply_settings(c.settings, setting_fields(), "haptic_node", scene.settings, set);
   for (std::size_t i = 0; i < scene.tools.size() && c.tool < 0; ++i)
     if (tool_name.empty() || scene.tools[i].name == tool_name) c.tool = static_cast<int>(i);

@@ -9,7 +9,7 @@
 
 namespace tactus::thermal {
 
-struct Choice {
+struct NodeConfig {
   Settings settings;
   int tool = -1;  // index in scene.tools; -1: none
   int tool_body = -1;
@@ -18,6 +18,6 @@ struct Choice {
 };
 
 // tool_name: from the command line; empty: the scene's setting, else its first tool. set: name=value.
-Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
+NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -9,7 +9,7 @@
 
 namespace tactus::haptic {
 
-struct Choice {
+struct NodeConfig {
   int tool = -1;        // index in scene.tools; -1: none, then `problem` says why
   std::string problem;  // one sentence
   Settings settings;
@@ -17,7 +17,7 @@ struct Choice {
 };
 
 // tool_name: empty takes the first tool. set: "name=value" from the command line, over what the scene says.
-Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
+NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 // What the hand is protected by, one line for the log.
 std::string limits_sentence(const Settings& settings);

@@ -1,4 +1,4 @@
-#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/node_config.h"
 
 #include <catch2/catch.hpp>
 
@@ -20,23 +20,23 @@ scene_t scene_with(std::vector<std::string> tools) {
 
 TEST_CASE("The first tool is felt unless another is named") {
   scene_t scene = scene_with({"hand", "foot"});
-  CHECK(thermal::choose(scene, "", {}).tool == 0);
-  CHECK(thermal::choose(scene, "foot", {}).tool == 1);
-  CHECK(thermal::choose(scene, "foot", {}).tool_body == 11);
+  CHECK(thermal::resolve_config(scene, "", {}).tool == 0);
+  CHECK(thermal::resolve_config(scene, "foot", {}).tool == 1);
+  CHECK(thermal::resolve_config(scene, "foot", {}).tool_body == 11);
   SECTION("by the scene, and over it by the command line") {
     setting_t s{};
     s.node = "thermal_node", s.name = "tool", s.value = "foot";
     scene.settings = {s};
-    CHECK(thermal::choose(scene, "", {}).tool == 1);
-    CHECK(thermal::choose(scene, "hand", {}).tool == 0);
+    CHECK(thermal::resolve_config(scene, "", {}).tool == 1);
+    CHECK(thermal::resolve_config(scene, "hand", {}).tool == 0);
   }
 }
 
 TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
-  const auto none = thermal::choose(scene_with({}), "", {});
+  const auto none = thermal::resolve_config(scene_with({}), "", {});
   CHECK(none.tool == -1);
   CHECK_FALSE(none.problem.empty());
-  const auto other = thermal::choose(scene_with({"hand", "foot"}), "nose", {});
+  const auto other = thermal::resolve_config(scene_with({"hand", "foot"}), "nose", {});
   CHECK(other.tool == -1);
   CHECK(other.problem.find("hand, foot") != std::string::npos);
 }
@@ -49,13 +49,13 @@ TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element. The 
     setting_t s{};
     s.node = "thermal_node", s.name = name, s.value = value;
     scene.settings = {s};
-    const auto choice = thermal::choose(scene, "", {});
+    const auto choice = thermal::resolve_config(scene, "", {});
     REQUIRE(choice.refused.size() == 1);
     CHECK(choice.refused[0].find("only tighten") != std::string::npos);
     CHECK(choice.settings.temperature_min_degC == 15);
     CHECK(choice.settings.temperature_max_degC == 42);
     CHECK(choice.settings.slew_max_K_s == 20);
-    CHECK(thermal::choose(scene_with({"hand"}), "", {name + "=" + value}).refused.empty());
+    CHECK(thermal::resolve_config(scene_with({"hand"}), "", {name + "=" + value}).refused.empty());
   }
 }
 
@@ -64,10 +64,10 @@ TEST_CASE("Settings are taken from the scene and the command line, and refused w
   setting_t s{};
   s.node = "thermal_node", s.name = "rate", s.value = "100 Hz";
   scene.settings = {s};
-  CHECK(thermal::choose(scene, "", {}).settings.rate_Hz == 100);
-  CHECK(thermal::choose(scene, "", {"rate=20"}).settings.rate_Hz == 20);
+  CHECK(thermal::resolve_config(scene, "", {}).settings.rate_Hz == 100);
+  CHECK(thermal::resolve_config(scene, "", {"rate=20"}).settings.rate_Hz == 20);
   for (const char* wrong : {"rate=5000", "rate=fast", "colour=red", "temperature_max=60", "temperature_min=-5"}) {
-    const auto choice = thermal::choose(scene, "", {wrong});
+    const auto choice = thermal::resolve_config(scene, "", {wrong});
     INFO(wrong);
     CHECK(choice.refused.size() == 1);
     CHECK(choice.settings.rate_Hz == 100);

@@ -1,9 +1,9 @@
-#include "thermal_node/devices/choice.h"
+#include "thermal_node/devices/node_config.h"
 
 namespace tactus::thermal {
 
-Choice choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
-  Choice choice;
+NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+  NodeConfig choice;
   choice.refused = sync::apply_settings(choice.settings, setting_fields(), "thermal_node", scene.settings, set);
   const std::string& wanted = tool_name.empty() ? choice.settings.tool : tool_name;
   std::string names;
