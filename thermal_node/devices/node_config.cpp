@@ -2,7 +2,7 @@
 
 namespace tactus::thermal {
 
-NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
   NodeConfig choice;
   choice.refused = sync::apply_settings(choice.settings, setting_fields(), "thermal_node", scene.settings, set);
   const std::string& wanted = tool_name.empty() ? choice.settings.tool : tool_name;

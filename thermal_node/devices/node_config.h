@@ -18,6 +18,6 @@ struct NodeConfig {
 };
 
 // tool_name: from the command line; empty: the scene's setting, else its first tool. set: name=value.
-NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
+NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -4,7 +4,7 @@
 
 namespace tactus::haptic {
 
-NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
   NodeConfig c;
   c.refused = sync::apply_settings(c.settings, setting_fields(), "haptic_node", scene.settings, set);
   for (std::size_t i = 0; i < scene.tools.size() && c.tool < 0; ++i)

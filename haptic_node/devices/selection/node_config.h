@@ -17,7 +17,7 @@ struct NodeConfig {
 };
 
 // tool_name: empty takes the first tool. set: "name=value" from the command line, over what the scene says.
-NodeConfig choose(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
+NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 // What the hand is protected by, one line for the log.
 std::string limits_sentence(const Settings& settings);

@@ -28,7 +28,7 @@ struct Fickle : Device {
 };
 
 struct Rig {
-  Rig() : choice(choose(world, "", {})), safety(safety_limits(choice.settings)) {
+  Rig() : choice(resolve_config(world, "", {})), safety(safety_limits(choice.settings)) {
     auto made = std::make_unique<Fickle>();
     device = made.get();
     session.emplace(world, choice, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
