@@ -36,7 +36,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
-      crossing_(std::make_shared<Crossing>()),
+      crossing_(std::make_shared<CallbackQueues>()),
       scrapes_(*crossing_),
       rubs_(crossing_->recorded.rubs),
       library_(crossing_->recorded),
@@ -81,7 +81,7 @@ void Output::begin_to_open(sync::HostTime now) {
 }
 
 std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
-                                             const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent) {
+                                             const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent) {
   RendererDef def;
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
@@ -140,7 +140,7 @@ void Output::close() {
 }
 
 void Output::degrade(const DropoutDef& dropout) {
-  const Orders orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
+  const RenderCommand orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
   if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
 }
 

@@ -98,12 +98,12 @@ class Output {
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
   // The stream's callback owns its share of both.
-  std::shared_ptr<Crossing> crossing_;
+  std::shared_ptr<CallbackQueues> crossing_;
   std::shared_ptr<Renderer> renderer_;
   ScrapeLine scrapes_;  // goes after the stream, whose callback reads what it keeps
   RubLine rubs_;
   Library library_;                     // as well
-  std::optional<Orders> ordered_;       // what the renderer has been told; nothing: it is new
+  std::optional<RenderCommand> ordered_;       // what the renderer has been told; nothing: it is new
   std::optional<Listener> heard_from_;  // likewise
   OpenCard open_;                       // none: a Stream
   bool silent_;
@@ -113,7 +113,7 @@ class Output {
     std::unique_ptr<Card> card;
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
-                                      const std::shared_ptr<Crossing>& crossing, const OpenCard& open, bool silent);
+                                      const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent);
   void take(Opened& opened);
   std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;

@@ -23,7 +23,7 @@ class Library {
  public:
   using Shared = std::shared_ptr<const Database>;
 
-  explicit Library(RecordedCrossing& crossing) : crossing_(crossing) {}
+  explicit Library(RecordedQueues& crossing) : crossing_(crossing) {}
 
   // Begins to read when the method needs recordings and folder, rate or size are others than before. One that
   // needs none gives back what there is.
@@ -55,7 +55,7 @@ class Library {
   void use(Shared database);
   bool tell(Shared next);
 
-  RecordedCrossing& crossing_;
+  RecordedQueues& crossing_;
   std::optional<Source> wanted_, reading_, read_;
   std::optional<sync::BackgroundTask<Database>> opening_;
   Shared now_, next_;

@@ -5,7 +5,7 @@
 
 namespace tactus::audio {
 
-void let_go_unheard(RecordedCrossing& crossing) {
+void let_go_unheard(RecordedQueues& crossing) {
   for (Rub r; crossing.rubs.pop(r);) continue;
   for (std::int64_t number; crossing.databases.pop(number);)
     crossing.let_go.store(number, std::memory_order_release);

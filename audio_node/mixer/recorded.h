@@ -17,7 +17,7 @@ namespace tactus::audio {
 inline constexpr int kTellings = 64;
 
 // What crosses between the node's loop and the callback besides strikes.
-struct RecordedCrossing {
+struct RecordedQueues {
   Spsc<Rub> rubs{kTellings * 2 * Loops::kMost};
   // Strikes and rubs that cross after one of these are of the database of that number.
   Spsc<std::int64_t> databases{16};
@@ -27,12 +27,12 @@ struct RecordedCrossing {
 };
 
 // Where no callback is and none is being made, the loop says in its place that nothing is held but the newest.
-void let_go_unheard(RecordedCrossing& crossing);
+void let_go_unheard(RecordedQueues& crossing);
 
 // Realtime-safe: yes, all but the constructor.
 class Recorded {
  public:
-  Recorded(RecordedCrossing& crossing, double rate_Hz, const Space& space = {},
+  Recorded(RecordedQueues& crossing, double rate_Hz, const Space& space = {},
            Instructions instructions = Instructions::kSse2)
       : crossing_(crossing),
         shots_(rate_Hz, space, instructions),
@@ -58,7 +58,7 @@ class Recorded {
  private:
   int take_rubs(sync::HostTime until);
 
-  RecordedCrossing& crossing_;
+  RecordedQueues& crossing_;
   Shots shots_;
   Loops loops_;
   std::optional<Rub> next_;  // taken, but not yet to be heard

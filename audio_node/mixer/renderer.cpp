@@ -52,7 +52,7 @@ sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
   return {kLate, slack, std::max(slack, limit)};
 }
 
-Renderer::Renderer(Crossing& crossing, const RendererDef& def)
+Renderer::Renderer(CallbackQueues& crossing, const RendererDef& def)
     : crossing_(crossing),
       rate_Hz_(def.rate_Hz),
       channels_(def.space.channels()),
@@ -71,7 +71,7 @@ Renderer::Renderer(Crossing& crossing, const RendererDef& def)
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
 void Renderer::take_orders() {
-  Orders orders;
+  RenderCommand orders;
   while (crossing_.orders.pop(orders)) {
     dropout_.set(orders.dropout);
     pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);

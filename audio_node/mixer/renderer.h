@@ -31,11 +31,11 @@ struct BlockTime {
 inline constexpr std::array<VoiceLimits, 3> kQualities{{{128, 1}, {64, 2}, {32, 4}}};
 
 // What the node's loop wants of the callback; the newest counts.
-struct Orders {
+struct RenderCommand {
   DropoutDef dropout;
   int quality = -1;  // step of the ladder to hold; -1: by the time that blocks take
 
-  bool operator==(const Orders&) const = default;
+  bool operator==(const RenderCommand&) const = default;
 };
 
 // What one way of making sound has cost so far.
@@ -52,15 +52,15 @@ struct Heard {
 };
 
 // What crosses between the node's loop and the callback.
-struct Crossing {
+struct CallbackQueues {
   Spsc<Strike> strikes{512};
-  Spsc<Orders> orders{16};
+  Spsc<RenderCommand> orders{16};
   Spsc<Listener> listeners{64};  // the newest counts
   Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMost};
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
-  RecordedCrossing recorded;
+  RecordedQueues recorded;
   Spsc<presentation_t> reports{4096};
   std::atomic<std::int64_t> reports_lost{0};  // which did not fit
   std::atomic<int> quality{0};                // step in use
@@ -93,7 +93,7 @@ constexpr int next_block(int frames_left) { return frames_left / ((frames_left +
 // Same strikes, same blocks, same times: the same samples to the bit.
 class Renderer {
  public:
-  Renderer(Crossing& crossing, const RendererDef& def);
+  Renderer(CallbackQueues& crossing, const RendererDef& def);
 
   // Of the samples, interleaved.
   int channels() const { return channels_; }
@@ -123,7 +123,7 @@ class Renderer {
   sync::Nanoseconds samples(int count) const;
   std::int64_t clock() const { return clock_ns_ ? clock_ns_() : 0; }
 
-  Crossing& crossing_;
+  CallbackQueues& crossing_;
   double rate_Hz_;
   int channels_;
   int delay_;  // frames from what is rendered to what leaves

@@ -17,7 +17,7 @@ class ScrapeLine {
  public:
   using Surfaces = std::shared_ptr<const HeardSurfaces>;
 
-  explicit ScrapeLine(Crossing& crossing) : crossing_(crossing) {}
+  explicit ScrapeLine(CallbackQueues& crossing) : crossing_(crossing) {}
 
   // Scrapes that are submitted from now on point into these; null: into none. Those of before are kept while the
   // callback may read them. While it stands still no more than the queue holds scrapes.
@@ -38,7 +38,7 @@ class ScrapeLine {
   };
   bool push(Scrape& scrape);
 
-  Crossing& crossing_;
+  CallbackQueues& crossing_;
   std::deque<std::int64_t> owed_;  // contacts whose end has not been told
   std::int64_t lost_ = 0;
   std::int64_t submitted_ = 0, first_ = 0;  // scrapes so far; number of the first into `now_`

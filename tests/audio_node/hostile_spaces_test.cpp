@@ -90,7 +90,7 @@ struct Stage {
   sync::BodyHistory bodies{1};
   Sliding sliding{scene, wavy_surfaces(), bodies, impacts, settings, kRate};
   Sampler sampler{scene, settings};
-  Crossing crossing;
+  CallbackQueues crossing;
   RendererDef def;
   std::unique_ptr<Renderer> renderer;
   std::vector<float> out;

@@ -256,7 +256,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   const auto [period, spatial] =
       GENERATE(std::pair(64, "hrtf"), std::pair(256, "loudspeakers"), std::pair(128, "stereo"));
   CAPTURE(period, spatial);
-  Crossing crossing;
+  CallbackQueues crossing;
   RendererDef def;
   def.period_frames = period, def.space = space_for(spatial);
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };

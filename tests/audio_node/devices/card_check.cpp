@@ -64,7 +64,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
   std::vector<MediaPair> pairs;
   std::vector<presentation_t> reports;
   std::vector<std::int64_t> scheduled_ns;
-  Crossing crossing;
+  CallbackQueues crossing;
   Renderer renderer(crossing, {.rate_Hz = kRate});
   std::int64_t callbacks = 0;
   {

@@ -161,7 +161,7 @@ TEST_CASE("Bodies sound by their shape, size, mass and material") {
 TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it cannot be heard") {
   const Impacts all = impacts();
   const auto rendered_peak = [&](const contact_event_t& e) {
-    auto crossing = std::make_unique<Crossing>();
+    auto crossing = std::make_unique<CallbackQueues>();
     auto renderer = std::make_unique<Renderer>(*crossing, RendererDef{});
     crossing->strikes.push(all.strike(e, sync::host_time(10'000'000)));
     std::vector<float> x(2 * 4800);

@@ -28,7 +28,7 @@ Strike strike_with(const Recording& r, std::int64_t database, std::int64_t at_ns
 TEST_CASE("A database is kept while a strike of it waits or sounds, and let go of when none does any more") {
   const Recording r{tone(300, 0.1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
-  RecordedCrossing& crossing = bench->crossing.recorded;
+  RecordedQueues& crossing = bench->crossing.recorded;
   REQUIRE(crossing.databases.push(1));
   bench->play(64);
   CHECK(crossing.let_go == 1);
@@ -47,7 +47,7 @@ TEST_CASE(
   Layers l;
   l.by_speed.push_back({1, 1, {{tone(400, 0.5), 0.5f, 0.35f}}});
   auto bench = std::make_unique<Bench>();
-  RecordedCrossing& crossing = bench->crossing.recorded;
+  RecordedQueues& crossing = bench->crossing.recorded;
   REQUIRE(crossing.databases.push(1));
   Rub rub;
   rub.contact = 3, rub.database = 1, rub.layers = &l, rub.speed_m_s = 1, rub.level = 0.1f;
@@ -68,7 +68,7 @@ TEST_CASE(
 TEST_CASE("A renderer that ends lets go of all") {
   const Recording r{tone(300, 1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
-  RecordedCrossing& crossing = bench->crossing.recorded;
+  RecordedQueues& crossing = bench->crossing.recorded;
   REQUIRE(crossing.databases.push(1));
   REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns)));
   bench->play(480);
@@ -83,7 +83,7 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   const SoundFolder one, two;
   one.write("oak/impact/1.wav", tone(300, 0.1));
   two.write("steel/impact/1.wav", tone(300, 0.1));
-  RecordedCrossing crossing;
+  RecordedQueues crossing;
   Recorded callback(crossing, 48000);
   const Scheduler none(1);
   Library library(crossing);
@@ -124,7 +124,7 @@ namespace {
 // A library and a callback that is called by hand, with one folder of recordings, or two by turns.
 struct Lent {
   SoundFolder one, two;
-  RecordedCrossing crossing;
+  RecordedQueues crossing;
   Recorded callback{crossing, 48000};
   Scheduler none{1};
   Library library{crossing};

@@ -212,7 +212,7 @@ TEST_CASE(
 TEST_CASE(
     "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
     "counted") {
-  auto crossing = std::make_unique<Crossing>();
+  auto crossing = std::make_unique<CallbackQueues>();
   ScrapeLine line(*crossing);
   const auto tell = [&](std::int64_t id, bool ends) {
     Scrape s;

@@ -33,7 +33,7 @@ float largest_step(const std::vector<float>& x) {
 // A tone that lasts, with drop-outs or without.
 struct Tone {
   explicit Tone(const DropoutDef& dropout) { order(dropout); }
-  void order(const DropoutDef& dropout) { REQUIRE(bench->crossing.orders.push(Orders{dropout, 0})); }
+  void order(const DropoutDef& dropout) { REQUIRE(bench->crossing.orders.push(RenderCommand{dropout, 0})); }
   void play_until(std::size_t samples) {
     while (bench->left.size() < samples) bench->play(128);
   }

@@ -189,7 +189,7 @@ TEST_CASE("A row of strikes of -12 dBFS is played as if no level were limited") 
   const auto play = [](double limit_dB) {
     RendererDef def;
     def.hearing.limit_dB = limit_dB;
-    auto crossing = std::make_unique<Crossing>();
+    auto crossing = std::make_unique<CallbackQueues>();
     auto renderer = std::make_unique<Renderer>(*crossing, def);
     for (int i = 0; i < 12; ++i)
       crossing->strikes.push(

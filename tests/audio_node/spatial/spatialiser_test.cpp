@@ -192,7 +192,7 @@ namespace {
 double first_heard_blow(const Space& space, const Eigen::Vector3f& from) {
   RendererDef def;
   def.space = space;
-  Crossing crossing;
+  CallbackQueues crossing;
   Renderer renderer(crossing, def);
   Strike strike = strike_of(1, 1, 6000, 3000, kStart_ns + 20'000'000);
   strike.sides[0].place.direction = from;

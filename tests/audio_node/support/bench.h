@@ -30,7 +30,7 @@ inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz
 }
 
 struct Bench {
-  Crossing crossing;
+  CallbackQueues crossing;
   sync::Nanoseconds used{0};  // that each block says it took
   Renderer renderer{crossing, {}};
   std::vector<float> left;

@@ -79,9 +79,9 @@ int main(int argc, char** argv) {
       def.period_frames = frames;
       def.instructions = use;
       def.space = space;
-      auto crossing = std::make_unique<Crossing>();
+      auto crossing = std::make_unique<CallbackQueues>();
       auto renderer = std::make_unique<Renderer>(*crossing, def);
-      Orders all;
+      RenderCommand all;
       all.quality = 0;
       crossing->orders.push(all);
       std::vector<float> stereo(2 * static_cast<std::size_t>(frames));

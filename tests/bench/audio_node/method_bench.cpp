@@ -151,7 +151,7 @@ class Rehearsal {
 
   scene_t scene_;
   Settings settings_;
-  std::unique_ptr<Crossing> crossing_ = std::make_unique<Crossing>();
+  std::unique_ptr<CallbackQueues> crossing_ = std::make_unique<CallbackQueues>();
   std::unique_ptr<Renderer> renderer_ = [this] {
     RendererDef def;
     def.clock_ns = clock_ns;

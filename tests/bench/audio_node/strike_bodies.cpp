@@ -71,7 +71,7 @@ void strike(const json& of, const std::string& folder) {
   options.device = "virtual", options.folder = folder;
   options.rate_Hz = static_cast<int>(settings.sample_rate_Hz), options.period_frames = static_cast<int>(settings.period_frames);
   const audio::Impacts impacts(scene_of(of), {}, settings, settings.sample_rate_Hz, 1);
-  audio::Crossing crossing;
+  audio::CallbackQueues crossing;
   auto renderer = std::make_unique<audio::Renderer>(crossing, audio::RendererDef{});
   audio::Stream stream(
       options, [&](float* out, int frames, const audio::BlockTime& time) { renderer->render(out, frames, time); });

@@ -65,7 +65,7 @@ class Sound {
   audio::Settings settings_;
   std::unique_ptr<audio::Impacts> impacts_;
   sync::Nanoseconds delay_{0};
-  audio::Crossing crossing_;
+  audio::CallbackQueues crossing_;
   std::unique_ptr<audio::Renderer> renderer_ = std::make_unique<audio::Renderer>(crossing_, audio::RendererDef{});
   sync::ContactStream stream_;
   std::map<std::int64_t, std::int64_t> due_;
