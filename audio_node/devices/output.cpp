@@ -234,7 +234,7 @@ std::string Output::costs() const {
 }
 
 std::string Output::hearing() const {
-  const Heard& heard = crossing_->heard;
+  const ExposureMeter& heard = crossing_->heard;
   const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
   std::string text = dose_in_words(days_of_sound(exposure, settings_.weekly_level_dB));
   const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));

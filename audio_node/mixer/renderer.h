@@ -45,7 +45,7 @@ struct MethodCost {
 };
 
 // What ears were given so far.
-struct Heard {
+struct ExposureMeter {
   std::atomic<double> exposure_Pa2_s{0};  // A-weighted
   std::atomic<double> gain{1};            // by which it was turned down last
   static_assert(std::atomic<double>::is_always_lock_free);
@@ -66,7 +66,7 @@ struct CallbackQueues {
   std::atomic<int> quality{0};                // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
   std::array<MethodCost, 2> costs;  // of what is computed, of what is recorded
-  Heard heard;
+  ExposureMeter heard;
 };
 
 // A sound that comes late is weaker, to nothing at the limit: the ear would take its full strength for another
