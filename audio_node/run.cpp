@@ -259,7 +259,7 @@ int tactus::audio::run(int argc, char** argv) try {
       // Nobody tells of contacts any more: they would go on for ever.
       const bool told = now - frames.count().newest_arrival < kContactsLost;
       const sync::Contacts lasting = told ? contacts.state_at(t).value : sync::Contacts{};
-      for (const audio::Rub& rub : sampler->rubs(lasting, heard_at)) output.submit(rub);
+      for (const audio::RecordedContact& rub : sampler->rubs(lasting, heard_at)) output.submit(rub);
       if (slides)
         for (audio::Scrape scrape : sliding->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at))) {
           scrape.slide *= sampler->modal_of(scrape.id, audio::Interaction::kScrape);

@@ -49,7 +49,7 @@ class Output {
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
   }
-  void submit(const Rub& rub) {
+  void submit(const RecordedContact& rub) {
     if (stream_ && !silent_) rubs_.submit(rub);
   }
   // How often contacts may be told so that all fit that wait for their sample, latency() and `lead` later.

@@ -79,7 +79,7 @@ double pulse_spectrum(double frequency_Hz, double length_s) {
   return std::abs(std::sin(pi * x) / (pi * x * (1 - x * x)));
 }
 
-Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
+SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
   const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
   const double r = p.norm();
   return {r > 1e-9 ? Eigen::Vector3f((p / r).cast<float>()) : Eigen::Vector3f::UnitX(),
@@ -211,7 +211,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
   strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
-  const Place place = place_of(listener_, point, settings_.nearest_m);
+  const SourcePosition place = place_of(listener_, point, settings_.nearest_m);
   // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
   const double n = strike.pulse[0].samples;
   const double steepest = n > 1 ? 2 / n * std::sin(pi / n) : 1;

@@ -21,7 +21,7 @@ double contact_time_s(double effective_mass_kg, double curvature_1_m, double spe
 double pulse_spectrum(double frequency_Hz, double length_s);
 
 // Where a source in the world is for a listener who looks along +x, z up; not nearer than that.
-Place place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
+SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
 
 // T_world_body of a body at the time of an event, as far as anybody has said.
 using PoseOf = std::function<std::optional<Eigen::Isometry3d>(int body)>;

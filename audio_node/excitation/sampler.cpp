@@ -122,7 +122,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
   if (!(level > 0)) return;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i]) continue;
-    Rub r;
+    RecordedContact r;
     r.contact = c.contact_id;
     r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
     r.database = number_;
@@ -143,7 +143,7 @@ void Sampler::keep_loudest() {
   constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMost);
   if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
   std::partial_sort(rubs_.begin(), rubs_.begin() + most, rubs_.end(),
-                    [](const Rub& a, const Rub& b) { return a.level > b.level; });
+                    [](const RecordedContact& a, const RecordedContact& b) { return a.level > b.level; });
   for (auto r = rubs_.begin() + most; r != rubs_.end(); ++r)
     recorded_.erase({r->contact, static_cast<Interaction>(r->part / 2)});
   rubs_.erase(rubs_.begin() + most, rubs_.end());
@@ -151,11 +151,11 @@ void Sampler::keep_loudest() {
 
 void Sampler::end_others(sync::HostTime at) {
   std::set<std::pair<std::int64_t, std::int32_t>> heard;
-  for (const Rub& r : rubs_) heard.insert({r.contact, r.part});
-  std::vector<Rub> ends;
+  for (const RecordedContact& r : rubs_) heard.insert({r.contact, r.part});
+  std::vector<RecordedContact> ends;
   for (const auto& [contact, part] : heard_) {
     if (heard.contains({contact, part})) continue;
-    Rub& end = ends.emplace_back();
+    RecordedContact& end = ends.emplace_back();
     end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
   }
   // First, to make room.
@@ -163,7 +163,7 @@ void Sampler::end_others(sync::HostTime at) {
   heard_ = std::move(heard);
 }
 
-const std::vector<Rub>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
+const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
   rubs_.clear();
   recorded_.clear();
   const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMostStep_s);

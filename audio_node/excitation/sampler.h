@@ -53,7 +53,7 @@ class Sampler {
   void record(Strike& strike, const contact_event_t& event, const Impacts& impacts);
   // What of these contacts is to be heard at `at`; each that is heard no more ends once. When the method changes
   // they fade by themselves.
-  const std::vector<Rub>& rubs(const sync::Contacts& contacts, sync::HostTime at);
+  const std::vector<RecordedContact>& rubs(const sync::Contacts& contacts, sync::HostTime at);
   // Factor on what is computed of the scraping or the rolling of a contact, as of the last rubs().
   float modal_of(std::int64_t contact, Interaction interaction) const;
 
@@ -75,7 +75,7 @@ class Sampler {
   const Database* database_ = nullptr;
   std::int64_t number_ = 0;
   double period_s_ = 0;
-  std::vector<Rub> rubs_;
+  std::vector<RecordedContact> rubs_;
   std::set<std::pair<std::int64_t, std::int32_t>> heard_;  // contacts and parts of the last rubs()
   sync::HostTime rubbed_{};                                // when the last rubs() were to be heard
   struct Moves {

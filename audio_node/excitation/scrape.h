@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 #include "audio_node/excitation/relief_levels.h"
 #include "audio_node/excitation/roughness.h"
 #include "audio_node/excitation/strike.h"
@@ -49,7 +49,7 @@ struct Scrape {
   float slide = 0, roll = 0;
   double cutoff_Hz = 0;   // of what rolls, by the patch
   double over_s = 0.001;  // until it is told anew
-  Place place;            // where it is heard from
+  SourcePosition place;            // where it is heard from
   std::array<ScrapeSide, 2> sides;
 };
 

@@ -6,7 +6,7 @@
 
 #include "audio_node/modal/bank/ring.h"
 #include "audio_node/excitation/force_pulse.h"
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 #include "audio_node/samples/shot.h"
 #include "sync/time/time.h"
 
@@ -38,7 +38,7 @@ struct StrikeSide {
   PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
   float impulse = 0;  // N s, scaled to full scale per Pa
   float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
-  Place place;        // where it is heard from
+  SourcePosition place;        // where it is heard from
 };
 
 struct Strike {

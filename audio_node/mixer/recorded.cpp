@@ -6,7 +6,7 @@
 namespace tactus::audio {
 
 void let_go_unheard(RecordedQueues& crossing) {
-  for (Rub r; crossing.rubs.pop(r);) continue;
+  for (RecordedContact r; crossing.rubs.pop(r);) continue;
   for (std::int64_t number; crossing.databases.pop(number);)
     crossing.let_go.store(number, std::memory_order_release);
 }
@@ -18,7 +18,7 @@ void Recorded::take_databases() {
   // Rubs of the databases before crossed before: those of the newest follow in a tick.
   if (next_ && next_->database >= database_) return;
   next_.reset();
-  for (Rub r; crossing_.rubs.pop(r);) {
+  for (RecordedContact r; crossing_.rubs.pop(r);) {
     if (r.database < database_) continue;
     next_ = r;
     return;
@@ -28,7 +28,7 @@ void Recorded::take_databases() {
 // They cross in the order in which they are to be heard; one that is early waits.
 int Recorded::take_rubs(sync::HostTime until) {
   int begun = 0;
-  for (Rub r; next_ || crossing_.rubs.pop(r);) {
+  for (RecordedContact r; next_ || crossing_.rubs.pop(r);) {
     if (next_) r = *std::exchange(next_, std::nullopt);
     if (r.at > until) {
       next_ = r;
@@ -58,7 +58,7 @@ void Recorded::let_go(const Scheduler& waiting) {
 
 void Recorded::abandon(const Scheduler& waiting) {
   take_databases();
-  for (Rub r; crossing_.rubs.pop(r);) continue;
+  for (RecordedContact r; crossing_.rubs.pop(r);) continue;
   next_.reset();
   shots_.clear();
   loops_.clear();

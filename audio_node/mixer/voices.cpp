@@ -79,7 +79,7 @@ int Voices::allowed(const Voice& v) const {
   return (groups + limits_.modes_of - 1) / limits_.modes_of * kModeGroup;
 }
 
-void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const Place& place) {
+void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
   v.id = id;
   v.modes = (std::clamp(resonators.count, 0, kMaxModes) + kModeGroup - 1) / kModeGroup * kModeGroup;
   v.rendered = v.kept = allowed(v);
@@ -94,7 +94,7 @@ void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const
   v.expected = v.level = 0;
 }
 
-Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, const Place& place) {
+Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
   if (Voice* known = sounding(id)) return *known;
   leave_room(limits_.voices - 1);
   Voice& fresh = free_voice();
@@ -230,7 +230,7 @@ void Voices::render(Voice& v, int frames) {
   if (!numbers) out.fill(0);
   const Eigen::Vector3f ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
   v.heard = glide(v.heard, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
-  const Place place = listener_ ? heard_by(*listener_, v.heard) : v.heard;
+  const SourcePosition place = listener_ ? heard_by(*listener_, v.heard) : v.heard;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
   const bool pushed = pushes.count > 0;

@@ -24,7 +24,7 @@ struct Drive {
   std::int64_t voice = -1;
   const Resonators* resonators = nullptr;
   const PerMode* gains = nullptr;  // at the place of the contact, as of a strike
-  Place place;
+  SourcePosition place;
   const float* force = nullptr;   // N s a sample, scaled to full scale per Pa; read until the end of that render()
   const float* direct = nullptr;  // heard beside the modes, at 1 m, likewise; null: nothing
 };
@@ -93,8 +93,8 @@ class Voices {
     std::array<Push, kDrives> drives;
     std::array<const float*, kDrives> directs;
     int driven = 0;
-    Place place;         // of the newest contact
-    Place heard;         // on its way there
+    SourcePosition place;         // of the newest contact
+    SourcePosition heard;         // on its way there
     int silent = 0;      // frames since the last of which something came
     float expected = 0;  // level that the last pulse will give
     float level = 0;  // largest sum of amplitudes of the last block; while a pulse is on, what is expected besides
@@ -109,9 +109,9 @@ class Voices {
 
   Voice* sounding(std::int64_t id);
   Voice& free_voice();
-  Voice& voice_of(std::int64_t id, const Resonators& resonators, const Place& place);
+  Voice& voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place);
   void leave_room(int at_most);
-  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const Place& place);
+  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const SourcePosition& place);
   void bring_back(Voice& voice) const;
   void cut(Voice& voice) const;
   int allowed(const Voice& voice) const;

@@ -21,7 +21,7 @@ constexpr double kLeastStep = 0.5, kMostStep = 2;
 
 }  // namespace
 
-bool Loops::take(const Rub& rub) {
+bool Loops::take(const RecordedContact& rub) {
   if (rub.ends) {
     for (Voice& v : voices_)
       if (v.on && v.ends_in < 0 && v.now.contact == rub.contact && v.now.part == rub.part)

@@ -25,7 +25,7 @@ class Loops {
   void hear_from(const Listener& listener) { listener_ = listener; }
 
   // One that is to be heard from its instant on. True when it begins. One that ends is silent kEnd_s later.
-  bool take(const Rub& rub);
+  bool take(const RecordedContact& rub);
   // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
   void render(float* mix, int frames, sync::HostTime first);
 
@@ -41,7 +41,7 @@ class Loops {
     float level = 0;  // goes to what is told
   };
   struct Voice {
-    Rub now;
+    RecordedContact now;
     bool on = false;
     int ends_in = -1;  // frames until it is silent; -1: nobody has said that it ends
     int silent = 0;    // frames since the last of which something came

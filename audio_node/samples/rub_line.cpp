@@ -10,8 +10,8 @@ constexpr std::size_t kMostOwed = 4 * Loops::kMost;
 
 }  // namespace
 
-bool RubLine::submit(const Rub& rub) {
-  std::erase_if(owed_, [&](const Rub& end) { return end.contact == rub.contact && end.part == rub.part; });
+bool RubLine::submit(const RecordedContact& rub) {
+  std::erase_if(owed_, [&](const RecordedContact& end) { return end.contact == rub.contact && end.part == rub.part; });
   tell_ends();
   if (queue_.push(rub)) return true;
   if (!rub.ends) return ++lost_, false;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 #include "audio_node/samples/layers.h"
 #include "sync/time/time.h"
 
@@ -21,11 +21,11 @@ struct Shot {
 struct RecordedStrike {
   std::int64_t database = 0;  // number of the one that they are of; 0: none are played
   std::array<Shot, 4> shots;
-  Place place;
+  SourcePosition place;
 };
 
 // A contact that scrapes or rolls, at one instant. Given anew every tick.
-struct Rub {
+struct RecordedContact {
   std::int64_t contact = 0;
   std::int32_t part = 0;  // of the same contact: another sound
   std::int64_t database = 0;
@@ -35,7 +35,7 @@ struct Rub {
   const Layers* layers = nullptr;
   double speed_m_s = 0;
   float level = 0;  // at 1 m, of a loop as it was recorded
-  Place place;
+  SourcePosition place;
 };
 
 }  // namespace tactus::audio

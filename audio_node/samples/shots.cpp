@@ -91,7 +91,7 @@ void Shots::render(Voice& v, int frames) {
     if (v.fades) s *= v.fade = std::max(0.f, v.fade - fade_step_);
     most = std::max(most, std::abs(s));
   }
-  const Place place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  const SourcePosition place = listener_ ? heard_by(*listener_, v.place) : v.place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   if (begin < frames) v.level = most / place.distance_m;
   const bool over = !sounds || v.fade <= 0;

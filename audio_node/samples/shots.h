@@ -44,7 +44,7 @@ class Shots {
     std::array<Playing, 4> shots;
     bool on = false;
     std::int64_t database = 0;
-    Place place;
+    SourcePosition place;
     int silent = 0;  // frames since the last of which something came
     int begin = 0;   // frames until it starts
     bool fades = false;

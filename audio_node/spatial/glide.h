@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 
 namespace tactus::audio {
 
@@ -31,8 +31,8 @@ inline Eigen::Vector3f around(const Eigen::Vector3f& from, const Eigen::Vector3f
 
 // The place after a step towards another one, for an ear at ear_m in the world. What is no number is left as it is
 // told. Realtime-safe: yes.
-inline Place glide(const Place& from, const Place& to, const Eigen::Vector3f& ear_m, float most_rad) {
-  Place now = to;
+inline SourcePosition glide(const SourcePosition& from, const SourcePosition& to, const Eigen::Vector3f& ear_m, float most_rad) {
+  SourcePosition now = to;
   const Eigen::Vector3f a = from.distance_m * from.direction, b = to.distance_m * to.direction;
   if (a.allFinite() && b.allFinite()) {
     const Eigen::Vector3f p = around(a, b, most_rad);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 
 namespace tactus::audio {
 
@@ -13,7 +13,7 @@ struct StereoGain {
 };
 
 // 1/r, and equal power by the azimuth.
-inline StereoGain pan(const Place& place) {
+inline StereoGain pan(const SourcePosition& place) {
   const float level = std::hypot(place.direction.x(), place.direction.y());
   const float to_left = level > 1e-6f ? place.direction.y() / level : 0;  // sine of the azimuth
   const float angle = (1 - to_left) * std::numbers::pi_v<float> / 4;

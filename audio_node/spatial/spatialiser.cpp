@@ -14,7 +14,7 @@ namespace {
 constexpr float kTurned = 0.00175f;
 
 // What has become no number is heard from ahead.
-const Place kNowhere;
+const SourcePosition kNowhere;
 
 }  // namespace
 
@@ -43,9 +43,9 @@ void Spatialiser::begin(int source) {
   for (auto* past : {&s.input, &s.heard_left, &s.heard_right}) std::fill(past->begin(), past->end(), 0.f);
 }
 
-void Spatialiser::add(int source, const Place& told, const float* mono, int frames) {
+void Spatialiser::add(int source, const SourcePosition& told, const float* mono, int frames) {
   const bool is_place = told.direction.allFinite() && told.distance_m > 0 && std::isfinite(told.distance_m);
-  const Place& place = is_place ? told : kNowhere;
+  const SourcePosition& place = is_place ? told : kNowhere;
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "audio_node/modal/bank/ring.h"
-#include "audio_node/spatial/place.h"
+#include "audio_node/spatial/source_position.h"
 #include "audio_node/spatial/delay.h"
 #include "audio_node/spatial/distance.h"
 #include "audio_node/spatial/fir.h"
@@ -42,7 +42,7 @@ class Spatialiser {
   void begin(int source);
   // The next `frames` <= kMaxBlock frames of a source, heard from there at their end. The same number for all
   // sources of a block.
-  void add(int source, const Place& place, const float* mono, int frames);
+  void add(int source, const SourcePosition& place, const float* mono, int frames);
   // Adds the block to `mix`, channels interleaved; the next block begins.
   void mix(float* mix, int frames);
 

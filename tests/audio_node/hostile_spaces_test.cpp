@@ -67,7 +67,7 @@ struct Stage {
   }
   void rub(const sync::Contacts& contacts) {
     const sync::HostTime at = now() + sync::from_seconds(0.01);
-    for (const Rub& r : sampler.rubs(contacts, at)) crossing.recorded.rubs.push(r);
+    for (const RecordedContact& r : sampler.rubs(contacts, at)) crossing.recorded.rubs.push(r);
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
       s.slide *= sampler.modal_of(s.id, Interaction::kScrape),
           s.roll *= sampler.modal_of(s.id, Interaction::kRoll);

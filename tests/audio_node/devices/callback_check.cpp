@@ -94,8 +94,8 @@ struct Recordings {
     strike.recorded.shots[0] = {&blow.by_speed[0].takes[0], 0.1f, 1.3f};
     strike.recorded.place = strike.sides[0].place;
   }
-  Rub rub(std::int64_t database, std::mt19937& random) const {
-    Rub r;
+  RecordedContact rub(std::int64_t database, std::mt19937& random) const {
+    RecordedContact r;
     r.contact = static_cast<std::int64_t>(random() % 40);
     r.database = database, r.at = sync::host_now(), r.layers = &loop;
     r.speed_m_s = 0.1 + 0.01 * static_cast<double>(random() % 50), r.level = 0.05f;

@@ -71,7 +71,7 @@ std::string note_after_telling(const Settings& settings, std::optional<sync::Nan
     if (now - told < every.value_or(output.tell_every(kLead))) continue;
     told = now;
     Scrape scrape;
-    Rub rub;
+    RecordedContact rub;
     scrape.at = rub.at = now + output.latency() + kLead;
     for (int i = 0; i < 2 * Scrapes::kMost; ++i) output.submit(scrape);
     for (int i = 0; i < 2 * Loops::kMost; ++i) output.submit(rub);

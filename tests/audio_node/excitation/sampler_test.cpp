@@ -193,7 +193,7 @@ TEST_CASE(
     "way") {
   World w(with("samples"));
   auto lasting = [&, ms = 0](const contact_t& c) mutable {
-    std::vector<Rub> rubs;
+    std::vector<RecordedContact> rubs;
     for (int i = 0; i < 100; ++i) rubs = w.sampler.rubs({c}, sync::host_time(1'000'000 * ++ms));
     return rubs;
   };
@@ -250,7 +250,7 @@ TEST_CASE("A recorded contact that ends or comes to rest ends once") {
 
 TEST_CASE("Of more contacts than can be heard at a time the loudest are played, and the others computed") {
   World w(with("samples"));
-  std::vector<Rub> rubs;
+  std::vector<RecordedContact> rubs;
   for (int ms = 1; ms < 100; ++ms) {
     sync::Contacts all;
     for (int i = 0; i < 2 * Loops::kMost; ++i) {
@@ -261,7 +261,7 @@ TEST_CASE("Of more contacts than can be heard at a time the loudest are played, 
     rubs = w.sampler.rubs(all, sync::host_time(1'000'000 * ms));
   }
   REQUIRE(rubs.size() == Loops::kMost);
-  for (const Rub& r : rubs) CHECK(r.contact >= Loops::kMost);
+  for (const RecordedContact& r : rubs) CHECK(r.contact >= Loops::kMost);
   CHECK(w.sampler.modal_of(0, Interaction::kScrape) == 1);
   CHECK(w.sampler.modal_of(2 * Loops::kMost - 1, Interaction::kScrape) == 0);
 }
@@ -274,7 +274,7 @@ TEST_CASE("Absurd events and contacts play finite sound") {
     e.approach_speed_m_s = v, e.effective_mass_kg = v;
     CAPTURE(v);
     CHECK(std::isfinite(rms_of(w.strike(e))));
-    for (const Rub& r :
+    for (const RecordedContact& r :
          w.sampler.rubs({sliding(static_cast<double>(v), static_cast<double>(v), static_cast<double>(v))}, {}))
       CHECK(std::isfinite(r.level));
   }
@@ -307,7 +307,7 @@ TEST_CASE("A contact that scrapes while the method changes fades from one way to
   auto bench = std::make_unique<Bench>();
   for (int i = 0; i < 1000; ++i) {
     w.sampler.configure(with(i / 100 % 2 ? "modal" : "samples"));
-    for (const Rub& r : w.sampler.rubs({sliding(1, 0, 8)}, sync::host_time(bench->time_ns(bench->left.size()))))
+    for (const RecordedContact& r : w.sampler.rubs({sliding(1, 0, 8)}, sync::host_time(bench->time_ns(bench->left.size()))))
       bench->crossing.recorded.rubs.push(r);
     bench->play(48);
   }

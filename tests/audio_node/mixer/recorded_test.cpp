@@ -49,7 +49,7 @@ TEST_CASE(
   auto bench = std::make_unique<Bench>();
   RecordedQueues& crossing = bench->crossing.recorded;
   REQUIRE(crossing.databases.push(1));
-  Rub rub;
+  RecordedContact rub;
   rub.contact = 3, rub.database = 1, rub.layers = &l, rub.speed_m_s = 1, rub.level = 0.1f;
   rub.at = sync::host_time(kStart_ns);
   REQUIRE(crossing.rubs.push(rub));

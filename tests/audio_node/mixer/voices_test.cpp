@@ -30,7 +30,7 @@ struct Pushed {
   }
   void play(const std::vector<float>& force, bool pushed = true) {
     for (std::size_t at = 0; at + kMaxBlock <= force.size(); at += kMaxBlock) {
-      Place place;
+      SourcePosition place;
       place.direction = Eigen::Vector3f::UnitY();
       if (pushed) voices.drive({3, &resonators, &gains, place, &force[at]});
       std::vector<float> mix(2 * kMaxBlock);
@@ -75,7 +75,7 @@ TEST_CASE("Two contacts of one body push it together") {
   const auto force = sine(1000, 4800 / kMaxBlock * kMaxBlock);
   once.play(force);
   for (std::size_t at = 0; at + kMaxBlock <= force.size(); at += kMaxBlock) {
-    Place place;
+    SourcePosition place;
     place.direction = Eigen::Vector3f::UnitY();
     for (int i = 0; i < 2; ++i) twice.voices.drive({3, &twice.resonators, &twice.gains, place, &force[at]});
     std::vector<float> mix(2 * kMaxBlock);

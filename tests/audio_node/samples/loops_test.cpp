@@ -37,11 +37,11 @@ sync::HostTime at(double samples) { return sync::host_time(kStart_ns + std::llro
 struct Sliding {
   Loops loops{kRate};
   std::vector<float> left;
-  void play(int blocks, const std::function<void(Rub&)>& tell) {
+  void play(int blocks, const std::function<void(RecordedContact&)>& tell) {
     for (int b = 0; b < blocks; ++b) {
       const sync::HostTime first = at(static_cast<double>(left.size()));
       if (tell) {
-        Rub r;
+        RecordedContact r;
         r.contact = 4, r.database = 1, r.at = first, r.level = 0.1f;
         r.place.direction = Eigen::Vector3f::UnitY();
         tell(r);
@@ -83,7 +83,7 @@ constexpr int kSecond = 48000 / kMaxBlock;
 TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, and is silent after") {
   const Layers l = layers({{1, 400}});
   Sliding s;
-  const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1; };
+  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
   s.play(2 * kSecond, tell);
   CHECK(s.loops.active() == 1);
   CHECK(s.most(24000, 96000) == Approx(0.1).epsilon(1e-3));
@@ -104,7 +104,7 @@ TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") 
   for (const auto& [speed, ratio] :
        std::vector<std::pair<double, double>>{{1, 1}, {0.6, 0.6}, {2, 2}, {9, 2}, {0.01, 0.5}}) {
     Sliding s;
-    s.play(kSecond, [&, v = speed](Rub& r) { r.layers = &l, r.speed_m_s = v; });
+    s.play(kSecond, [&, v = speed](RecordedContact& r) { r.layers = &l, r.speed_m_s = v; });
     CAPTURE(speed);
     // One sample in the whole second.
     CHECK(frequency_Hz(s.left, 4800, 48000) == Approx(400 * ratio).epsilon(2e-4));
@@ -115,7 +115,7 @@ TEST_CASE("Layers go over into each other while the speed changes, without a cli
   const Layers l = layers({{0.5, 300}, {2, 300}});
   Sliding s;
   double v = 0.3;
-  s.play(2 * kSecond, [&](Rub& r) { r.layers = &l, r.speed_m_s = v *= 1.002; });
+  s.play(2 * kSecond, [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = v *= 1.002; });
   // Two sines whose powers add up to that of one, an octave up at the most, and the levels' own slope.
   CHECK(s.steepest() <= 0.1 * std::sqrt(2) * (2 * pi * 600 / kRate + 1.0 / 240) * 1.001);
   for (std::size_t n = 4800; n + 4800 < s.left.size(); n += 4800) CHECK(s.most(n, n + 4800) > 0.01);
@@ -125,7 +125,7 @@ TEST_CASE("Level and place that jump are followed without a click, and no number
   const Layers l = layers({{1, 100}});
   Sliding s;
   int i = 0;
-  s.play(2 * kSecond, [&](Rub& r) {
+  s.play(2 * kSecond, [&](RecordedContact& r) {
     r.layers = &l, r.speed_m_s = 1, r.level = (i / 50) % 2 ? 0.1f : 0.f;
     ++i;
   });
@@ -137,8 +137,8 @@ TEST_CASE("Level and place that jump are followed without a click, and no number
 TEST_CASE("What is of another database is another sound, and the one before fades") {
   const Layers first = layers({{1, 400}}), second = layers({{1, 900}});
   Sliding s;
-  s.play(kSecond, [&](Rub& r) { r.layers = &first, r.speed_m_s = 1; });
-  s.play(kSecond, [&](Rub& r) { r.layers = &second, r.speed_m_s = 1, r.database = 2; });
+  s.play(kSecond, [&](RecordedContact& r) { r.layers = &first, r.speed_m_s = 1; });
+  s.play(kSecond, [&](RecordedContact& r) { r.layers = &second, r.speed_m_s = 1, r.database = 2; });
   CHECK(s.loops.active() == 1);
   CHECK(s.loops.oldest(7) == 2);
   CHECK(frequency_Hz(s.left, 60000, 96000) == Approx(900).epsilon(1e-3));
@@ -149,7 +149,7 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
   const Layers l = layers({{1, 400}});
   Loops loops(kRate);
   for (std::int64_t id = 0; id < 100; ++id) {
-    Rub r;
+    RecordedContact r;
     r.contact = id, r.database = 1, r.at = at(0), r.layers = &l, r.level = 0.01f, r.speed_m_s = 1;
     CHECK(loops.take(r) == (id < Loops::kMost));
   }
@@ -159,10 +159,10 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
 TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {
   const Layers l = layers({{1, 400}});
   Sliding s;
-  const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1; };
+  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
   s.play(kSecond, tell);
   const std::size_t ended = s.left.size();
-  const auto end = [](Rub& r) { r.ends = true; };
+  const auto end = [](RecordedContact& r) { r.ends = true; };
   s.play(2, end);  // told twice, it ends no later
   s.play(kSecond / 10, nullptr);
   const auto over = ended + static_cast<std::size_t>(Loops::kEnd_s * kRate);
@@ -186,7 +186,7 @@ TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
   const Layers l = layers({{1, 400}});
   Sliding s;
   for (int i = 0; i < 10; ++i) {
-    const auto tell = [&](Rub& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
+    const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
     s.play(1, tell);
     s.play(65, nullptr);  // 88 ms in all
   }

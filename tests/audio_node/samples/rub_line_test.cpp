@@ -6,10 +6,10 @@ using namespace tactus;
 using namespace tactus::audio;
 
 TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on. Lost states are counted") {
-  Spsc<Rub> queue(4);
+  Spsc<RecordedContact> queue(4);
   RubLine line(queue);
   const auto tell = [&](std::int64_t contact, std::int32_t part, bool ends) {
-    Rub r;
+    RecordedContact r;
     r.contact = contact, r.part = part, r.ends = ends;
     return line.submit(r);
   };
@@ -20,10 +20,10 @@ TEST_CASE("The end of a recorded contact waits for room, unless the contact goes
   CHECK_FALSE(tell(1, 1, true));
   CHECK_FALSE(tell(1, 1, false));  // that part goes on
   CHECK(line.lost() == 2);
-  for (Rub r; queue.pop(r);) CHECK_FALSE(r.ends);
+  for (RecordedContact r; queue.pop(r);) CHECK_FALSE(r.ends);
   line.tell_ends();
   line.tell_ends();
-  Rub end;
+  RecordedContact end;
   REQUIRE(queue.pop(end));
   CHECK(end.ends);
   CHECK(end.part == 0);

@@ -58,7 +58,7 @@ double largest_bend(const std::vector<double>& x, std::size_t from) {
   return most;
 }
 
-Place at(double azimuth_deg, float distance_m = 1) { return {towards(azimuth_deg), distance_m}; }
+SourcePosition at(double azimuth_deg, float distance_m = 1) { return {towards(azimuth_deg), distance_m}; }
 
 constexpr std::size_t kSettled = 256;  // longer than any filter and delay
 
@@ -138,7 +138,7 @@ TEST_CASE("Pressure falls as the distance grows, and the air takes the high note
 TEST_CASE("A body that rings stays where it is while the listener turns") {
   Voices voices(4, kRate, kRing, {ears(), nullptr});
   Strike strike = strike_of(1, 1, 2000, 5, 0);
-  Place& place = strike.sides[0].place;
+  SourcePosition& place = strike.sides[0].place;
   place.direction = Eigen::Vector3f::UnitY();
   place.source_m = 2 * Eigen::Vector3f::UnitY();
   place.distance_m = 2;
@@ -234,7 +234,7 @@ TEST_CASE("A place that is no number is heard from ahead") {
   const auto ahead = tone(space, 440, 4, [](int) { return at(0); });
   const bool direction = GENERATE(true, false);
   const auto heard = tone(space, 440, 4, [&](int) {
-    return direction ? Place{Eigen::Vector3f(none, 0, 0), 1} : Place{Eigen::Vector3f::UnitX(), none};
+    return direction ? SourcePosition{Eigen::Vector3f(none, 0, 0), 1} : SourcePosition{Eigen::Vector3f::UnitX(), none};
   });
   CHECK(heard.left == ahead.left);
   CHECK(heard.right == ahead.right);

@@ -96,7 +96,7 @@ class Rehearsal {
       contacts.push_back(c);
     }
     return run(seconds, kSliding * seconds, [&](double now_s, sync::HostTime at) {
-      for (const Rub& r : sampler_->rubs(contacts, at)) crossing_->recorded.rubs.push(r);
+      for (const RecordedContact& r : sampler_->rubs(contacts, at)) crossing_->recorded.rubs.push(r);
       for (const contact_t& c : contacts) {
         const float share = sampler_->modal_of(c.contact_id, Interaction::kScrape);
         if (share > 0) crossing_->scrapes.push(scrape(c, share, now_s, at));

@@ -62,7 +62,7 @@ using Round = std::function<void()>;
 Round ours(const Space& space, Instructions instructions, int sources, bool circling) {
   struct State {
     Spatialiser spatialiser;
-    std::vector<Place> places;
+    std::vector<SourcePosition> places;
     std::vector<float> sound = noise();
     std::int64_t frame = 0;
   };
@@ -76,7 +76,7 @@ Round ours(const Space& space, Instructions instructions, int sources, bool circ
       float out[2 * kMaxBlock] = {};
       for (int i = 0; i < sources; ++i) {
         const std::size_t at = static_cast<std::size_t>(s->frame + 97 * i) % (s->sound.size() - kMaxBlock);
-        Place& place = s->places[static_cast<std::size_t>(i)];
+        SourcePosition& place = s->places[static_cast<std::size_t>(i)];
         if (circling) place.direction = direction(i, sources, s->frame, true);
         s->spatialiser.add(i, place, s->sound.data() + at, kMaxBlock);
       }

@@ -8,7 +8,7 @@
 namespace tactus::audio {
 
 // In the listener's frame: x ahead, y to the left, z up.
-struct Place {
+struct SourcePosition {
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();  // unit
   float distance_m = 1;
   // Where it is in the world, so that it stays there while the listener moves; no number: nobody has said.
@@ -25,11 +25,11 @@ struct Listener {
 };
 
 // The same place for a listener who has moved. Realtime-safe: yes.
-inline Place heard_by(const Listener& listener, const Place& place) {
+inline SourcePosition heard_by(const Listener& listener, const SourcePosition& place) {
   if (!place.source_m.allFinite()) return place;
   const Eigen::Vector3f p = listener.T_W_listener.inverse() * place.source_m;
   const float r = p.norm();
-  Place now = place;
+  SourcePosition now = place;
   if (r > 1e-6f) now.direction = p / r;
   now.distance_m = std::max(r, listener.nearest_m);
   return now;
