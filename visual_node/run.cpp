@@ -30,7 +30,7 @@
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/wall_talk.h"
-#include "visual_node/gl/stage.h"
+#include "visual_node/gl/render_output.h"
 #include "visual_node/offline.h"
 #include "visual_node/overlay/live_desk.h"
 #include "visual_node/scene_view/meshes.h"
@@ -89,7 +89,7 @@ int tactus::visual::run(int argc, char** argv) try {
     offline->run().adapt(options);
   }
   const auto clock = [&] { return offline ? offline->now() : sync::host_now(); };
-  visual::Stage stage = no_pictures ? visual::Stage(settings) : visual::Stage(settings, window);
+  visual::RenderOutput stage = no_pictures ? visual::RenderOutput(settings) : visual::RenderOutput(settings, window);
   std::cerr << declaration.node << ": " << stage.description() << std::endl;
 
   sync::Node node(declaration, options);

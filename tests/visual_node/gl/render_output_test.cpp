@@ -1,6 +1,6 @@
 // What becomes of the picture when the device that draws it is lost. The loss is injected: a display whose context
 // works, and which says that it does not.
-#include "visual_node/gl/stage.h"
+#include "visual_node/gl/render_output.h"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
@@ -43,7 +43,7 @@ struct Fragile {
       return std::make_unique<Borrowed>(trouble, window);
     };
   }
-  std::vector<std::uint8_t> picture(Stage& stage) {
+  std::vector<std::uint8_t> picture(RenderOutput& stage) {
     stage.draw_scene(list, {});
     stage.draw_over(list);
     std::vector<std::uint8_t> rgba(
@@ -57,7 +57,7 @@ struct Fragile {
 
 TEST_CASE("A device that was lost is opened again, and draws what was loaded as before") {
   Fragile f;
-  Stage stage(f.settings, false, f.make());
+  RenderOutput stage(f.settings, false, f.make());
   stage.load(f.view, f.list, f.settings);
   const auto before = f.picture(stage);
   REQUIRE(*std::max_element(before.begin(), before.end()) > 0);
@@ -73,7 +73,7 @@ TEST_CASE("A device that was lost is opened again, and draws what was loaded as 
 
 TEST_CASE("A device that is lost before there is a scene is opened again too") {
   Fragile f;
-  Stage stage(f.settings, false, f.make());
+  RenderOutput stage(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
   CHECK_FALSE(stage.recover(at_s(2), nullptr, {}).empty());
   CHECK(stage.picture().width() == f.settings.width);
@@ -81,7 +81,7 @@ TEST_CASE("A device that is lost before there is a scene is opened again too") {
 
 TEST_CASE("A window whose display server is gone is not opened again: its node draws on without it") {
   Fragile f;
-  Stage stage(f.settings, true, f.make());
+  RenderOutput stage(f.settings, true, f.make());
   REQUIRE(stage.display().has_screen());
   f.trouble = "the display server of the window is gone";
   CHECK_THAT(stage.recover(at_s(1), nullptr, {}),
@@ -92,14 +92,14 @@ TEST_CASE("A window whose display server is gone is not opened again: its node d
 TEST_CASE(
     "A device that is lost again and again is given up in one sentence, one that is lost now and then is not") {
   Fragile f;
-  Stage stage(f.settings, false, f.make());
+  RenderOutput stage(f.settings, false, f.make());
   double now_s = 0;
   for (int i = 0; i < 20; ++i) {
     f.trouble = "the graphics device was reset";
     CHECK_FALSE(stage.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
   }
   now_s += 1000;
-  for (std::size_t i = 0; i < Stage::kMostLosses; ++i) {
+  for (std::size_t i = 0; i < RenderOutput::kMostLosses; ++i) {
     f.trouble = "the graphics device was reset";
     CHECK_FALSE(stage.recover(at_s(now_s += 1), nullptr, {}).empty());
   }
@@ -110,7 +110,7 @@ TEST_CASE(
 TEST_CASE("A device that cannot be opened again ends the node with why, and with what was tried") {
   Fragile f;
   f.may_open = 1;
-  Stage stage(f.settings, false, f.make());
+  RenderOutput stage(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
   CHECK_THROWS_WITH(stage.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
                                                              Catch::Contains("cannot be opened again") &&

@@ -1,4 +1,4 @@
-#include "visual_node/gl/stage.h"
+#include "visual_node/gl/render_output.h"
 
 #include <stdexcept>
 #include <utility>
@@ -14,22 +14,22 @@ std::unique_ptr<Display> make_display(const Settings& s, bool window) {
   return window ? make_window("Tactus", options) : make_headless(s.egl_device);
 }
 
-Stage::Stage(const Settings& s, bool window, MakeDisplay make)
+RenderOutput::RenderOutput(const Settings& s, bool window, MakeDisplay make)
     : settings_(s), window_(window), make_(std::move(make)), quality_(s), loop_rate_Hz_(s.rate_Hz) {
   quiet_software_renderer();
   open();
 }
 
-Stage::Stage(const Settings& s) : settings_(s), window_(false), quality_(s), loop_rate_Hz_(s.rate_Hz) {}
+RenderOutput::RenderOutput(const Settings& s) : settings_(s), window_(false), quality_(s), loop_rate_Hz_(s.rate_Hz) {}
 
-void Stage::open() {
+void RenderOutput::open() {
   display_ = make_(settings_, window_);
   if (!display_) throw std::runtime_error("nothing to draw on");
   renderer_ = std::make_unique<Renderer>(settings_.width / 4 * 4, settings_.height / 4 * 4, settings_.shadow_size);
   unfinished_ = 0;
 }
 
-std::string Stage::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
+std::string RenderOutput::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
   if (!draws()) return {};
   std::string why = display_->lost();
   const bool hangs = unfinished_ >= kMostUnfinished;
@@ -54,7 +54,7 @@ std::string Stage::recover(sync::HostTime now, const SceneView* view, const Draw
   return why + ": draws on, with " + description();
 }
 
-void Stage::load(const SceneView& view, const DrawList& sample, const Settings& s,
+void RenderOutput::load(const SceneView& view, const DrawList& sample, const Settings& s,
                  const std::function<void()>& meanwhile) {
   settings_ = s;
   if (draws()) {
@@ -70,7 +70,7 @@ void Stage::load(const SceneView& view, const DrawList& sample, const Settings& 
   halves_ = s.stereo == "quad_buffer";
 }
 
-void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
+void RenderOutput::draw_scene(const DrawList& list, const sync::OutputDef& output) {
   if (!draws()) return;
   if (shaders_)
     if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
@@ -79,13 +79,13 @@ void Stage::draw_scene(const DrawList& list, const sync::OutputDef& output) {
   finish();
 }
 
-void Stage::draw_over(const DrawList& list) {
+void RenderOutput::draw_over(const DrawList& list) {
   if (!draws()) return;
   renderer_->draw_over(list);
   finish();
 }
 
-void Stage::show() {
+void RenderOutput::show() {
   if (!draws()) return;
   display_->show(picture().framebuffer(), picture().width(), picture().height(), halves_);
   finish();

@@ -20,7 +20,7 @@ namespace tactus::visual {
 using MakeDisplay = std::function<std::unique_ptr<Display>(const Settings& settings, bool window)>;
 std::unique_ptr<Display> make_display(const Settings& settings, bool window);
 
-class Stage {
+class RenderOutput {
  public:
   // What is lost more often than so many times in so long is given up.
   static constexpr std::size_t kMostLosses = 3;
@@ -29,9 +29,9 @@ class Stage {
   static constexpr int kMostUnfinished = 3;
 
   // Throws std::runtime_error with one sentence when nothing can be drawn on.
-  Stage(const Settings& settings, bool window, MakeDisplay make = make_display);
+  RenderOutput(const Settings& settings, bool window, MakeDisplay make = make_display);
   // One that draws nothing, in no time: all else is as if it did.
-  explicit Stage(const Settings& settings);
+  explicit RenderOutput(const Settings& settings);
 
   bool draws() const { return renderer_ != nullptr; }
   std::string description() const { return display_ ? display_->description() : "draws no pictures"; }
