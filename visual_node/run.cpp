@@ -29,7 +29,7 @@
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/frame/frame_lock.h"
 #include "visual_node/frame/frame_times.h"
-#include "visual_node/frame/wall_talk.h"
+#include "visual_node/frame/wall_sync.h"
 #include "visual_node/gl/render_output.h"
 #include "visual_node/offline.h"
 #include "visual_node/overlay/live_desk.h"
@@ -102,7 +102,7 @@ int tactus::visual::run(int argc, char** argv) try {
   visual::FrameComposer composer(node.bus().clocks(), settings, declaration.late);
   composer.set_schedule([&](std::int64_t event, sync::HostTime happened) { return sense.schedule(event, happened); });
   visual::FrameLock lock(node.bus().clocks(), declaration.modality, node.bus().identity().incarnation);
-  visual::WallTalk walls(node, lock);
+  visual::WallSync walls(node, lock);
   if (offline) {
     composer.foresee({}, {});
     sense.tell([&](const presentation_t& report) { offline->run().note(declaration.modality, report); });

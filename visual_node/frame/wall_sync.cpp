@@ -1,4 +1,4 @@
-#include "visual_node/frame/wall_talk.h"
+#include "visual_node/frame/wall_sync.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ constexpr sync::Nanoseconds kCatchUp{10'000'000};
 
 }  // namespace
 
-WallTalk::WallTalk(sync::Node& node, FrameLock& lock)
+WallSync::WallSync(sync::Node& node, FrameLock& lock)
     : node_(node),
       lock_(lock),
       world_(node.bus().queue<world_state_t>(channels::kWorldState, 4096)),
@@ -22,7 +22,7 @@ WallTalk::WallTalk(sync::Node& node, FrameLock& lock)
       playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
       walls_(node.bus().queue<frame_shown_t>(channels::kFrameShown, 256)) {}
 
-void WallTalk::receive() {
+void WallSync::receive() {
   const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = world_.pop()) lock_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) lock_.push(m->message, m->arrival);
@@ -32,7 +32,7 @@ void WallTalk::receive() {
     if (ours(m->message.header)) lock_.push(m->message, m->arrival);
 }
 
-void WallTalk::catch_up(const std::function<void(sync::HostTime)>& meanwhile) {
+void WallSync::catch_up(const std::function<void(sync::HostTime)>& meanwhile) {
   sync::HostTime now = node_.poll();
   meanwhile(now);
   const bool held_up = now - last_ > 2 * lock_.period();
@@ -44,11 +44,11 @@ void WallTalk::catch_up(const std::function<void(sync::HostTime)>& meanwhile) {
   last_ = now;
 }
 
-void WallTalk::wait_for_latch(const AgreedFrame& frame) const {
+void WallSync::wait_for_latch(const AgreedFrame& frame) const {
   sync::sleep_until(std::min(lock_.latch_at(frame), sync::host_now() + lock_.period()));
 }
 
-void WallTalk::hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
+void WallSync::hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
   const sync::HostTime ready = sync::host_now();
   if (lock_.waits()) {
     tell(frame, frame_shown_t::READY);
@@ -62,7 +62,7 @@ void WallTalk::hold(const AgreedFrame& frame, const std::function<void(sync::Hos
   lock_.shown(frame, sync::host_now());
 }
 
-void WallTalk::tell(const AgreedFrame& frame, std::int8_t stage) {
+void WallSync::tell(const AgreedFrame& frame, std::int8_t stage) {
   frame_shown_t m = lock_.message(frame, stage);
   node_.bus().publish(channels::kFrameShown, m);
 }

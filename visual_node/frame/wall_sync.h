@@ -10,10 +10,10 @@
 
 namespace tactus::visual {
 
-class WallTalk {
+class WallSync {
  public:
   // Make it before the first tick.
-  WallTalk(sync::Node& node, FrameLock& lock);
+  WallSync(sync::Node& node, FrameLock& lock);
 
   // What has arrived: the clock of the simulation, the head, the delay that is asked for, and what other walls
   // have drawn.
