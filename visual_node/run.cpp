@@ -32,7 +32,7 @@
 #include "visual_node/frame/wall_sync.h"
 #include "visual_node/gl/render_output.h"
 #include "visual_node/offline.h"
-#include "visual_node/overlay/live_desk.h"
+#include "visual_node/overlay/window_controls.h"
 #include "visual_node/scene_view/meshes.h"
 #include "visual_node/video/picture_stream.h"
 #include "visual_node/video/recording.h"
@@ -110,7 +110,7 @@ int tactus::visual::run(int argc, char** argv) try {
   visual::Recording recording(keep);
   visual::PictureStream stream;
   visual::LiveOverlays overlays(node.bus());
-  visual::LiveDesk desk(node.bus());
+  visual::WindowControls desk(node.bus());
   visual::LiveQuestions questions(node.bus());
   questions.configure(settings);
   sync::LiveSettings live(node);

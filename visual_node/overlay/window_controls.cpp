@@ -1,10 +1,10 @@
-#include "visual_node/overlay/live_desk.h"
+#include "visual_node/overlay/window_controls.h"
 
 #include "sync/bus/request_reply.h"
 
 namespace tactus::visual {
 
-void LiveDesk::heed(const Wish& wish, Display& display, LiveOverlays& overlays) {
+void WindowControls::heed(const Wish& wish, Display& display, LiveOverlays& overlays) {
   switch (wish.act) {
     case Act::kOverlay: return overlays.toggle(wish.overlay);
     case Act::kFullScreen: return display.toggle_full_screen();
@@ -13,7 +13,7 @@ void LiveDesk::heed(const Wish& wish, Display& display, LiveOverlays& overlays) 
   }
 }
 
-void LiveDesk::step(sync::HostTime now, Display& display, LiveOverlays& overlays, LiveQuestions& questions,
+void WindowControls::step(sync::HostTime now, Display& display, LiveOverlays& overlays, LiveQuestions& questions,
                     const DrawList& list, std::span<const Triangles> geometries, const Say& say) {
   if (!display.has_screen()) return;
   if (!replies_) replies_ = &bus_.queue<sim_reply_t>(channels::kSimReply, 64);

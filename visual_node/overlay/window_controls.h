@@ -12,10 +12,10 @@
 
 namespace tactus::visual {
 
-class LiveDesk {
+class WindowControls {
  public:
   using Say = std::function<void(const std::string&)>;
-  explicit LiveDesk(sync::Bus& bus) : bus_(bus) {}
+  explicit WindowControls(sync::Bus& bus) : bus_(bus) {}
 
   void push(const world_state_t& m) { wishes_.push(m); }
   // Once a tick. list, geometries: of the picture that is shown; say: hears one sentence on each thing worth one.
