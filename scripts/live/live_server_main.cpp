@@ -18,7 +18,7 @@
 #include "scripts/live/controls.h"
 #include "scripts/live/log_player.h"
 #include "scripts/live/sliders.h"
-#include "scripts/live/station.h"
+#include "scripts/live/page_session.h"
 #include "scripts/live/web_server.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
@@ -69,7 +69,7 @@ std::int64_t realtime_ns() {
 // What is served, with the pages that look on.
 class Server {
  public:
-  Server(const Options& o, live::Station& station)
+  Server(const Options& o, live::PageSession& station)
       : station_(station),
         web_(o.listen_fd >= 0 ? o.listen_fd : live::listen_on(o.bind, o.http_port),
              {{"/", read_file(o.page, "index.html", "text/html; charset=utf-8")},
@@ -113,7 +113,7 @@ class Server {
       for (const int page : pages_) web_.send_picture(page, bytes);
     }
     if (sync::host_now() < next_frame_) return false;
-    next_frame_ = sync::host_now() + live::Station::kFrame;
+    next_frame_ = sync::host_now() + live::PageSession::kFrame;
     std::int64_t dropped = 0;
     for (const int page : pages_)
       if (const auto* q = web_.queue(page)) dropped += q->dropped() + q->dropped_pictures();
@@ -128,7 +128,7 @@ class Server {
   bool anybody() const { return !pages_.empty(); }
 
  private:
-  live::Station& station_;
+  live::PageSession& station_;
   std::vector<int> opened_;
   std::vector<std::pair<int, std::string>> messages_;
   std::set<int> pages_;
@@ -138,7 +138,7 @@ class Server {
 
 void show_log(const Options& o) {
   live::LogPlayer player(o.log);
-  live::Station station(false, 0, std::filesystem::path(o.log).filename());
+  live::PageSession station(false, 0, std::filesystem::path(o.log).filename());
   Server server(o, station);
   sync::HostTime last = sync::host_now();
   bool wound = false;  // and no page knows it yet
@@ -178,7 +178,7 @@ nlohmann::json scene_of(const scene_t& scene) {
 void show_cluster(const Options& o) {
   sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
   bus.follow_clocks();
-  live::Station station(true, o.run_id, "live");
+  live::PageSession station(true, o.run_id, "live");
   Server server(o, station);
   live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.tell(sentence, good); });
   std::vector<std::pair<std::string, sync::RawQueue*>> inputs;

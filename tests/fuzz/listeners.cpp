@@ -2,7 +2,7 @@
 // spy, the live page, and what puts pages and pieces together again.
 #include <cstdlib>
 
-#include "scripts/live/station.h"
+#include "scripts/live/page_session.h"
 #include "sync/tools/channel_table.h"
 #include "sync/resampling/contact_stream.h"
 #include "sync/log/export_events.h"
@@ -35,7 +35,7 @@ struct Listeners {
   TagTable tags;
   spy::Channels channels{{kRun, 4711, nullptr}};
   spy::Screen screen;
-  live::Station station{false, kRun, "log"};
+  live::PageSession station{false, kRun, "log"};
   ContactStream contacts{{kRun, 4711, nullptr}};
   PictureReader pictures;
   Bus bus{Identity{"fuzz", 1, 1, kRun, 4711}, BusOptions{.memory = true}};

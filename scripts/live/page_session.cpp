@@ -1,4 +1,4 @@
-#include "scripts/live/station.h"
+#include "scripts/live/page_session.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -23,9 +23,9 @@ constexpr std::size_t kMostTags = 4096;                 // in the list of a page
 
 }  // namespace
 
-Station::Station(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
+PageSession::PageSession(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
-bool Station::wants(std::string_view channel) const {
+bool PageSession::wants(std::string_view channel) const {
   // Also while no page is there: what was answered is repeated for who leads a study.
   if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
@@ -35,7 +35,7 @@ bool Station::wants(std::string_view channel) const {
   return std::any_of(watches_.begin(), watches_.end(), [&](const auto& w) { return w.second.wants(channel); });
 }
 
-void Station::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+void PageSession::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
   feed_.take(channel, bytes, arrival);
   for (auto& [page, w] : watches_) w.take(channel, bytes, arrival);
   if (channel == channels::kQuestion) {
@@ -64,19 +64,19 @@ void Station::take(std::string_view channel, std::span<const std::uint8_t> bytes
   }
 }
 
-void Station::clear() {
+void PageSession::clear() {
   feed_.clear();
   answers_.clear();
   picture_.reset();
 }
 
-json Station::study(sync::HostTime now) const {
+json PageSession::study(sync::HostTime now) const {
   json out = answers_.told(now);
   if (const auto leader = answers_.leader(now)) out["leader"] = sync::printable(feed_.node_of(*leader));
   return out;
 }
 
-json Station::tag_list() const {
+json PageSession::tag_list() const {
   json out = json::array();
   std::map<std::string, std::pair<std::string, std::int64_t>> newest;  // name: unit, and when it was heard
   for (const auto& [key, list] : tags_.lists())
@@ -90,7 +90,7 @@ json Station::tag_list() const {
   return out;
 }
 
-std::string Station::hello(sync::HostTime now) const {
+std::string PageSession::hello(sync::HostTime now) const {
   json thresholds = json::array();
   for (const sync::Threshold& t : sync::published_thresholds())
     thresholds.push_back({{"earlier", t.earlier}, {"later", t.later}, {"ms", sync::to_seconds(t.at) * 1e3},
@@ -101,7 +101,7 @@ std::string Station::hello(sync::HostTime now) const {
   return dump(out);
 }
 
-std::map<int, std::string> Station::frames(sync::HostTime now, const json& extra) {
+std::map<int, std::string> PageSession::frames(sync::HostTime now, const json& extra) {
   json all = feed_.news(now);
   all["t"] = "frame";
   all["now"] = sync::to_seconds(now.time_since_epoch());
@@ -120,9 +120,9 @@ std::map<int, std::string> Station::frames(sync::HostTime now, const json& extra
   return out;
 }
 
-std::optional<std::string> Station::picture() { return std::exchange(picture_, std::nullopt); }
+std::optional<std::string> PageSession::picture() { return std::exchange(picture_, std::nullopt); }
 
-std::vector<std::string> Station::wanted_tags() const {
+std::vector<std::string> PageSession::wanted_tags() const {
   std::set<std::string> names;
   for (const auto& [page, w] : watches_)
     for (const std::string& name : w.tags()) names.insert(name);

@@ -21,12 +21,12 @@
 
 namespace tactus::live {
 
-class Station {
+class PageSession {
  public:
   static constexpr sync::Nanoseconds kFrame{50'000'000};  // design: 20 a second look smooth
 
   // live: false when a log is shown. run_id: as of Feed.
-  Station(bool live, std::int64_t run_id, std::string title);
+  PageSession(bool live, std::int64_t run_id, std::string title);
 
   void open(int page) { watches_[page]; }
   void close(int page) { watches_.erase(page); }
