@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "lcmtypes/near_names.h"
+#include "lcmtypes/spelling_suggestions.h"
 
 namespace tactus {
 namespace {
@@ -153,7 +153,7 @@ struct Visit {
   std::vector<std::string> names;
   for (const Field& f : type.fields) names.emplace_back(f.name);
   throw std::invalid_argument(std::string(type.name) + " has no field \"" + std::string(name.substr(0, 64)) +
-                              "\"; nearest: " + near_names(name, names));
+                              "\"; nearest: " + spelling_suggestions(name, names));
 }
 
 }  // namespace

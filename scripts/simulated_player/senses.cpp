@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::participant {
 namespace {

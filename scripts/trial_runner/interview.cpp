@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/valid.h"
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::conductor {
 

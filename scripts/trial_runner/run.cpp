@@ -33,7 +33,7 @@
 #include "scripts/trial_runner/lines.h"
 #include "scripts/trial_runner/observations.h"
 #include "scripts/trial_runner/orders.h"
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 #include "sync/bus/identity.h"
 #include "sync/node/node.h"
 #include "sync/clocks/sim_clock_tracker.h"

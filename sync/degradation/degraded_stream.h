@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 #include "sync/degradation/snapshot.h"
 #include "sync/degradation/operator_chain.h"
 

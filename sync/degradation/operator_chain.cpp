@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 #include "sync/degradation/quantise.h"
 #include "sync/bus/identity.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lcmtypes/vectors.h"
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/channels.h"
-#include "lcmtypes/near_names.h"
+#include "lcmtypes/spelling_suggestions.h"
 
 namespace tactus::sync {
 namespace {
@@ -70,7 +70,7 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
   if (rule.channel.empty())
     throw std::invalid_argument("a <pass> needs a channel, for example channel=\"CONTACT_EVENTS\"");
   if (!holds(known, rule.channel)) {
-    const std::string near = near_names(rule.channel, known);
+    const std::string near = spelling_suggestions(rule.channel, known);
     throw std::invalid_argument("there is no channel " + rule.channel +
                                 (near.empty() ? "" : "; did you mean " + near + "?"));
   }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 #include "sync/virtual_time/stack_switch.h"
 
 namespace tactus::sync {

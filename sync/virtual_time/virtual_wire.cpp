@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lcmtypes/near_names.h"
+#include "lcmtypes/spelling_suggestions.h"
 
 namespace tactus::visual {
 
@@ -24,7 +24,7 @@ OverlaySet parse_overlays(std::string_view text) {
         set.set(static_cast<Overlay>(i), kOverlayNames[i] != "help");
     } else if (word != "none") {
       throw std::invalid_argument("there is no overlay \"" + std::string(word.substr(0, 40)) + "\"; nearest: " +
-                                  near_names(word, {kOverlayNames.begin(), kOverlayNames.end()}));
+                                  spelling_suggestions(word, {kOverlayNames.begin(), kOverlayNames.end()}));
     }
   }
 }

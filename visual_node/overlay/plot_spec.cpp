@@ -3,7 +3,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "lcmtypes/near_names.h"
+#include "lcmtypes/spelling_suggestions.h"
 #include "sync/bus/identity.h"
 #include "sync/text/printable.h"
 
@@ -32,7 +32,7 @@ const MessageType& type_of(std::string_view channel, std::string_view text) {
   std::vector<std::string> names;
   for (const Channel& c : channel_types()) names.emplace_back(c.name);
   refuse(text, "there is no channel \"" + sync::printable(std::string(channel.substr(0, 40))) +
-                   "\"; nearest: " + near_names(channel, names));
+                   "\"; nearest: " + spelling_suggestions(channel, names));
 }
 
 void add_filter(PlotSpec& spec, const MessageType& type, std::string_view filter, std::string_view text) {

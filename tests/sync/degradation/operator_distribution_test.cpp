@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "sync/resampling/contact_stream.h"
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 #include "sync/degradation/degraded_stream.h"
 #include "sync/bus/identity.h"
 

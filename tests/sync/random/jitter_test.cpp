@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 using namespace tactus::sync;
 

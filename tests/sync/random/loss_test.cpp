@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 using namespace tactus::sync;
 

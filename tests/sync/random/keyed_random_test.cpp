@@ -1,4 +1,4 @@
-#include "sync/random/chance.h"
+#include "sync/random/keyed_random.h"
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "lcmtypes/near_names.h"
+#include "lcmtypes/spelling_suggestions.h"
 
 #include <algorithm>
 #include <numeric>
@@ -25,7 +25,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string near_names(std::string_view written, const std::vector<std::string>& names) {
+std::string spelling_suggestions(std::string_view written, const std::vector<std::string>& names) {
   written = written.substr(0, kLongest);
   std::vector<std::pair<std::size_t, std::string_view>> near;
   for (const std::string& name : names) {
