@@ -7,7 +7,7 @@
 namespace tactus {
 namespace {
 
-constexpr std::size_t kMost = 5;
+constexpr std::size_t kMax = 5;
 constexpr std::size_t kLongest = 64;  // of what is compared: names are no longer
 
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -33,7 +33,7 @@ std::string spelling_suggestions(std::string_view written, const std::vector<std
     near.emplace_back(holds ? 0 : distance(written, std::string_view(name).substr(0, kLongest)), name);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  near.resize(std::min(near.size(), kMost));
+  near.resize(std::min(near.size(), kMax));
   std::string text;
   for (std::size_t i = 0; i < near.size(); ++i)
     text += (i == 0 ? "" : i + 1 == near.size() ? " or " : ", ") + std::string(near[i].second);

@@ -16,7 +16,7 @@ using tactus::sane;  // of plausible.h, beside those of here
 // A minute: what is presented later than that is another event.
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
 constexpr long kMaxDelay_ns = 60'000'000'000;
-constexpr double kMostPush = 1e6;  // N or N m: beyond it nothing of a room withstands
+constexpr double kMaxPush = 1e6;  // N or N m: beyond it nothing of a room withstands
 // No simulation runs faster: at this rate a second of it lies between two pictures.
 constexpr double kMaxSimRate = 100;
 
@@ -276,7 +276,7 @@ bool valid(const tag_values_t& m) {
 }
 bool valid(const sim_command_t& m) {
   const auto within = [](const vec3_t& v) {
-    return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMostPush;
+    return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMaxPush;
   };
   return sane(m.header) && m.id > 0 && between(m.kind, sim_command_t::PAUSE, sim_command_t::RESTORE) &&
          between(m.steps, 0, 1'000'000) && (m.name.empty() || name(m.name)) && m.property.size() <= 32 &&

@@ -12,7 +12,7 @@ constexpr double kBandwidth_Hz = 0.5;  // slow against the jitter of the calls, 
 constexpr double kOutlier_s = 0.001;   // a thread that was put aside between PortAudio's two readings
 constexpr int kOutliersToReseed = 8;
 constexpr double kForget = 0.01;  // of the residual, per block
-constexpr double kMostLatency_s = 1;
+constexpr double kMaxLatency_s = 1;
 // PortAudio reads its clock shortly before the callback; that time is in the calibration. 20 us at most on a
 // machine that is not stalled.
 constexpr double kCalibration_s = 20e-6;
@@ -22,7 +22,7 @@ constexpr double kCalibration_s = 20e-6;
 double DacClock::offset_s(const CallbackTime& t) {
   const double now = sync::to_seconds(t.now - base_), offset = now - t.current_s;
   const double best = std::min(minimum_s_, older_minimum_s_);
-  const bool jumped = calibrated_ && std::abs(offset - best) > kMostLatency_s;
+  const bool jumped = calibrated_ && std::abs(offset - best) > kMaxLatency_s;
   // A callback may be late, but not so many in a row: PortAudio's clock has gone back, which no minimum sees.
   late_minimum_s_ = late_ > 0 ? std::min(late_minimum_s_, offset) : offset;
   late_ = offset - best > kOutlier_s ? late_ + 1 : 0;
@@ -52,7 +52,7 @@ void DacClock::seed(double raw_s) {
 DacClock::Estimate DacClock::block(int frames, const CallbackTime& t, double latency_s) {
   if (!based_) base_ = t.now, based_ = true;
   const double ahead = t.dac_s - t.current_s;
-  const bool plausible = t.current_s != 0 && ahead > 0 && ahead < kMostLatency_s;
+  const bool plausible = t.current_s != 0 && ahead > 0 && ahead < kMaxLatency_s;
   const double raw = plausible ? t.dac_s + offset_s(t) : sync::to_seconds(t.now - base_) + latency_s;
 
   if (reseeds_ == 0 || t.underflow) seed(raw);

@@ -15,7 +15,7 @@ constexpr sync::Nanoseconds kPatience{5'000'000'000};
 
 // One until the callback's turn comes, one more that a card of normal priority is given.
 constexpr int kCallbackPeriods = 2;
-constexpr std::size_t kMostUnsounded = 1024;
+constexpr std::size_t kMaxUnsounded = 1024;
 
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
@@ -154,7 +154,7 @@ void Output::submit(const Strike& strike) {
 }
 
 void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
-  if (unsounded_.size() >= kMostUnsounded) {
+  if (unsounded_.size() >= kMaxUnsounded) {
     ++reports_lost_;
     return;
   }
@@ -169,7 +169,7 @@ void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
 
 sync::Nanoseconds Output::latency() const {
   const double periods = settings_.latency_periods + kCallbackPeriods;
-  const int ears = settings_.spatial == "hrtf" ? kMostEarsLatency : 0;
+  const int ears = settings_.spatial == "hrtf" ? kMaxEarsLatency : 0;
   return sync::from_seconds((periods * settings_.period_frames + ears + Limiter::kDelay) /
                             settings_.sample_rate_Hz);
 }

@@ -14,11 +14,11 @@ namespace tactus::audio {
 
 class DueHits {
  public:
-  static constexpr std::size_t kMost = 1024;  // design: half a second of work, and no flood makes it more
+  static constexpr std::size_t kMax = 1024;  // design: half a second of work, and no flood makes it more
 
   // False when there are too many already: it is not kept.
   bool push(const contact_event_t& event, sync::HostTime scheduled) {
-    if (hits_.size() >= kMost) return false;
+    if (hits_.size() >= kMax) return false;
     hits_.emplace(scheduled, event);
     return true;
   }

@@ -12,13 +12,13 @@ namespace tactus::audio {
 namespace {
 
 // Of a blow: louder than its recording by 12 dB at most, as computed ones are above the reference (design).
-constexpr double kMostLevel = 4;
+constexpr double kMaxLevel = 4;
 // An octave either way; beyond it a recording sounds of another material (design).
-constexpr double kLeastPitch = 0.5, kMostPitch = 2;
+constexpr double kLeastPitch = 0.5, kMaxPitch = 2;
 // As for scrapes: below, nothing slides or rolls; beyond, nothing becomes louder or faster (design).
-constexpr double kLeastSpeed_m_s = 1e-3, kMostSpeed_m_s = 5, kMostForce_N = 50;
+constexpr double kLeastSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 // Between two looks at contacts; more is a gap (design).
-constexpr double kMostStep_s = 0.1;
+constexpr double kMaxStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
 
 // That of a pair: a ball on a floor, a hand on a bar are told by the smaller of the two (design).
@@ -38,11 +38,11 @@ MethodGains gains_of(const Settings& s) {
 
 double level_of(double impulse_N_s, const Settings& s) {
   const double relative = std::max(impulse_N_s, 0.0) / s.recorded_impulse_Ns;
-  return s.gain * s.recorded_level * std::min(kMostLevel, std::pow(relative, s.loudness_exponent));
+  return s.gain * s.recorded_level * std::min(kMaxLevel, std::pow(relative, s.loudness_exponent));
 }
 
 double pitch_of(double size_m, double recorded_size_m) {
-  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMostPitch);
+  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMaxPitch);
 }
 
 Sampler::Sampler(const scene_t& scene, const Settings& settings)
@@ -140,7 +140,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
 
 // What is beyond the loops that can be heard is computed instead.
 void Sampler::keep_loudest() {
-  constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMost);
+  constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMax);
   if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
   std::partial_sort(rubs_.begin(), rubs_.begin() + most, rubs_.end(),
                     [](const RecordedContact& a, const RecordedContact& b) { return a.level > b.level; });
@@ -166,7 +166,7 @@ void Sampler::end_others(sync::HostTime at) {
 const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
   rubs_.clear();
   recorded_.clear();
-  const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMostStep_s);
+  const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMaxStep_s);
   rubbed_ = at;
   if (!plays()) {
     moves_.clear();
@@ -179,14 +179,14 @@ const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts
   };
   for (const contact_t& c : contacts) {
     if (c.points.empty() || !plausible(c)) continue;
-    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
+    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
     const Eigen::Vector3d past = to_eigen(c.sliding_velocity_m_s), round = to_eigen(c.rolling_velocity_m_s);
-    const double slides = std::min(past.norm(), kMostSpeed_m_s), rolls = std::min(round.norm(), kMostSpeed_m_s);
+    const double slides = std::min(past.norm(), kMaxSpeed_m_s), rolls = std::min(round.norm(), kMaxSpeed_m_s);
     Moves& moves = moves_[c.contact_id];
     moves.seen = true;
     moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
     // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
-    const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMostFriction);
+    const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMaxFriction);
     const double power_W = friction * force_N * slides;
     const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
     rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);

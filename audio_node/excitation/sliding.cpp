@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Beyond these nothing becomes louder or faster: no hand does so, and nothing on the bus shall.
-constexpr double kMostSpeed_m_s = 5, kMostForce_N = 50;
+constexpr double kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 constexpr double kEdge_1_m = 1000;  // where nobody knows better: a corner that is round by 1 mm (design)
 // Gains go with the place: anew when it has gone so far, or so long ago. Design: below a tenth of the bending
 // waves that 64 modes of a floor board have.
@@ -122,7 +122,7 @@ double Sliding::turn(const Candidate& c) const {
 }
 
 std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::SimTime t, double dt_s) {
-  const Vector3d past = bounded(to_eigen(c.sliding_velocity_m_s), kMostSpeed_m_s);
+  const Vector3d past = bounded(to_eigen(c.sliding_velocity_m_s), kMaxSpeed_m_s);
   if (c.points.empty() || !past.allFinite()) return std::nullopt;
   Candidate k{&c, nullptr, {ground(c, 0, t), ground(c, 1, t)}, 1, 0, 0, 0};
   const auto surest = [&](const Ground& g) {
@@ -134,14 +134,14 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   k.live->seen = true;
   ContactWay& way = k.live->way;
   way.step(c, {k.grounds[0].to_body, k.grounds[1].to_body}, best, past, dt_s);
-  const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMostForce_N);
+  const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
   double mu = 1;  // one without a material: that of the other counts
   for (const Ground& g : k.grounds) {
     const auto i = static_cast<std::size_t>(g.material);
     if (g.material >= 0 && i < materials_.size()) mu *= materials_[i].friction_dynamic;
   }
-  k.friction = std::clamp(std::sqrt(std::max(0.0, mu)), 0.0, kMostFriction);
-  const double rolling = std::min(way.over().rolling.norm(), kMostSpeed_m_s);
+  k.friction = std::clamp(std::sqrt(std::max(0.0, mu)), 0.0, kMaxFriction);
+  const double rolling = std::min(way.over().rolling.norm(), kMaxSpeed_m_s);
   k.slide = way.slides() * settings_.scrape_force_N * sliding_strength(k.friction, force_N, past.norm());
   if (way.rolls() > 0) {
     const Patch rests_on = patch(c, force_N, rolling, rms_slope(k.grounds));

@@ -8,10 +8,10 @@
 namespace tactus::audio {
 namespace {
 
-constexpr std::size_t kMostSaid = 5;  // faults of one database
+constexpr std::size_t kMaxSaid = 5;  // faults of one database
 // Of before, while a callback that stands still might play them: newer ones wait. Design: each may be hundreds of
 // MB.
-constexpr std::size_t kMostKept = 2;
+constexpr std::size_t kMaxKept = 2;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void Library::use(Shared database) {
       "recordings of " + std::to_string(database->sounds.size()) + " sounds from " + reading_->folder;
   news_.push_back(what);
   for (std::size_t i = 0; i < database->faults.size(); ++i) {
-    if (i == kMostSaid) {
+    if (i == kMaxSaid) {
       news_.push_back("and " + std::to_string(database->faults.size() - i) +
                       " faults more; scripts/check_sounds names them all");
       break;
@@ -64,7 +64,7 @@ void Library::take_read(std::vector<Shared>& unread) {
 
 // When the callback cannot be told yet, what was is played on.
 bool Library::tell(Shared next) {
-  if (kept_.size() >= kMostKept || !crossing_.databases.push(told_ + 1)) return false;
+  if (kept_.size() >= kMaxKept || !crossing_.databases.push(told_ + 1)) return false;
   if (now_) kept_.push_back({told_, std::move(now_)});
   now_ = std::move(next);
   ++told_;

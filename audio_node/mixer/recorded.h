@@ -18,7 +18,7 @@ inline constexpr int kTellings = 64;
 
 // What crosses between the node's loop and the callback besides strikes.
 struct RecordedQueues {
-  Spsc<RecordedContact> rubs{kTellings * 2 * Loops::kMost};
+  Spsc<RecordedContact> rubs{kTellings * 2 * Loops::kMax};
   // Strikes and rubs that cross after one of these are of the database of that number.
   Spsc<std::int64_t> databases{16};
   // The callback holds nothing of a database of a number below this, and will never again: it may go.

@@ -56,7 +56,7 @@ struct CallbackQueues {
   Spsc<Strike> strikes{512};
   Spsc<RenderCommand> orders{16};
   Spsc<Listener> listeners{64};  // the newest counts
-  Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMost};
+  Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMax};
   // The callback holds no scrape of a number below this, and will never again: what only they point to may go.
   std::atomic<std::int64_t> scrapes_let_go{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);

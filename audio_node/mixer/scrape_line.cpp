@@ -6,7 +6,7 @@ namespace tactus::audio {
 namespace {
 
 // Ends that are still to be told. Design: four times what is heard at a time; what is older has faded by itself.
-constexpr std::size_t kMostOwed = 4 * Scrapes::kMost;
+constexpr std::size_t kMaxOwed = 4 * Scrapes::kMax;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ bool ScrapeLine::submit(Scrape scrape) {
   if (push(scrape)) return true;
   if (!scrape.ends) return ++lost_, false;
   owed_.push_back(scrape.id);
-  if (owed_.size() > kMostOwed) owed_.pop_front(), ++lost_;
+  if (owed_.size() > kMaxOwed) owed_.pop_front(), ++lost_;
   return false;
 }
 

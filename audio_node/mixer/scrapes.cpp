@@ -15,20 +15,20 @@ constexpr double kLeap_m = 0.005;  // design
 constexpr double kStrength_s = 0.002;
 // One that is not told of any more, nor that it ends, fades.
 constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are no gap
-constexpr double kMostOver_s =
+constexpr double kMaxOver_s =
     0.5;  // design: or twice the time until it is to be told anew, but no longer than this
 
 // Of this world. Design: far beyond what any scene has, so that no number overflows.
-constexpr double kMostPlace_m = 1e5, kMostSpeed_m_s = 1e3, kMostWay = 10, kMostStrength = 10;
+constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxWay = 10, kMaxStrength = 10;
 
 // Neither is no number.
 bool within(const Eigen::Vector3d& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
 
 bool sane(const Scrape& s) {
-  bool all = std::abs(s.slide) <= kMostStrength && std::abs(s.roll) <= kMostStrength && std::isfinite(s.cutoff_Hz);
+  bool all = std::abs(s.slide) <= kMaxStrength && std::abs(s.roll) <= kMaxStrength && std::isfinite(s.cutoff_Hz);
   for (const ScrapeSide& side : s.sides)
-    all = all && within(side.place_m, kMostPlace_m) && within(side.velocity_m_s, kMostSpeed_m_s) &&
-          within(side.slides.cast<double>(), kMostWay) && within(side.rolls.cast<double>(), kMostWay) &&
+    all = all && within(side.place_m, kMaxPlace_m) && within(side.velocity_m_s, kMaxSpeed_m_s) &&
+          within(side.slides.cast<double>(), kMaxWay) && within(side.rolls.cast<double>(), kMaxWay) &&
           std::isfinite(side.beyond) && std::isfinite(side.beyond_Hz) &&
           std::all_of(side.gains.begin(), side.gains.end(), [](float g) { return std::isfinite(g); });
   return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
@@ -126,7 +126,7 @@ Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool f
 
 void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
-  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMostOver_s))) &&
+  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMaxOver_s))) &&
       (c.slide.target != 0 || c.roll.target != 0))
     c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
         c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));

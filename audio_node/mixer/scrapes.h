@@ -18,9 +18,9 @@ namespace tactus::audio {
 
 class Scrapes {
  public:
-  static constexpr int kMost = kMaxScrapes;
+  static constexpr int kMax = kMaxScrapes;
   // Each drives a body twice at the most, while its place on it goes from one set of gains to the next.
-  static_assert(2 * kMost <= Voices::kDrives);
+  static_assert(2 * kMax <= Voices::kDrives);
 
   explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
@@ -72,7 +72,7 @@ class Scrapes {
   static void drive(Contact& contact, std::size_t side, Voices& voices, int frames);
 
   double rate_Hz_;
-  std::array<Contact, kMost> contacts_;
+  std::array<Contact, kMax> contacts_;
 };
 
 }  // namespace tactus::audio

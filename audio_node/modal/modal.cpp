@@ -12,7 +12,7 @@ namespace {
 using std::numbers::pi;
 
 // No plate has modes with more nodal lines that are asked for: 128 modes end far below.
-constexpr int kMostLines = 256;
+constexpr int kMaxLines = 256;
 
 // frequency(n), n = 0, 1, ..., which ascends, as far as the range goes; numbered from `first` on.
 template <class F>
@@ -57,8 +57,8 @@ Beam free_beam(int n) {
 template <class F>
 std::vector<Natural> plate_modes(Range range, int first, F frequency) {
   std::vector<Natural> all;
-  for (int m = first; m < kMostLines; ++m) {
-    for (int n = first; n < kMostLines; ++n) {
+  for (int m = first; m < kMaxLines; ++m) {
+    for (int n = first; n < kMaxLines; ++n) {
       const double f = frequency(m, n);
       if (f >= range.below_Hz && n > 1) break;
       all.push_back({f, m, n});

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of all recordings in memory (design: half an hour at 48 kHz); what comes after is left out.
-constexpr std::size_t kMostBytes = std::size_t{350} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{350} << 20;
 
 // Sorted, so that the same folder gives the same takes everywhere.
 std::vector<fs::path> entries(const fs::path& folder) {
@@ -49,7 +49,7 @@ std::optional<MaterialPair> materials_of(const std::string& folder) {
 }
 
 // A layer that is weaker by more than 40 dB stays so: there is more noise in it than sound (design).
-constexpr float kMostGain = 100;
+constexpr float kMaxGain = 100;
 
 void even_out(Layers& layers, Interaction interaction) {
   const auto loudness = [&](const Layer& layer) {
@@ -59,7 +59,7 @@ void even_out(Layers& layers, Interaction interaction) {
     return most;
   };
   const float fastest = loudness(layers.by_speed.back());
-  for (Layer& layer : layers.by_speed) layer.gain = std::min(kMostGain, fastest / loudness(layer));
+  for (Layer& layer : layers.by_speed) layer.gain = std::min(kMaxGain, fastest / loudness(layer));
 }
 
 class Reader {
@@ -108,7 +108,7 @@ class Reader {
         blame(path, "is no file; take it away");
       } else if (!speed) {
         blame(path, "does not begin with a speed in m/s; call it 0.5.wav or 0.5_2.wav, for example");
-      } else if (into_.bytes > kMostBytes) {
+      } else if (into_.bytes > kMaxBytes) {
         blame(path, "is left out: the recordings before it fill 350 MB; take some away");
       } else if (auto take = read_recording(path.string(), key.interaction, rate_Hz_, into_.faults)) {
         into_.bytes += take->samples.size() * sizeof(float);
@@ -122,8 +122,8 @@ class Reader {
       return blame(folder, "is there twice, as its materials are in the other order too; keep one of the two");
     found.size_m = size_m;
     for (auto& [speed, layer] : layers) {
-      if (found.by_speed.size() == static_cast<std::size_t>(kMostLayers)) {
-        blame(folder, "has more than " + std::to_string(kMostLayers) + " speeds; the fastest are left out");
+      if (found.by_speed.size() == static_cast<std::size_t>(kMaxLayers)) {
+        blame(folder, "has more than " + std::to_string(kMaxLayers) + " speeds; the fastest are left out");
         break;
       }
       layer.speed_m_s = speed;

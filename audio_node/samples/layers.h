@@ -26,7 +26,7 @@ struct Layer {
   std::vector<Recording> takes;
 };
 
-inline constexpr int kMostLayers = 8;  // of one sound (design)
+inline constexpr int kMaxLayers = 8;  // of one sound (design)
 
 // Of one pair of materials and one interaction.
 struct Layers {

@@ -13,11 +13,11 @@ namespace {
 constexpr double kLevel_s = 0.005;
 // A contact that is not told of any more fades. Design, as of scrapes: a few lost messages are no gap.
 constexpr sync::Nanoseconds kSilence{30'000'000};
-constexpr double kMostOver_s =
+constexpr double kMaxOver_s =
     0.5;  // design: or twice the time until it is to be told anew, but no longer than this
 constexpr float kOver = 1e-6f;
 // An octave either way; beyond it a recording sounds of another material (design).
-constexpr double kLeastStep = 0.5, kMostStep = 2;
+constexpr double kLeastStep = 0.5, kMaxStep = 2;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ bool Loops::take(const RecordedContact& rub) {
   spatialiser_.begin(static_cast<int>(free - voices_.data()));
   free->on = true;
   free->now = rub;
-  const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMostLayers));
+  const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMaxLayers));
   for (std::size_t i = 0; i < count; ++i) {
     const Recording& r = take_of(rub.layers->by_speed[i], rub.contact);
     // Contacts that begin together are not heard as one: each begins elsewhere in the loop.
@@ -93,7 +93,7 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
 void Loops::render(Voice& v, int frames, sync::HostTime first) {
   const bool told =
       v.ends_in < 0 &&
-      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMostOver_s)));
+      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMaxOver_s)));
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
   float level = 0;
@@ -108,7 +108,7 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
       p.level = 0;
       continue;
     }
-    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMostStep), wanted, v.ends_in, out.data(),
+    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMaxStep), wanted, v.ends_in, out.data(),
         frames);
     level = std::max(level, p.level);
   }

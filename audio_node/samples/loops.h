@@ -15,12 +15,12 @@ namespace tactus::audio {
 // and Pai 2001, section 4.2). Realtime-safe: yes.
 class Loops {
  public:
-  static constexpr int kMost = 32;  // at a time; more are not heard
+  static constexpr int kMax = 32;  // at a time; more are not heard
   // Design: as what is computed (scrapes.cpp), so that both are silent equally soon.
   static constexpr double kEnd_s = 0.002;
 
   explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
-      : rate_Hz_(rate_Hz), spatialiser_(space, kMost, rate_Hz, instructions) {}
+      : rate_Hz_(rate_Hz), spatialiser_(space, kMax, rate_Hz, instructions) {}
 
   void hear_from(const Listener& listener) { listener_ = listener; }
 
@@ -45,14 +45,14 @@ class Loops {
     bool on = false;
     int ends_in = -1;  // frames until it is silent; -1: nobody has said that it ends
     int silent = 0;    // frames since the last of which something came
-    std::array<Playing, kMostLayers> layers;
+    std::array<Playing, kMaxLayers> layers;
   };
   void render(Voice& voice, int frames, sync::HostTime first);
   // ends_in: as of its voice.
   void add(Playing& playing, double step, float wanted, int ends_in, float* out, int frames) const;
 
   double rate_Hz_;
-  std::array<Voice, kMost> voices_;
+  std::array<Voice, kMax> voices_;
   Spatialiser spatialiser_;
   std::optional<Listener> listener_;
 };

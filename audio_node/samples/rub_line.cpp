@@ -6,7 +6,7 @@ namespace tactus::audio {
 namespace {
 
 // Design: four times what is heard at a time; what is older has faded by itself.
-constexpr std::size_t kMostOwed = 4 * Loops::kMost;
+constexpr std::size_t kMaxOwed = 4 * Loops::kMax;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ bool RubLine::submit(const RecordedContact& rub) {
   if (queue_.push(rub)) return true;
   if (!rub.ends) return ++lost_, false;
   owed_.push_back(rub);
-  if (owed_.size() > kMostOwed) owed_.pop_front(), ++lost_;
+  if (owed_.size() > kMaxOwed) owed_.pop_front(), ++lost_;
   return false;
 }
 

@@ -10,12 +10,12 @@ namespace tactus::audio {
 
 Shots::Shots(double rate_Hz, const Space& space, Instructions instructions)
     : fade_step_(static_cast<float>(1 / (kFade_s * rate_Hz))),
-      voices_(static_cast<std::size_t>(kMost + kFading)),
-      spatialiser_(space, kMost + kFading, rate_Hz, instructions) {}
+      voices_(static_cast<std::size_t>(kMax + kFading)),
+      spatialiser_(space, kMax + kFading, rate_Hz, instructions) {}
 
 void Shots::leave_room() {
   const auto sounds = [](const Voice& v) { return v.on && !v.fades; };
-  if (std::count_if(voices_.begin(), voices_.end(), sounds) < kMost) return;
+  if (std::count_if(voices_.begin(), voices_.end(), sounds) < kMax) return;
   Voice* quietest = nullptr;
   for (Voice& v : voices_)
     if (sounds(v) && (!quietest || v.level < quietest->level)) quietest = &v;

@@ -15,7 +15,7 @@ namespace tactus::audio {
 // constructor.
 class Shots {
  public:
-  static constexpr int kMost = 64;  // impacts at a time, as bodies
+  static constexpr int kMax = 64;  // impacts at a time, as bodies
 
   explicit Shots(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2);
 

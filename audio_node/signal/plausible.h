@@ -10,13 +10,13 @@
 namespace tactus::audio {
 
 // Nothing in a room outruns sound in its air (20 degrees Celsius).
-inline constexpr double kMostSpeedOfWorld_m_s = 343;
+inline constexpr double kMaxSpeedOfWorld_m_s = 343;
 // A lorry, and what a ton-heavy block weighs a hundred times; a tip of a micrometre; a town. Design.
-inline constexpr double kMostMassOfWorld_kg = 1e5, kMostForceOfWorld_N = 1e6, kMostCurvatureOfWorld_1_m = 1e6,
-                        kMostWayOfWorld_m = 1e4;
+inline constexpr double kMaxMassOfWorld_kg = 1e5, kMaxForceOfWorld_N = 1e6, kMaxCurvatureOfWorld_1_m = 1e6,
+                        kMaxWayOfWorld_m = 1e4;
 
 // Of no dry pair of materials there is more; it bounds how loud a scene can make what scrapes. Design.
-inline constexpr double kMostFriction = 2;
+inline constexpr double kMaxFriction = 2;
 
 // True only of numbers: every comparison with a NaN is false.
 template <class V>
@@ -25,26 +25,26 @@ bool within(const V& v, double most) {
 }
 
 // A unit vector, or nothing: far beyond rounding, since the border asks for 1 within 1e-2.
-inline constexpr double kMostDirection = 2;
+inline constexpr double kMaxDirection = 2;
 
 // No body strikes itself.
 inline bool plausible(const contact_event_t& e) {
   return e.body_a >= 0 && e.body_b >= 0 && e.body_a != e.body_b && e.approach_speed_m_s >= 0 &&
-         e.approach_speed_m_s <= kMostSpeedOfWorld_m_s && e.effective_mass_kg > 0 &&
-         e.effective_mass_kg <= kMostMassOfWorld_kg && e.curvature_1_m >= 0 &&
-         e.curvature_1_m <= kMostCurvatureOfWorld_1_m && within(e.point_m, kMostWayOfWorld_m) &&
-         within(e.normal, kMostDirection);
+         e.approach_speed_m_s <= kMaxSpeedOfWorld_m_s && e.effective_mass_kg > 0 &&
+         e.effective_mass_kg <= kMaxMassOfWorld_kg && e.curvature_1_m >= 0 &&
+         e.curvature_1_m <= kMaxCurvatureOfWorld_1_m && within(e.point_m, kMaxWayOfWorld_m) &&
+         within(e.normal, kMaxDirection);
 }
 
 inline bool plausible(const contact_t& c) {
-  if (c.body_a < 0 || c.body_b < 0 || c.body_a == c.body_b || !within(c.normal, kMostDirection) ||
-      !(c.normal_force_N >= 0) || !(c.normal_force_N <= kMostForceOfWorld_N) ||
-      !within(c.sliding_velocity_m_s, kMostSpeedOfWorld_m_s) ||
-      !within(c.rolling_velocity_m_s, kMostSpeedOfWorld_m_s))
+  if (c.body_a < 0 || c.body_b < 0 || c.body_a == c.body_b || !within(c.normal, kMaxDirection) ||
+      !(c.normal_force_N >= 0) || !(c.normal_force_N <= kMaxForceOfWorld_N) ||
+      !within(c.sliding_velocity_m_s, kMaxSpeedOfWorld_m_s) ||
+      !within(c.rolling_velocity_m_s, kMaxSpeedOfWorld_m_s))
     return false;
   for (const contact_point_t& p : c.points)
-    if (!within(p.a_world_m, kMostWayOfWorld_m) || !within(p.b_world_m, kMostWayOfWorld_m) ||
-        !within(p.a_body_m, kMostWayOfWorld_m) || !within(p.b_body_m, kMostWayOfWorld_m))
+    if (!within(p.a_world_m, kMaxWayOfWorld_m) || !within(p.b_world_m, kMaxWayOfWorld_m) ||
+        !within(p.a_body_m, kMaxWayOfWorld_m) || !within(p.b_body_m, kMaxWayOfWorld_m))
       return false;
   return true;
 }

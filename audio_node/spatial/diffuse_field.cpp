@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kBins = 512;  // of the spectrum, around the circle
 // It never takes or gives more than that against the middle: where the loudspeaker gives nothing there is only
 // noise to lift.
-constexpr double kMost = 1.73;  // 15 dB, as a natural logarithm; design
+constexpr double kMax = 1.73;  // 15 dB, as a natural logarithm; design
 
 constexpr double kLeastPower = 1e-15;  // far below any response's: that of silence is no logarithm
 
@@ -48,7 +48,7 @@ std::vector<float> diffuse_field_inverse(const std::vector<std::vector<float>>& 
     inverse[k] = -0.5 * std::log(std::max(power, kLeastPower));
     middle += inverse[k] / static_cast<double>(inverse.size());
   }
-  for (double& x : inverse) x = std::clamp(x, middle - kMost, middle + kMost);
+  for (double& x : inverse) x = std::clamp(x, middle - kMax, middle + kMax);
   // The cepstrum of least phase, and its response by the recursion of Oppenheim and Schafer, Discrete-Time Signal
   // Processing, 3rd ed., eq. 13.57.
   const auto m = static_cast<std::size_t>(taps);

@@ -19,7 +19,7 @@ inline void store(float* to, Lanes x) { *reinterpret_cast<Anywhere*>(to) = x; }
 
 template <int kFilters>
 void some(const float* input, const float* const* filters, int taps, float* const* out) {
-  constexpr int kMost = kMaxBlock / kWidth, kFit = kSums / kFilters, kAtOnce = kFit < kMost ? kFit : kMost;
+  constexpr int kMax = kMaxBlock / kWidth, kFit = kSums / kFilters, kAtOnce = kFit < kMax ? kFit : kMax;
   static_assert(kMaxBlock % (kAtOnce * kWidth) == 0);
   for (int n = 0; n < kMaxBlock; n += kAtOnce * kWidth) {
     Lanes sum[kFilters][kAtOnce] = {};

@@ -11,7 +11,7 @@
 namespace tactus::audio {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 65536;  // design: far more than kMostChannels rows take
+constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than kMostChannels rows take
 
 // In the order of channels of a WAV file; some cards want another, which a file of one's own gives.
 const std::map<std::string, std::string>& built_in() {
@@ -64,14 +64,14 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
     any = true;
   }
   if (!any) refuse(name, "has no loudspeaker");
-  if (layout.size() > kMostChannels) refuse(name, "has more than " + std::to_string(kMostChannels) + " channels");
+  if (layout.size() > kMaxChannels) refuse(name, "has more than " + std::to_string(kMaxChannels) + " channels");
   return layout;
 }
 
 Layout load_layout(const std::string& name_or_path) {
   if (const auto known = built_in().find(name_or_path); known != built_in().end())
     return parse_layout(known->second, name_or_path);
-  const auto text = sync::read_small_file(name_or_path, kMostBytes);
+  const auto text = sync::read_small_file(name_or_path, kMaxBytes);
   if (!text) refuse(name_or_path, "cannot be read");
   return parse_layout(*text, name_or_path);
 }

@@ -12,7 +12,7 @@ namespace tactus::audio {
 // stays silent, as that of a subwoofer.
 using Layout = std::vector<std::optional<Eigen::Vector3d>>;
 
-inline constexpr int kMostChannels = 32;
+inline constexpr int kMaxChannels = 32;
 
 // stereo, quad, 5.1, cube, or a CSV file of the columns channel, azimuth_deg (to the left) and elevation_deg (up),
 // with one row for each channel. Reads a file: not in a loop, nor in the callback. Throws std::runtime_error with

@@ -103,7 +103,7 @@ void Spatialiser::gains(const Eigen::Vector3f& direction, float* of_channels) co
 
 // Gains go straight to where they shall be at the end of the block.
 void Spatialiser::add_by_gains(Source& s, const float* sound, int frames, bool turned) {
-  std::array<float, kMostChannels> wanted = s.gains;
+  std::array<float, kMaxChannels> wanted = s.gains;
   if (turned) gains(s.direction, wanted.data());
   if (s.fresh) s.gains = wanted;
   for (int c = 0; c < channels_; ++c) {

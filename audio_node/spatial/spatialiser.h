@@ -16,7 +16,7 @@
 namespace tactus::audio {
 
 // Ears hear no later than so many frames after what went in: the lead of the filters and the least delay.
-inline constexpr int kMostEarsLatency = Hrtf::kLead + kLeastDelay;
+inline constexpr int kMaxEarsLatency = Hrtf::kLead + kLeastDelay;
 
 // What all sources share. Two channels and equal power by the azimuth (pan.h) where there is neither of the two.
 struct Space {
@@ -53,7 +53,7 @@ class Spatialiser {
     bool fresh = true;
     bool rested = true;  // in the block before it stayed where it was
     Eigen::Vector3f direction = Eigen::Vector3f::Zero();
-    std::array<float, kMostChannels> gains{};
+    std::array<float, kMaxChannels> gains{};
     float left_later = 0;
     // Of ears: the filters in use, and the past of what went in and of what came out.
     std::vector<float> left, right, input, heard_left, heard_right;

@@ -95,10 +95,10 @@ std::size_t most_violated(const Region& region, const Eigen::Vector3d& x) {
 
 bool exchange(const Region& region, ClosestPoint& out) {
   // Each exchange takes the point farther from the goal; more than this many are a circle of rounding.
-  constexpr std::size_t kMostExchanges = 2 * kMaxHalfSpaces;
+  constexpr std::size_t kMaxExchanges = 2 * kMaxHalfSpaces;
   Basis basis;
   double violation = 0;
-  for (std::size_t turn = 0; turn < kMostExchanges; ++turn) {
+  for (std::size_t turn = 0; turn < kMaxExchanges; ++turn) {
     const std::size_t worst = most_violated(region, basis.x);
     violation = worst < region.size ? region.deficit[worst] - region.normal[worst].dot(basis.x) : 0;
     if (violation <= 0) break;

@@ -74,8 +74,8 @@ bool take_in(const Problem& problem, std::size_t p, State& s) {
 
 bool solve(const Problem& problem, State& s) {
   // More than this many are a circle of rounding.
-  constexpr std::size_t kMostTurns = 3 * kMaxHalfSpaces;
-  for (std::size_t turn = 0; turn < kMostTurns; ++turn) {
+  constexpr std::size_t kMaxTurns = 3 * kMaxHalfSpaces;
+  for (std::size_t turn = 0; turn < kMaxTurns; ++turn) {
     const std::size_t worst = problem.most_violated(s.x);
     if (worst == problem.size) return true;
     if (!take_in(problem, worst, s)) break;

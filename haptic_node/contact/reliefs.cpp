@@ -12,7 +12,7 @@ namespace {
 
 // A tick of a fast hand leaps over pixels: the force is the mean of what lies between, at so many places at most.
 // Design: at 0.5 m/s and 1 kHz those of a map with 16 pixels a millimetre.
-constexpr int kMostSteps = 8;
+constexpr int kMaxSteps = 8;
 // In pixels; a hand that went so far in a tick was put there.
 constexpr double kLeap = 64;
 // Faster over a surface than a hand that feels (as in rendering.cpp): another point of the tool or of the surface
@@ -43,7 +43,7 @@ void Reliefs::set_maps(std::shared_ptr<const SurfaceMaps> maps) {
 Eigen::Vector2d Reliefs::slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const {
   const Eigen::Vector2d way = before.known ? Eigen::Vector2d(at - before.at) : Eigen::Vector2d::Zero();
   const double pixels = std::hypot(way.x() * relief.columns, way.y() * relief.rows);
-  const int steps = pixels < kLeap ? std::clamp(static_cast<int>(std::ceil(pixels)), 1, kMostSteps) : 1;
+  const int steps = pixels < kLeap ? std::clamp(static_cast<int>(std::ceil(pixels)), 1, kMaxSteps) : 1;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int k = 0; k < steps; ++k) sum += relief.slope(at - way * (static_cast<double>(k) / steps));
   sum /= steps;

@@ -20,7 +20,7 @@ constexpr double kSettled_m = 1e-9;
 // less the further, so that a share comes and goes with no step. Design: a fiftieth of the thickness of a hair.
 constexpr double kCarries_m = 1e-6;
 // What a contact that holds may owe, m: beyond, it has been carried off and holds where it is (design).
-constexpr double kMostOwed_m = 0.001;
+constexpr double kMaxOwed_m = 0.001;
 
 Vector6 reach(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm, double lever_m) {
   Vector6 v;
@@ -208,7 +208,7 @@ void RigidProxy::step(std::span<Surface> surfaces, const DevicePose& device, dou
     const Eigen::Vector3d before = start.position + start.orientation * s.tool_point;
     s.owed += pose_.position + pose_.orientation * s.tool_point - before - dt * s.velocity_at(before);
     s.owed = flat(s.owed, s.normal);
-    if (s.owed.norm() > kMostOwed_m) s.owed.setZero();
+    if (s.owed.norm() > kMaxOwed_m) s.owed.setZero();
   }
   velocity_ = dt > 0 ? Eigen::Vector3d((pose_.position - start.position) / dt) : Eigen::Vector3d::Zero();
   spin_ =

@@ -21,7 +21,7 @@ const touch_model_t* TouchPages::add(const touch_model_t& page) {
     whole_ = page;
     return &whole_;
   }
-  if (page.pages > kMostPages) return nullptr;
+  if (page.pages > kMaxPages) return nullptr;
   ++count_;
   const Key key{page.header.incarnation, page.header.sim_time_ns, page.header.seq - page.page, page.pages};
   repeated_ = std::find(done_.begin(), done_.end(), key) != done_.end();

@@ -14,7 +14,7 @@ class TouchPages {
   // Sets that may be on their way at once, since pages of one step and the next may overtake each other; of more
   // the oldest is given up. Design: two steps, and what a reordering profile adds.
   static constexpr std::size_t kGathering = 4;
-  static constexpr int kMostPages =
+  static constexpr int kMaxPages =
       16;  // design: twice what a tool has, 49 planes of 7 a page; larger sets are ignored
 
   // Takes a page. When it is the last that its set lacked, the whole model: page 0 of 1, with the planes and books
@@ -36,8 +36,8 @@ class TouchPages {
   };
   struct Set {
     Key key;
-    std::array<touch_model_t, kMostPages> page;
-    std::bitset<kMostPages> has;
+    std::array<touch_model_t, kMaxPages> page;
+    std::bitset<kMaxPages> has;
     std::int64_t used = 0;  // when it was begun, in pages; 0: free
   };
   Set& set_of(const Key& key);

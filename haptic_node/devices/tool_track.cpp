@@ -48,7 +48,7 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   tick.published_ns = m.header.publish_time_ns;
   tick.seq = m.header.seq;
   tick.at = m.header.clock == feed_.clock() ? began(m.header) : arrival;
-  if (tick.at < arrival - kMostUnderWay || tick.at > arrival + kMostUnderWay) return std::nullopt;
+  if (tick.at < arrival - kMaxUnderWay || tick.at > arrival + kMaxUnderWay) return std::nullopt;
   if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
     return std::nullopt;
   incarnation_ = m.header.incarnation;

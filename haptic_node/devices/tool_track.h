@@ -23,7 +23,7 @@ class ToolTrack {
   // Another process of the same tool is heard only when the one before has been silent for so long.
   static constexpr sync::Nanoseconds kSilence{300'000'000};
   // A TOOL_STATE that arrived at the recorder so much before or after it says to have been sent is damaged.
-  static constexpr sync::Nanoseconds kMostUnderWay{1'000'000'000};
+  static constexpr sync::Nanoseconds kMaxUnderWay{1'000'000'000};
 
   // A tick takes no longer: what says that it began earlier before it was told of is not its beginning.
   static constexpr sync::Nanoseconds kLongestTick{1'000'000};

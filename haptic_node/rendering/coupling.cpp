@@ -11,7 +11,7 @@ constexpr double kFixed_kg = 1e9;
 // faster.
 constexpr double kLead = 1.5;
 // The damper itself is late: B tau / m stays so many times below the bound on K tau^2 / m.
-constexpr double kMostLead = 3;
+constexpr double kMaxLead = 3;
 // Delays up to here are those of a bus that is not disturbed, for which the other rules suffice. Design: a step, a
 // tick and a touch model one or two milliseconds old.
 constexpr double kUndisturbed_s = 0.004;
@@ -39,7 +39,7 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
   // A light body with much damping would be dragged faster than the loop can tell.
   double most = most_damping;
   if (!fixed) {
-    most = std::min(most, kMostLead * limits.mass_factor * body_mass_kg / loop_delay_s);
+    most = std::min(most, kMaxLead * limits.mass_factor * body_mass_kg / loop_delay_s);
     g.stiffness_N_m =
         std::min(g.stiffness_N_m, limits.mass_factor * body_mass_kg /
                                       (squared(loop_delay_s) * (1 + squared(loop_delay_s / kLate_s))));

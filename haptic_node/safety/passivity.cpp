@@ -12,9 +12,9 @@ constexpr double kApart_s = 0.2;
 // From a tick to the step that applies its force and back, beyond the age of the touch model: a step and a tick.
 constexpr double kWay_s = 0.002;
 // So many books are kept while nothing is felt on them. Design: several times what a touch model tells of.
-constexpr std::size_t kMostBooks = 32;
+constexpr std::size_t kMaxBooks = 32;
 // What was dissipated counts as credit up to here, so that old friction does not pay for a new oscillation.
-constexpr double kMostCredit_J = 0.01;
+constexpr double kMaxCredit_J = 0.01;
 // The allowance fills up so fast: after one bad moment touch comes back within seconds.
 constexpr double kRefill_W = 0.0002;
 // The factor falls to nothing within 5 ms of 1 kHz: a force of 8 N then stays below the limit of slew; and comes
@@ -107,7 +107,7 @@ void Passivity::begin_episode() {
 
 // Those of facets that were stroked over long ago; what their bodies got stays counted.
 void Passivity::forget_the_idle() {
-  while (books_.size() > kMostBooks) {
+  while (books_.size() > kMaxBooks) {
     const auto oldest = std::max_element(books_.begin(), books_.end(),
                                          [](const Book& x, const Book& y) { return x.idle_s < y.idle_s; });
     if (oldest->idle_s <= kApart_s) return;
@@ -139,7 +139,7 @@ void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, 
   if (apart_s_ > kApart_s) begin_episode(), bodies_J = 0;
   credit_J_ = -hand_J_ - settled_J_ - bodies_J - wasted_J_;
   if (credit_J_ < stored_J) wasted_J_ -= kRefill_W * dt;
-  const double beyond_J = std::max(0.0, credit_J_ - stored_J - kMostCredit_J);
+  const double beyond_J = std::max(0.0, credit_J_ - stored_J - kMaxCredit_J);
   wasted_J_ += beyond_J;
   credit_J_ -= beyond_J;
   const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);

@@ -63,10 +63,10 @@ class Passivity {
   double factor() const { return factor_; }
   // Energy that the channel has made since the episode of contact began, J; not below zero, nor beyond what goes
   // on the bus, whatever the simulation tells.
-  double generated_J() const { return std::clamp(-credit_J_, 0.0, kMostTold_J); }
+  double generated_J() const { return std::clamp(-credit_J_, 0.0, kMaxTold_J); }
 
  private:
-  static constexpr double kMostTold_J = 1e6;
+  static constexpr double kMaxTold_J = 1e6;
   struct Book {
     std::int64_t contact_id = 0;
     Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the body, now

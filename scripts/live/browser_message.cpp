@@ -11,8 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostSenses = 16;
-constexpr int kMostSteps = 10'000;
+constexpr std::size_t kMaxSenses = 16;
+constexpr int kMaxSteps = 10'000;
 
 double number(const json& j, const char* name, double least, double most) {
   const auto found = j.find(name);
@@ -48,8 +48,8 @@ bool is_sense(const std::string& name) {
 
 WatchThese watch(const json& j) {
   const auto names = j.find("names");
-  if (names == j.end() || !names->is_array() || names->size() > kMostWatched)
-    throw std::invalid_argument("the page watches at most " + std::to_string(kMostWatched) + " variables; take some away");
+  if (names == j.end() || !names->is_array() || names->size() > kMaxWatched)
+    throw std::invalid_argument("the page watches at most " + std::to_string(kMaxWatched) + " variables; take some away");
   WatchThese w;
   for (const json& name : *names) w.names.push_back(text(name, 192));
   return w;
@@ -61,13 +61,13 @@ Command command(const json& j) {
   if (word == "pause") return {sim_command_t::PAUSE, 0};
   if (word == "resume") return {sim_command_t::RESUME, 0};
   if (word == "reset") return {sim_command_t::RESET, 0};
-  if (word == "step") return {sim_command_t::STEP, static_cast<int>(number(j, "steps", 1, kMostSteps))};
+  if (word == "step") return {sim_command_t::STEP, static_cast<int>(number(j, "steps", 1, kMaxSteps))};
   throw std::invalid_argument("the page asks the simulation for what it must not; load it again");
 }
 
 DegradeThus degrade(const json& j) {
   const auto senses = j.find("senses");
-  if (senses == j.end() || !senses->is_object() || senses->size() > kMostSenses)
+  if (senses == j.end() || !senses->is_object() || senses->size() > kMaxSenses)
     throw std::invalid_argument("the page sent no sliders, or too many; load it again");
   DegradeThus d;
   d.clear = flag(j, "clear");
@@ -94,7 +94,7 @@ AnswerThus answer(const json& j) {
 }  // namespace
 
 BrowserMessage parse_browser_message(std::string_view bytes) {
-  if (bytes.size() > kMostBrowserBytes) throw std::invalid_argument("the page sent too much at once; load it again");
+  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent too much at once; load it again");
   const json j = json::parse(bytes, nullptr, false);
   if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent what is no message; load it again");
   const std::string kind = text(j["t"], 16);

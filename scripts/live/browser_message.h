@@ -50,8 +50,8 @@ struct AnswerThus {
 };
 using BrowserMessage = std::variant<WatchThese, Command, DegradeThus, HandAt, LogPlay, LogSeek, AnswerThus>;
 
-inline constexpr std::size_t kMostWatched = 32;
-inline constexpr std::size_t kMostBrowserBytes = 8192;
+inline constexpr std::size_t kMaxWatched = 32;
+inline constexpr std::size_t kMaxBrowserBytes = 8192;
 
 // Throws std::invalid_argument with one sentence.
 BrowserMessage parse_browser_message(std::string_view text);

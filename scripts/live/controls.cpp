@@ -80,11 +80,11 @@ void Controls::stream(double rate_Hz, sync::HostTime now) {
 }
 
 void Controls::want_tags(const std::vector<std::string>& names, sync::HostTime now) {
-  constexpr std::size_t kMostPatterns = 16, kMostLetters = 128;  // of TAG_REQUEST
+  constexpr std::size_t kMaxPatterns = 16, kMaxLetters = 128;  // of TAG_REQUEST
   std::vector<std::string> patterns;
   for (const std::string& name : names)
-    if (name.size() <= kMostLetters && patterns.size() <= kMostPatterns) patterns.push_back(name);
-  if (patterns.size() > kMostPatterns) patterns = {"*"};
+    if (name.size() <= kMaxLetters && patterns.size() <= kMaxPatterns) patterns.push_back(name);
+  if (patterns.size() > kMaxPatterns) patterns = {"*"};
   if (tags_next_ && patterns == tags_.patterns) return;
   tags_.patterns = patterns;
   tags_.pattern_count = static_cast<std::int16_t>(patterns.size());

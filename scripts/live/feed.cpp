@@ -29,7 +29,7 @@ void Feed::take(std::string_view channel, std::span<const std::uint8_t> bytes, s
     const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size());
     if (!m) {
       ++bad_;
-    } else if (ours(m->header) && (nodes_.contains(m->node) || nodes_.size() < kMostNodes)) {
+    } else if (ours(m->header) && (nodes_.contains(m->node) || nodes_.size() < kMaxNodes)) {
       nodes_[m->node] = {*m, arrival};
     }
   } else if (channel == channels::kSyncReport) {
@@ -57,7 +57,7 @@ void Feed::take(const contact_events_t& m) {
       event_host_ns_.erase(event_order_.front());
       event_order_.pop_front();
     }
-    if (events_.size() < kMostOfFrame)
+    if (events_.size() < kMaxOfFrame)
       events_.push_back({seconds(host_ns), e.kind, e.body_a, e.body_b, e.approach_speed_m_s});
     else
       ++left_out_;
@@ -74,7 +74,7 @@ void Feed::take(const presented_t& m) {
       presented_.erase(presented_order_.front());
       presented_order_.pop_front();
     }
-    if (presentations_.size() >= kMostOfFrame) {
+    if (presentations_.size() >= kMaxOfFrame) {
       ++left_out_;
       continue;
     }
@@ -91,9 +91,9 @@ void Feed::take(const presented_t& m) {
 void Feed::take(const sync_report_t& m) {
   if (!ours(m.header)) return;
   for (const modality_report_t& r : m.modalities)
-    if (modalities_.contains(r.modality) || modalities_.size() < kMostModalities) modalities_[r.modality] = r;
+    if (modalities_.contains(r.modality) || modalities_.size() < kMaxModalities) modalities_[r.modality] = r;
   for (const pair_report_t& r : m.pairs)
-    if (pairs_.contains({r.a, r.b}) || pairs_.size() < kMostModalities * kMostModalities) pairs_[{r.a, r.b}] = r;
+    if (pairs_.contains({r.a, r.b}) || pairs_.size() < kMaxModalities * kMaxModalities) pairs_[{r.a, r.b}] = r;
   report_new_ = true;
 }
 

@@ -25,8 +25,8 @@ class Feed {
  public:
   // Events are remembered until so many later ones; of a frame more are left out and counted.
   static constexpr std::size_t kRemembered = 4096;
-  static constexpr std::size_t kMostOfFrame = 400;
-  static constexpr std::size_t kMostNodes = 64, kMostModalities = 32;
+  static constexpr std::size_t kMaxOfFrame = 400;
+  static constexpr std::size_t kMaxNodes = 64, kMaxModalities = 32;
 
   // run_id: only messages of this run; 0: of any, as in a log.
   explicit Feed(std::int64_t run_id) : run_id_(run_id) {}

@@ -29,7 +29,7 @@ namespace {
 
 constexpr sync::Nanoseconds kTurn{5'000'000};      // design: the device that a page is speaks at 200 Hz
 constexpr double kStream_Hz = 15;                  // design: smooth enough to steer by, 12 KB each
-constexpr std::size_t kMostFileBytes = 8 << 20;
+constexpr std::size_t kMaxFileBytes = 8 << 20;
 std::atomic<bool> stop{false};
 
 struct Options {
@@ -44,7 +44,7 @@ live::PageFile read_file(const std::string& folder, const char* name, const char
   std::ifstream file(path, std::ios::binary);
   std::stringstream bytes;
   bytes << file.rdbuf();
-  if (!file || bytes.str().empty() || bytes.str().size() > kMostFileBytes)
+  if (!file || bytes.str().empty() || bytes.str().size() > kMaxFileBytes)
     throw std::runtime_error(path.string() + " is not there; scripts/live/bundle makes the page");
   return {type, bytes.str()};
 }

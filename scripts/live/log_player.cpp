@@ -25,7 +25,7 @@ void LogPlayer::begin() {
   sync::LogScanner look(bytes_);
   sync::LogEvent event;
   bool any = false;
-  for (int i = 0; i < kMostEvents && look.next(event); ++i) {
+  for (int i = 0; i < kMaxEvents && look.next(event); ++i) {
     any = true;
     if (event.channel != channels::kLogInfo) continue;
     if (const auto info = sync::decode<log_info_t>(event.data.data(), event.data.size())) {
@@ -40,14 +40,14 @@ void LogPlayer::begin() {
 }
 
 sync::HostTime LogPlayer::stamp(const sync::LogEvent& event) const {
-  constexpr std::int64_t kMost_us = 4'000'000'000'000'000;  // the year 2096; more is damage
-  const std::int64_t us = std::clamp<std::int64_t>(event.timestamp_us, 0, kMost_us);
-  return sync::host_time(us * 1000 - std::clamp<std::int64_t>(offset_ns_, -kMost_us * 1000, kMost_us * 1000));
+  constexpr std::int64_t kMax_us = 4'000'000'000'000'000;  // the year 2096; more is damage
+  const std::int64_t us = std::clamp<std::int64_t>(event.timestamp_us, 0, kMax_us);
+  return sync::host_time(us * 1000 - std::clamp<std::int64_t>(offset_ns_, -kMax_us * 1000, kMax_us * 1000));
 }
 
 bool LogPlayer::read_on() {
   sync::LogEvent event;
-  for (int i = 0; i < kMostEvents; ++i) {
+  for (int i = 0; i < kMaxEvents; ++i) {
     if (!whole_.next(event)) return false;
     const sync::HostTime t = whole_clock_.observe(stamp(event));
     end_ = places_.empty() ? t : std::max(end_, t);
@@ -72,7 +72,7 @@ void LogPlayer::seek(double to_s) {
 void LogPlayer::advance(sync::Nanoseconds dt, const Take& take) {
   if (playing_)
     position_ = std::min(end_, position_ + sync::from_seconds(std::clamp(sync::to_seconds(dt), 0.0, 0.5) * rate_));
-  for (int i = 0; i < kMostEvents; ++i) {
+  for (int i = 0; i < kMaxEvents; ++i) {
     if (!has_pending_ && !scanner_.next(pending_)) return;
     has_pending_ = true;
     const sync::HostTime t = clock_.observe(stamp(pending_));

@@ -21,7 +21,7 @@ class LogPlayer {
  public:
   using Take = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
   // Design: a tenth of a second of reading or playing at once at the most, on a slow machine.
-  static constexpr int kMostEvents = 20'000;
+  static constexpr int kMaxEvents = 20'000;
   // After a seek what lies so far before is shown too, so that graphs are not empty.
   static constexpr sync::Nanoseconds kBefore{3'000'000'000};
 

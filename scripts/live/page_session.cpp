@@ -19,7 +19,7 @@ using nlohmann::json;
 std::string dump(const json& j) { return j.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 constexpr sync::Nanoseconds kSameClock{5'000'000'000};  // farther from its arrival is a time of another clock
-constexpr std::size_t kMostTags = 4096;                 // in the list of a page
+constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 
 }  // namespace
 
@@ -81,7 +81,7 @@ json PageSession::tag_list() const {
   std::map<std::string, std::pair<std::string, std::int64_t>> newest;  // name: unit, and when it was heard
   for (const auto& [key, list] : tags_.lists())
     for (const tag_def_t& t : list.tags) {
-      if (t.name.empty() || newest.size() >= kMostTags) continue;
+      if (t.name.empty() || newest.size() >= kMaxTags) continue;
       auto& entry = newest[list.node + "." + t.name];
       if (list.heard >= entry.second) entry = {t.unit, list.heard};
     }

@@ -19,12 +19,12 @@ struct Outgoing {
 class SendQueue {
  public:
   // Design: two seconds of frames, and more than the largest of them.
-  static constexpr std::size_t kMostMessages = 64;
-  static constexpr std::size_t kMostBytes = 4 << 20;
+  static constexpr std::size_t kMaxMessages = 64;
+  static constexpr std::size_t kMaxBytes = 4 << 20;
 
   // False, and counted: there is no room.
   bool push(std::shared_ptr<const std::string> text) {
-    if (texts_.size() >= kMostMessages || bytes_ + text->size() > kMostBytes) return ++dropped_, false;
+    if (texts_.size() >= kMaxMessages || bytes_ + text->size() > kMaxBytes) return ++dropped_, false;
     bytes_ += text->size();
     texts_.push_back(std::move(text));
     return true;

@@ -45,7 +45,7 @@ bool Watches::wants(std::string_view channel) const {
 Watches::Curve* Watches::curve(Watch& w, std::int32_t source) {
   for (Curve& c : w.curves)
     if (c.source == source) return &c;
-  if (w.curves.size() >= kMostSenders) return nullptr;
+  if (w.curves.size() >= kMaxSenders) return nullptr;
   return &w.curves.emplace_back(Curve{source, {}, {}});
 }
 
@@ -55,7 +55,7 @@ void Watches::keep(Curve& c, sync::HostTime time, double value) {
   if (c.newest && !back && time - *c.newest < kThinnest) return;
   c.newest = time;
   c.waiting.push_back({time, value});
-  if (c.waiting.size() > kMostWaiting) c.waiting.pop_front();
+  if (c.waiting.size() > kMaxWaiting) c.waiting.pop_front();
 }
 
 void Watches::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {

@@ -22,9 +22,9 @@ class Watches {
   static constexpr sync::Nanoseconds kThinnest{5'000'000};
   // Values of one curve for one frame, the newest: what lies before a place in a log comes at once when the log is wound there,
   // LogPlayer::kBefore of it.
-  static constexpr std::size_t kMostWaiting = 600;
+  static constexpr std::size_t kMaxWaiting = 600;
   // Curves of one variable; of more senders the values are left out. Design: as many colours can be told apart.
-  static constexpr std::size_t kMostSenders = 8;
+  static constexpr std::size_t kMaxSenders = 8;
 
   // Instead of those before. A name that is none is left out; the sentence says why, "": all are names.
   // "CHANNEL:path" is a field, anything else "node.tag".

@@ -25,7 +25,7 @@ using Code = boost::system::error_code;
 
 namespace {
 
-constexpr std::size_t kMostHeaderBytes = 8192;
+constexpr std::size_t kMaxHeaderBytes = 8192;
 constexpr std::chrono::seconds kRequestPatience{10};  // design
 // Design: a page that says nothing for so long, also not to pings, is closed. One that is frozen costs a full queue till then.
 constexpr std::chrono::seconds kIdle{60};
@@ -58,7 +58,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void open(http::request<http::empty_body> request) {
     request_ = std::move(request);
-    socket_.read_message_max(kMostBrowserBytes);
+    socket_.read_message_max(kMaxBrowserBytes);
     socket_.set_option(websocket::stream_base::timeout{kRequestPatience, kIdle, true});
     socket_.async_accept(request_, [self = shared_from_this()](Code e) { self->opened(e); });
   }
@@ -81,7 +81,7 @@ class Page : public std::enable_shared_from_this<Page> {
  private:
   void opened(Code e) {
     const auto server = server_.lock();
-    if (e || !server || server->pages.size() >= WebServer::kMostPages) return;
+    if (e || !server || server->pages.size() >= WebServer::kMaxPages) return;
     open_ = true;
     number_ = server->next_page++;
     server->pages[number_] = shared_from_this();
@@ -108,7 +108,7 @@ class Page : public std::enable_shared_from_this<Page> {
   websocket::stream<beast::tcp_stream> socket_;
   std::weak_ptr<WebServer::Impl> server_;
   http::request<http::empty_body> request_;
-  beast::flat_buffer buffer_{kMostBrowserBytes * 2};
+  beast::flat_buffer buffer_{kMaxBrowserBytes * 2};
   Outgoing sending_;
   bool open_ = false, writing_ = false;
   int number_ = 0;
@@ -127,7 +127,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection& operator=(const Connection&) = delete;
 
   void read() {
-    parser_.header_limit(kMostHeaderBytes);
+    parser_.header_limit(kMaxHeaderBytes);
     parser_.body_limit(0);
     stream_.expires_after(kRequestPatience);
     http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](Code e, std::size_t) {
@@ -181,7 +181,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   beast::tcp_stream stream_;
   std::weak_ptr<WebServer::Impl> server_;
-  beast::flat_buffer buffer_{2 * kMostHeaderBytes};
+  beast::flat_buffer buffer_{2 * kMaxHeaderBytes};
   http::request_parser<http::empty_body> parser_;
   http::response<http::string_body> response_;
 };
@@ -191,7 +191,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 void WebServer::Impl::accept() {
   acceptor.async_accept([self = shared_from_this()](Code e, tcp::socket socket) {
     if (e == boost::asio::error::operation_aborted) return;
-    if (!e && self->connections < kMostConnections) {
+    if (!e && self->connections < kMaxConnections) {
       Code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       std::make_shared<Connection>(std::move(socket), self)->read();

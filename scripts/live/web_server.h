@@ -21,7 +21,7 @@ struct PageFile {
 class WebServer {
  public:
   // Design: the windows of some people, and no flood of connections.
-  static constexpr std::size_t kMostPages = 8, kMostConnections = 32;
+  static constexpr std::size_t kMaxPages = 8, kMaxConnections = 32;
 
   struct Impl;  // of web_server.cpp
   struct Events {

@@ -3,7 +3,7 @@
 namespace tactus::conductor {
 
 void Enforcement::push(const node_health_t& m, sync::HostTime arrival) {
-  if (m.modality.empty() || (senses_.size() >= kMostSenses && !senses_.contains(m.node))) return;
+  if (m.modality.empty() || (senses_.size() >= kMaxSenses && !senses_.contains(m.node))) return;
   senses_[m.node] = {m.profile, arrival};
 }
 

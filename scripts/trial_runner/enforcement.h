@@ -15,7 +15,7 @@ class Enforcement {
  public:
   static constexpr sync::Nanoseconds kRepeat{100'000'000};     // a datagram may be lost
   static constexpr sync::Nanoseconds kForgotten{500'000'000};  // health comes every 100 ms: such a node is gone
-  static constexpr std::size_t kMostSenses = 64;
+  static constexpr std::size_t kMaxSenses = 64;
 
   // To be put in force from now on.
   void begin(sync::ProfileInForce profile) { profile_ = std::move(profile), told_ = false, next_.reset(); }

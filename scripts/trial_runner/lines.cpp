@@ -39,7 +39,7 @@ std::optional<std::string> Lines::next() {
 }
 
 void Lines::say(const std::string& line) {
-  if (out_.size() > kMostUnread)
+  if (out_.size() > kMaxUnread)
     throw std::runtime_error("nobody reads what the conductor says; read its lines as they come");
   out_ += line;
   out_ += '\n';

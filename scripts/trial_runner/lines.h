@@ -10,7 +10,7 @@ namespace tactus::conductor {
 
 class Lines {
  public:
-  static constexpr std::size_t kMostUnread = 8 << 20, kLongestLine = 1 << 17;  // bytes, design
+  static constexpr std::size_t kMaxUnread = 8 << 20, kLongestLine = 1 << 17;  // bytes, design
 
   // Makes both descriptors non-blocking.
   Lines(int in, int out);

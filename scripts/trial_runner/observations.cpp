@@ -36,7 +36,7 @@ bool Observations::fresh(std::set<std::vector<std::int64_t>>& known, std::vector
 }
 
 sync::SenderClock* Observations::clock_of(const header_t& header, sync::HostTime arrival) {
-  if (clocks_.size() >= kMostSenders && !clocks_.contains(header.source)) return nullptr;
+  if (clocks_.size() >= kMaxSenders && !clocks_.contains(header.source)) return nullptr;
   sync::SenderClock& clock = clocks_.try_emplace(header.source, own_).first->second;
   clock.observe(header, arrival);
   return &clock;

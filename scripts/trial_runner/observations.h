@@ -24,7 +24,7 @@ class Observations {
  public:
   // So many ids of events are remembered, to say each once.
   static constexpr std::size_t kRemembered = 4096;
-  static constexpr std::size_t kMostSenders = 256;
+  static constexpr std::size_t kMaxSenders = 256;
 
   explicit Observations(sync::OwnClock own) : own_(own) {}
 

@@ -51,7 +51,7 @@ const sync::NodeDescriptor kConductor{.node = "conductor",
                                    .about = "Leads the trials of a study."};
 constexpr sync::Nanoseconds kSensesEvery{500'000'000}, kRepeat{50'000'000};
 constexpr int kForceEvery = 5;  // ticks between two lines on the force of a press
-constexpr int kMostOrdersATick = 16;
+constexpr int kMaxOrdersATick = 16;
 
 std::int64_t realtime_ns() {
   return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -112,7 +112,7 @@ class Conductor {
   void say(const json& line) { lines_.say(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
   bool heed_orders(sync::HostTime now) {
-    for (int i = 0; i < kMostOrdersATick; ++i) {
+    for (int i = 0; i < kMaxOrdersATick; ++i) {
       const auto line = lines_.next();
       if (!line) return !lines_.ended();
       try {
@@ -229,7 +229,7 @@ class Conductor {
   }
 
   void remember(const node_health_t& m, sync::HostTime arrival) {
-    if (m.modality.empty() || (senses_.size() >= Enforcement::kMostSenses && !senses_.contains(m.node))) return;
+    if (m.modality.empty() || (senses_.size() >= Enforcement::kMaxSenses && !senses_.contains(m.node))) return;
     senses_[m.node] = {m.modality, m.state, m.rate_Hz, m.nominal_rate_Hz, m.missed_ticks, m.profile, arrival};
   }
   void say_senses(sync::HostTime now) {

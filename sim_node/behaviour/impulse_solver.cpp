@@ -11,7 +11,7 @@ namespace {
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Contacts that a state may hold: more than a step ever has.
-constexpr std::size_t kMostContacts = 1 << 16;
+constexpr std::size_t kMaxContacts = 1 << 16;
 
 // Of a shape, from the origin of its own frame: all of it, and what turning about the z axis moves.
 double bound_of(const ShapeDef& s, const WorldDef& world) {
@@ -110,7 +110,7 @@ void ImpulseSolver::archive(StateArchive& a) {
   world_->archive(a);
   if (a.reads()) read();
   for (auto* list : {&contacts_, &solved_})
-    a.list(*list, kMostContacts, [&](Manifold& m) { sim::archive(a, m, bodies_.size(), shapes_); });
+    a.list(*list, kMaxContacts, [&](Manifold& m) { sim::archive(a, m, bodies_.size(), shapes_); });
 }
 
 }  // namespace tactus::sim

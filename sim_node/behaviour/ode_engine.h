@@ -12,7 +12,7 @@
 namespace tactus::sim {
 
 // Contacts that one step may solve, and storage for their feedback: it must outlive the step.
-inline constexpr std::size_t kMostPoints = 16384;
+inline constexpr std::size_t kMaxPoints = 16384;
 
 struct Solver::Engine {
   ode::Library library;

@@ -88,8 +88,8 @@ void Solver::start(const WorldDef& world) {
       if (body >= 0) engine_->jointed[static_cast<std::size_t>(body)] = true;
   engine_->joints = std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
-  engine_->feedback.resize(kMostPoints);
-  engine_->joined.reserve(kMostPoints);
+  engine_->feedback.resize(kMaxPoints);
+  engine_->joined.reserve(kMaxPoints);
   friction_maps_ = std::make_unique<const FrictionMaps>(world);
   for (const ShapeDef& s : world.shapes) {
     friction_.push_back(s.friction);
@@ -187,7 +187,7 @@ void Solver::join(Manifold& c) {
   s.soft_erp = settings_.contact_erp;
   s.soft_cfm = settings_.contact_cfm;
   for (ManifoldPoint& p : c.used()) {
-    if (engine_->joined.size() >= kMostPoints) return;
+    if (engine_->joined.size() >= kMaxPoints) return;
     s.mu = friction * p.friction;
     // ODE bounds friction by a pyramid; turned so that one of its sides faces the motion to be, it is as wide as the
     // cone. At 45 degrees it would be 41 % too wide.

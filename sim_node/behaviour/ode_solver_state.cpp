@@ -159,7 +159,7 @@ void Solver::archive(StateArchive& a) {
   a.fixed(fall_m_s_, [&](Eigen::Vector3d& x) { a(x); });
   if (a.reads()) read_bodies();
   for (auto* list : {&contacts_, &solved_})
-    a.list(*list, kMostPoints, [&](Manifold& m) { sim::archive(a, m, motions_.size(), friction_.size()); });
+    a.list(*list, kMaxPoints, [&](Manifold& m) { sim::archive(a, m, motions_.size(), friction_.size()); });
 }
 
 }  // namespace tactus::sim

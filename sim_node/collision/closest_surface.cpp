@@ -109,7 +109,7 @@ void ClosestSurface::mesh_planes(const Vector3d& place, double reach_m, std::vec
   auto& triangles = near_;
   const auto nearer = [](const NearTriangle& a, const NearTriangle& b) { return a.distance_m < b.distance_m; };
   if (!tree_) return;
-  tree_->near(place, reach_m, kMostNear, triangles);
+  tree_->near(place, reach_m, kMaxNear, triangles);
   std::sort(triangles.begin(), triangles.end(), nearer);
   // At an edge or corner several triangles are equally near; the one that faces the place most tells inside from outside.
   const auto facing = [&](const NearTriangle& t) { return std::abs((place - t.point).dot(t.face_normal)); };

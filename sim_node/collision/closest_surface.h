@@ -42,7 +42,7 @@ class ClosestSurface {
   bool nearest_around(std::size_t candidate) const;
   void mesh_planes(const Eigen::Vector3d& place, double reach_m, std::vector<SurfacePlane>& out) const;
 
-  static constexpr std::size_t kMostNear = 128;  // triangles that are looked at; the nearest
+  static constexpr std::size_t kMaxNear = 128;  // triangles that are looked at; the nearest
 
   ShapeKind kind_;
   double same_direction_;  // cosine

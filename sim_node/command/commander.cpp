@@ -12,7 +12,7 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kLongestText = 512;  // of a sim_reply_t
-constexpr std::size_t kMostAnswers = 256;  // in one tick; the sender repeats
+constexpr std::size_t kMaxAnswers = 256;  // in one tick; the sender repeats
 
 std::string at(sync::SimTime t) {
   std::ostringstream text;
@@ -27,7 +27,7 @@ void Commander::take(const sim_command_t& c) {
   const auto before =
       std::find_if(known_.begin(), known_.end(), [&](const sim_reply_t& r) { return r.id == c.id; });
   if (before != known_.end()) {
-    if (answers_.size() < kMostAnswers) answers_.push_back(*before);
+    if (answers_.size() < kMaxAnswers) answers_.push_back(*before);
     return;
   }
   std::string text;
@@ -81,7 +81,7 @@ std::string Commander::snapshot(const sim_command_t& c, std::string& text) {
   text = "\"" + c.name + "\" is the world at " + at(simulation_.now()) + ", " + std::to_string(bytes.size()) +
          " bytes";
   if (!store_.keep(c.name, std::move(bytes)))
-    return "as many states are kept as there may be, " + std::to_string(StateStore::kMost) +
+    return "as many states are kept as there may be, " + std::to_string(StateStore::kMax) +
            "; use one of their names again";
   if (!c.to_file) return "";
   store_.begin_write(c.name);
@@ -115,7 +115,7 @@ void Commander::answer(std::int64_t id, const std::string& refused, const std::s
   r.paused = paused_ ? 1 : 0;
   known_.push_back(r);
   if (known_.size() > kRemembered) known_.pop_front();
-  if (answers_.size() < kMostAnswers) answers_.push_back(std::move(r));
+  if (answers_.size() < kMaxAnswers) answers_.push_back(std::move(r));
 }
 
 std::vector<sim_reply_t>& Commander::answers() {

@@ -28,7 +28,7 @@ constexpr std::array kProperties{
 };
 
 // design: five times the force limit of the hand, and as much at the end of a rod of 10 cm
-constexpr double kMostForce_N = 100, kMostTorque_N_m = 10;
+constexpr double kMaxForce_N = 100, kMaxTorque_N_m = 10;
 constexpr sync::Nanoseconds kLongestPush = std::chrono::seconds(10);
 
 const char* word(Owner owner) {
@@ -142,14 +142,14 @@ std::string push_body(Simulation& simulation, const WorldDef& world, const std::
   if (body < 0) return "there is no body " + quoted(name) + " in this scene";
   if (const std::string why = may_move(world, body); !why.empty()) return why;
   std::ostringstream limit;
-  if (!(force_N.norm() <= kMostForce_N) || !(torque_N_m.norm() <= kMostTorque_N_m))
-    limit << "a push may have " << kMostForce_N << " N and " << kMostTorque_N_m << " N m at the most";
+  if (!(force_N.norm() <= kMaxForce_N) || !(torque_N_m.norm() <= kMaxTorque_N_m))
+    limit << "a push may have " << kMaxForce_N << " N and " << kMaxTorque_N_m << " N m at the most";
   else if (duration < simulation.step_length() || duration > kLongestPush)
     limit << "a push lasts between one step of 1 ms and " << sync::to_seconds(kLongestPush) << " s";
   if (!limit.str().empty()) return limit.str();
   const std::int64_t steps = (duration + simulation.step_length() / 2) / simulation.step_length();
   if (!simulation.push({body, force_N, torque_N_m, steps}))
-    return "as many pushes act already as there may be, " + std::to_string(Simulation::kMostWrenches) +
+    return "as many pushes act already as there may be, " + std::to_string(Simulation::kMaxWrenches) +
            "; wait for their end";
   return "";
 }

@@ -41,7 +41,7 @@ bool StateStore::good_name(const std::string& name) {
 }
 
 bool StateStore::keep(const std::string& name, Bytes bytes) {
-  if (!kept_.contains(name) && kept_.size() >= kMost) return false;
+  if (!kept_.contains(name) && kept_.size() >= kMax) return false;
   kept_[name] = std::make_shared<const Bytes>(std::move(bytes));
   return true;
 }

@@ -17,7 +17,7 @@ namespace tactus::sim {
 class StateStore {
  public:
   using Bytes = std::vector<std::uint8_t>;
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMax = 16;
   static constexpr std::size_t kLargest = 256u << 20;  // of a file, bytes
 
   explicit StateStore(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -7,7 +7,7 @@ namespace tactus::sim {
 namespace {
 
 // More contacts than a step can solve points.
-constexpr std::size_t kMostContacts = 1 << 16;
+constexpr std::size_t kMaxContacts = 1 << 16;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void ContactTracker::archive(StateArchive& a, LiveContact& c, std::size_t bodies
 
 void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
   a(now_);
-  a.list(live_, kMostContacts, [&](LiveContact& c) { archive(a, c, bodies); });
+  a.list(live_, kMaxContacts, [&](LiveContact& c) { archive(a, c, bodies); });
 }
 
 void ContactTracker::take(std::span<const char> marked, std::vector<LiveContact>& out) {

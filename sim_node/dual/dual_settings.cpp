@@ -7,20 +7,20 @@ namespace tactus::sim {
 namespace {
 
 // Between two visual steps; design: a flood of commands is held back long before (sim_node: 4 a tick).
-constexpr std::size_t kMostWaiting = 256;
+constexpr std::size_t kMaxWaiting = 256;
 
 }  // namespace
 
 // The haptic group follows at once, the visual group from the next step that is computed on.
 bool DualGroups::apply(const impulse::SceneChange& change) {
-  if (changes_.size() >= kMostWaiting || !scene_.apply(*world_, change)) return false;
+  if (changes_.size() >= kMaxWaiting || !scene_.apply(*world_, change)) return false;
   changes_.push_back(change);
   stale_ = true;
   return true;
 }
 
 bool DualGroups::wish(const Wish& w) {
-  if (world_->unit_of(w.body) < 0 || wishes_.size() >= kMostWaiting) return false;
+  if (world_->unit_of(w.body) < 0 || wishes_.size() >= kMaxWaiting) return false;
   if (!is_haptic(w.body)) grouping_.want(w.body);
   wishes_.push_back(w);
   return true;

@@ -7,8 +7,8 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostContacts = 1 << 16;  // as of a tracker
-constexpr std::size_t kMostLoads = 1 << 12, kMostChanges = 1 << 12;
+constexpr std::size_t kMaxContacts = 1 << 16;  // as of a tracker
+constexpr std::size_t kMaxLoads = 1 << 12, kMaxChanges = 1 << 12;
 
 }  // namespace
 
@@ -33,19 +33,19 @@ void DualGroups::archive(StateArchive& a) {
   a.require(told >= 0 && told <= static_cast<std::int64_t>(step_->events.size()),
             "the state holds a number out of range");
   told_ = static_cast<std::size_t>(told);
-  a.list(loads_, kMostLoads, [&](Load& load) {
+  a.list(loads_, kMaxLoads, [&](Load& load) {
     a.index(load.body, bodies);
     a.require(load.body >= 0, "the state holds a push of nothing");
     a(load.force_N), a(load.point_m), a(load.torque_N_m), a(load.at_centre);
   });
-  a.list(changes_, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
-  a.list(wishes_, kMostLoads, [&](Wish& w) {
+  a.list(changes_, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+  a.list(wishes_, kMaxLoads, [&](Wish& w) {
     a(w.kind), a.index(w.body, bodies), a(w.vector), a(w.turn);
     a.require(w.body >= 0 && w.kind >= Wish::kPose && w.kind <= Wish::kSpin,
               "the state holds a number out of range");
   });
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
-  a.list(contacts_, kMostContacts, [&](Manifold& m) { sim::archive(a, m, bodies, source_.shapes()); });
+  a.list(contacts_, kMaxContacts, [&](Manifold& m) { sim::archive(a, m, bodies, source_.shapes()); });
   bool stale = stale_;
   a(stale);
   if (!a.reads()) return;

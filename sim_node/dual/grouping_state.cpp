@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostPairs = 1 << 18, kMostTools = 64;
+constexpr std::size_t kMaxPairs = 1 << 18, kMaxTools = 64;
 
 void archive(StateArchive& a, SweptSphere& s) { a(s.centre_m), a(s.velocity_m_s), a(s.radius_m), a(s.pad_m); }
 
@@ -34,7 +34,7 @@ void Grouping::archive(StateArchive& a) {
     for (const int i : late_) is_late_[static_cast<std::size_t>(i)] = 0;
   }
   for (auto* list : {&haptic_, &late_, &asked_}) a.list(*list, n, body);
-  a.list(touching_, kMostPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
+  a.list(touching_, kMaxPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
   for (const int i : haptic_) {
     const auto k = static_cast<std::size_t>(i);
     member_[k] = 1;
@@ -46,7 +46,7 @@ void Grouping::archive(StateArchive& a) {
     is_late_[k] = 1;
     sim::archive(a, late_ways_[k]);
   }
-  a.list(tools_, kMostTools, [&](SweptSphere& s) { sim::archive(a, s); });
+  a.list(tools_, kMaxTools, [&](SweptSphere& s) { sim::archive(a, s); });
   a.fixed(wanted_at_, [&](sync::SimTime& t) { a(t); });
   if (a.reads()) {
     entered_.clear();

@@ -4,7 +4,7 @@
 
 namespace tactus::sim {
 namespace {
-constexpr std::size_t kMostPairs = 1 << 18;
+constexpr std::size_t kMaxPairs = 1 << 18;
 }  // namespace
 
 void SweptTrajectories::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
@@ -46,7 +46,7 @@ void SweptTrajectories::archive(StateArchive& a, std::size_t bodies) {
   a.require(std::is_sorted(members.begin(), members.end()), "the state holds a list in disorder");
   a.list(ways, bodies, [&](SweptSphere& s) { a(s.centre_m), a(s.velocity_m_s), a(s.radius_m), a(s.pad_m); });
   a.require(ways.size() == members.size(), "the state holds a list that is too long");
-  a.list(touching, kMostPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
+  a.list(touching, kMaxPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
   a(horizon_s_);
   if (a.reads()) set(bodies, members, ways, touching, horizon_s_);
 }

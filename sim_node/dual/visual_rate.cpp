@@ -6,7 +6,7 @@
 namespace tactus::sim {
 
 void VisualRate::set(double rate_Hz) {
-  rate_Hz_ = std::clamp(rate_Hz, kLeast_Hz, kMost_Hz);
+  rate_Hz_ = std::clamp(rate_Hz, kLeast_Hz, kMax_Hz);
   steps_ = begun_ = 0;
 }
 

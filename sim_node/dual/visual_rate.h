@@ -11,7 +11,7 @@ class VisualRate {
  public:
   // Pictures are not shown faster than 240 Hz, as snapshots are not (setting state_rate); slower than 10 Hz
   // nothing is seen to move (design).
-  static constexpr double kLeast_Hz = 10, kMost_Hz = 240;
+  static constexpr double kLeast_Hz = 10, kMax_Hz = 240;
 
   VisualRate(double rate_Hz, sync::Nanoseconds tick) : tick_(tick) { set(rate_Hz); }
 

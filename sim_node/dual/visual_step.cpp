@@ -7,13 +7,13 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostContacts = 1 << 16;  // as of a tracker
-constexpr std::size_t kMostCoordinates = 1 << 16, kMostSubSteps = 64, kMostChanges = 1 << 12;
+constexpr std::size_t kMaxContacts = 1 << 16;  // as of a tracker
+constexpr std::size_t kMaxCoordinates = 1 << 16, kMaxSubSteps = 64, kMaxChanges = 1 << 12;
 
 void archive_unit(StateArchive& a, impulse::UnitState& s) {
   a(s.body.centre_m), a(s.body.orientation), a(s.body.velocity_m_s), a(s.body.spin_rad_s);
-  a.list(s.joints.positions, kMostCoordinates, [&](double& x) { a(x); });
-  a.list(s.joints.rates, kMostCoordinates, [&](double& x) { a(x); });
+  a.list(s.joints.positions, kMaxCoordinates, [&](double& x) { a(x); });
+  a.list(s.joints.rates, kMaxCoordinates, [&](double& x) { a(x); });
   a(s.joints.reach_s);
 }
 
@@ -53,7 +53,7 @@ void Handover::archive(StateArchive& a, int most, std::size_t bodies, ContactTra
   a.require(std::is_sorted(units.begin(), units.end()), "the state holds a list in disorder");
   a.list(states, count, [&](impulse::UnitState& s) { archive_unit(a, s); });
   a.require(states.size() == units.size(), "the state holds a list that is too long");
-  a.list(contacts, kMostContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
+  a.list(contacts, kMaxContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
 }
 
 void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker) {
@@ -61,20 +61,20 @@ void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, Contact
   archive_time(a, length), archive_time(a, missed);
   enters.archive(a, units, bodies, tracker);
   archive_numbers(a, leaves, static_cast<std::size_t>(units));
-  a.list(changes, kMostChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+  a.list(changes, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
 }
 
 void VisualStep::archive(StateArchive& a, int most, std::size_t count, ContactTracker& tracker) {
   task.archive(a, most, count, tracker);
   a(begins);
   archive_numbers(a, units, static_cast<std::size_t>(most)), archive_numbers(a, bodies, count);
-  a.list(times, kMostSubSteps, [&](sync::Nanoseconds& t) { archive_time(a, t); });
-  a.list(states, kMostSubSteps, [&](auto& list) {
+  a.list(times, kMaxSubSteps, [&](sync::Nanoseconds& t) { archive_time(a, t); });
+  a.list(states, kMaxSubSteps, [&](auto& list) {
     a.list(list, static_cast<std::size_t>(most), [&](impulse::UnitState& s) { archive_unit(a, s); });
     a.require(list.size() == units.size(), "the state holds a list that is too long");
   });
-  a.list(live, kMostSubSteps,
-         [&](auto& list) { a.list(list, kMostContacts, [&](LiveContact& c) { tracker.archive(a, c, count); }); });
+  a.list(live, kMaxSubSteps,
+         [&](auto& list) { a.list(list, kMaxContacts, [&](LiveContact& c) { tracker.archive(a, c, count); }); });
   a.require(!times.empty() && states.size() == times.size() && live.size() == times.size(),
             "the state holds a list that is too long");
   for (auto* list : {&begin, &end}) {
@@ -82,7 +82,7 @@ void VisualStep::archive(StateArchive& a, int most, std::size_t count, ContactTr
     a.require(list->size() == count, "the state is one of another scene");
   }
   ways.archive(a, count);
-  a.list(events, kMostContacts, [&](contact_event_t& e) { a.message(e); });
+  a.list(events, kMaxContacts, [&](contact_event_t& e) { a.message(e); });
   a(asleep);
 }
 

@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr long long kMostCells = 64;  // of one box, or of one query: beyond that a look at all is as cheap
+constexpr long long kMaxCells = 64;  // of one box, or of one query: beyond that a look at all is as cheap
 constexpr int kFurthest = (1 << 20) - 1;
 constexpr double kSmallestCell_m = 1e-3;
 
@@ -48,7 +48,7 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
   cell_m_ = std::max(4 * *middle, kSmallestCell_m);
   for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
     const Range r = range_of(boxes_[static_cast<std::size_t>(i)]);
-    if (r.cells() > kMostCells)
+    if (r.cells() > kMaxCells)
       large_.push_back(i);
     else
       each_cell(r.least, r.most, [&](int x, int y, int z) { entries_.push_back({bucket_of(x, y, z), i}); });
@@ -69,7 +69,7 @@ void BoundsGrid::find(const Bounds& query, std::vector<int>& found) const {
   };
   if (boxes_.empty()) return;
   const Range r = range_of(query);
-  if (r.cells() > kMostCells) {
+  if (r.cells() > kMaxCells) {
     for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) look(i);
     return;
   }

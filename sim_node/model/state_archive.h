@@ -90,7 +90,7 @@ class StateArchive {
     std::int64_t ns = sync::to_ns(t);
     (*this)(ns);
     // A year: sums of such times do not overflow.
-    require(ns >= -kMostTime_ns && ns <= kMostTime_ns, "the state holds a time out of range");
+    require(ns >= -kMaxTime_ns && ns <= kMaxTime_ns, "the state holds a time out of range");
     t = sync::sim_time(ns);
   }
   void operator()(std::string& text) {
@@ -141,7 +141,7 @@ class StateArchive {
   }
 
  private:
-  static constexpr std::int64_t kMostTime_ns = 366ll * 24 * 3600 * 1'000'000'000;
+  static constexpr std::int64_t kMaxTime_ns = 366ll * 24 * 3600 * 1'000'000'000;
 
   bool reads_ = false;
   Bytes bytes_;

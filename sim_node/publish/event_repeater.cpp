@@ -6,7 +6,7 @@ namespace tactus::sim {
 
 void EventRepeater::add(const std::vector<contact_event_t>& events, sync::SimTime now) {
   for (const contact_event_t& e : events) {
-    if (young_.size() >= kMost) {
+    if (young_.size() >= kMax) {
       const auto most_sent = std::max_element(young_.begin(), young_.end(),
                                               [](const Young& a, const Young& b) { return a.sent < b.sent; });
       if (most_sent->sent == 0) ++overflow_;

@@ -16,7 +16,7 @@ class EventRepeater {
   // A contact_event_t has 81 bytes; so many fit beside the rest of a page.
   static constexpr std::size_t kPerPage = 16;
   // Bounded: in a storm beyond this the oldest give way, after they have been sent.
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
 
   explicit EventRepeater(std::size_t most_pages) : most_per_step_(most_pages * kPerPage) {}
 

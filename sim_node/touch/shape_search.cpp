@@ -11,7 +11,7 @@ namespace tactus::sim {
 namespace {
 
 // Of one surface, the nearest: more than a touch model holds of all.
-constexpr std::size_t kMostMeetings = 64;
+constexpr std::size_t kMaxMeetings = 64;
 
 // Of each place and direction the nearest.
 class Meetings : public NearestFirst {
@@ -32,7 +32,7 @@ class Meetings : public NearestFirst {
     // Its height over the plane, whatever the detector calls the gap of two points that are not above each other.
     const Eigen::Vector3d normal = -p.normal;
     out_.push_back({{p.on_b_m, normal, normal.dot(place(p) - p.on_b_m), p.triangle_b}, to_tool_ * place(p)});
-    return out_.size() < kMostMeetings;
+    return out_.size() < kMaxMeetings;
   }
 
  private:

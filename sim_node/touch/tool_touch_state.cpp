@@ -10,12 +10,12 @@ namespace tactus::sim {
 namespace {
 
 // Of surfaces near one tool.
-constexpr std::size_t kMostNear = 1 << 16;
+constexpr std::size_t kMaxNear = 1 << 16;
 
 }  // namespace
 
 void ToolTouch::archive(StateArchive& a) {
-  a.list(near_, kMostNear, [&](Near& n) {
+  a.list(near_, kMaxNear, [&](Near& n) {
     a(n.contact_id);
     auto surface = static_cast<std::int64_t>(n.surface);
     a(surface);

@@ -11,7 +11,7 @@ namespace tactus::sim {
 
 namespace {
 
-constexpr std::size_t kMostBooks = 14;  // of a touch model; design: more than a message tells the simulation of
+constexpr std::size_t kMaxBooks = 14;  // of a touch model; design: more than a message tells the simulation of
 // A force may act so far outside the sphere around a body, m: the rounding of the wire and a step's motion.
 constexpr double kBeyond_m = 0.02;
 
@@ -98,7 +98,7 @@ void Simulation::detect_contacts() {
     touch.update(now(), motions, tools_[i].news, events_);
     touch.describe(motions, tool_contacts_);
     models_[i] = tools_[i].touch.model();
-    tools_[i].push.books(models_[i].applied, kMostBooks);
+    tools_[i].push.books(models_[i].applied, kMaxBooks);
     models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
   }
   std::stable_sort(events_.begin(), events_.end(),
@@ -114,7 +114,7 @@ void Simulation::apply_wrenches() {
 }
 
 bool Simulation::push(const Wrench& wrench) {
-  if (wrenches_.size() >= kMostWrenches) return false;
+  if (wrenches_.size() >= kMaxWrenches) return false;
   wrenches_.push_back(wrench);
   return true;
 }
@@ -136,7 +136,7 @@ void Simulation::hold(std::span<const tool_state_t> messages) {
     tools_[i].touch.feel(now(), shown_, tools_[i].news);
     tools_[i].push.hold(now(), tools_[i].news, shown_);
     models_[i] = tools_[i].touch.model();
-    tools_[i].push.books(models_[i].applied, kMostBooks);
+    tools_[i].push.books(models_[i].applied, kMaxBooks);
     models_[i].applied_count = static_cast<std::int8_t>(models_[i].applied.size());
   }
   place_tools(shown_);

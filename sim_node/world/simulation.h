@@ -28,7 +28,7 @@ struct Wrench {
 
 class Simulation {
  public:
-  static constexpr std::size_t kMostWrenches = 64;
+  static constexpr std::size_t kMaxWrenches = 64;
 
   // Throws std::runtime_error with one sentence when the world cannot be simulated.
   Simulation(const WorldDef& world, const Settings& settings);

@@ -6,14 +6,14 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostEvents = 1 << 16;
-constexpr std::int64_t kMostSteps = 31'000'000'000;  // not quite a year
+constexpr std::size_t kMaxEvents = 1 << 16;
+constexpr std::int64_t kMaxSteps = 31'000'000'000;  // not quite a year
 
 }  // namespace
 
 void Simulation::archive(StateArchive& a) {
   a(steps_);
-  a.require(steps_ >= 0 && steps_ <= kMostSteps, "the state holds a number out of range");
+  a.require(steps_ >= 0 && steps_ <= kMaxSteps, "the state holds a number out of range");
   ids_.archive(a);
   mechanics_->archive(a);
   const std::size_t bodies = mechanics_->motions().size();
@@ -23,14 +23,14 @@ void Simulation::archive(StateArchive& a) {
     a(tool.orientation);
     if (a.reads()) tool.news.clear();
   });
-  a.list(events_, kMostEvents, [&](contact_event_t& e) { a.message(e); });
-  a.list(tool_contacts_, kMostEvents, [&](contact_t& c) { a.message(c); });
+  a.list(events_, kMaxEvents, [&](contact_event_t& e) { a.message(e); });
+  a.list(tool_contacts_, kMaxEvents, [&](contact_t& c) { a.message(c); });
   a.fixed(models_, [&](touch_model_t& m) { a.message(m); });
-  a.list(wrenches_, kMostWrenches, [&](Wrench& w) {
+  a.list(wrenches_, kMaxWrenches, [&](Wrench& w) {
     a.index(w.body, bodies);
     a.require(w.body >= 0, "the state holds a push of nothing");
     a(w.force_N), a(w.torque_N_m), a(w.steps);
-    a.require(w.steps >= 0 && w.steps <= kMostSteps, "the state holds a number out of range");
+    a.require(w.steps >= 0 && w.steps <= kMaxSteps, "the state holds a number out of range");
   });
   a(held_);
   shown_.resize(held_ ? bodies : 0);

@@ -11,9 +11,9 @@ namespace {
 // Chunks wait here between two ticks of the slowest receiver (20 ms at 4 a millisecond).
 constexpr std::size_t kChunkQueue = 4096;
 constexpr std::size_t kManifestQueue = 128;
-constexpr int kMostPages = 64;  // of twelve assets as our sender fills them
+constexpr int kMaxPages = 64;  // of twelve assets as our sender fills them
 constexpr Nanoseconds kAskAgainAfter{100'000'000};
-constexpr int kMostRequests = 16;  // per round of asking, and assets under way at a time
+constexpr int kMaxRequests = 16;  // per round of asking, and assets under way at a time
 constexpr int kLongestRun = 256;   // chunks per request: 64 ms of the sender's budget
 // Of each asset under way: what a sender sends in 250 ms.
 constexpr std::size_t kWindow = 1024;
@@ -86,7 +86,7 @@ bool SceneReceiver::follow(const header_t& header, HostTime arrival) {
 
 // A manifest is the same for the whole life of its sender, so pages of different sendings complete each other.
 void SceneReceiver::take(const scene_manifest_t& page) {
-  if (page.pages > kMostPages) {
+  if (page.pages > kMaxPages) {
     ++refused_;
     return;
   }
@@ -190,9 +190,9 @@ void SceneReceiver::give_up(HostTime now) {
 
 void SceneReceiver::ask(HostTime now) {
   next_request_ = now + kAskAgainAfter;
-  int left = kMostRequests, under_way = 0;
+  int left = kMaxRequests, under_way = 0;
   for (const auto& [hash, in] : incoming_) {
-    if (left == 0 || ++under_way > kMostRequests) break;
+    if (left == 0 || ++under_way > kMaxRequests) break;
     const std::size_t end = std::min(in.chunk_count(), in.hashed + kWindow);
     for (std::size_t i = in.hashed; i < end && left > 0;) {
       if (in.has(i)) {

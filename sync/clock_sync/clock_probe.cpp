@@ -47,7 +47,7 @@ bool ClockProber::takes(const clock_probe_t& r, HostTime back) const {
 void ClockProber::reply(const clock_probe_t& r, HostTime back) {
   if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // to somebody else
   const auto known = heard_.find(r.header.clock);
-  const bool room = known != heard_.end() ? known->second.wave.replies < 2 * kProbes : heard_.size() < kMostClocks;
+  const bool room = known != heard_.end() ? known->second.wave.replies < 2 * kProbes : heard_.size() < kMaxClocks;
   if (!takes(r, back) || !room) {
     ++refused_;
     return;
@@ -83,7 +83,7 @@ std::vector<ProbeWave> ClockProber::finish(HostTime now) {
       ++contradictory_;
   }
   Nanoseconds period = kPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(out.size() / kFewClocks));
-  if (waves_.size() > kMostClocks) waves_.clear();  // hosts that come and go for months
+  if (waves_.size() > kMaxClocks) waves_.clear();  // hosts that come and go for months
   for (const ProbeWave& wave : out)
     if (waves_[wave.clock] < kFirstWaves && ++waves_[wave.clock] < kFirstWaves) period = kFirstPeriod;
   heard_.clear();

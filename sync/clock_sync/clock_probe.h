@@ -42,7 +42,7 @@ class ClockProber {
   // are 120 us.
   static constexpr std::size_t kFewClocks = 16;
   // Design: more hosts than a cluster has; what answers beyond that is counted as refused.
-  static constexpr std::size_t kMostClocks = 64;
+  static constexpr std::size_t kMaxClocks = 64;
 
   ClockProber(Identity own, HostTime first_wave) : own_(std::move(own)), wave_begin_(first_wave) {}
 

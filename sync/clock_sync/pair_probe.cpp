@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'T', 'P', 'P', '1'};
 // Nobody sends more in a round: a forged number shall not fill the memory or spoil a share.
-constexpr std::uint64_t kMostNumbers = 1 << 20;
+constexpr std::uint64_t kMaxNumbers = 1 << 20;
 constexpr std::int64_t kLatest = std::int64_t{1} << 60;
 
 void put(std::vector<std::uint8_t>& out, std::uint64_t value, int bytes) {
@@ -68,7 +68,7 @@ std::optional<PairDatagram> PairDatagram::decode(std::span<const std::uint8_t> d
     *t = static_cast<std::int64_t>(r.number(8));
     if (*t < 0 || *t > kLatest) return std::nullopt;
   }
-  if (m.number >= kMostNumbers) return std::nullopt;
+  if (m.number >= kMaxNumbers) return std::nullopt;
   return m;
 }
 

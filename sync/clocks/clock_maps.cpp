@@ -46,7 +46,7 @@ void ClockMaps::observe(const clock_map_t& m, HostTime arrival) {
   const std::pair key{m.of_clock, m.to_clock};
   const auto it = known_.find(key);
   if (it == known_.end()) {
-    if (known_.size() < kMost) known_.emplace(key, Known{m, arrival});
+    if (known_.size() < kMax) known_.emplace(key, Known{m, arrival});
     return;
   }
   const header_t& before = it->second.map.header;
@@ -63,7 +63,7 @@ std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock
     out = ClockLine(it->second.map).from_of(time);
   else if (const auto back = known_.find({on_clock, of_clock}); back != known_.end())
     out = ClockLine(back->second.map).to_of(time);
-  if (out && out->uncertainty > kMostUncertain) out.reset();
+  if (out && out->uncertainty > kMaxUncertain) out.reset();
   return out;
 }
 

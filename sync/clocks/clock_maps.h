@@ -37,11 +37,11 @@ class ClockMaps {
  public:
   // A map that nobody renews grows less certain; beyond this the one-way estimate is no worse, whose bias is a latency
   // (design: one frame at 60 Hz).
-  static constexpr Nanoseconds kMostUncertain{16'000'000};
+  static constexpr Nanoseconds kMaxUncertain{16'000'000};
   // Of two publishers of one map the first is heeded until it has been silent for four of its periods.
   static constexpr Nanoseconds kSilence{2'000'000'000};
   // More clocks than a cluster has hosts: beyond this, maps are an attack or a mistake.
-  static constexpr std::size_t kMost = 1024;
+  static constexpr std::size_t kMax = 1024;
 
   // Maps of another run speak of clocks as they were: ignored and counted. Run 0: that of the first map.
   explicit ClockMaps(std::int64_t run_id) : run_id_(run_id) {}

@@ -53,7 +53,7 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorC
       decisions->push_back(
           {static_cast<std::uint64_t>(heard.event_id), true, sim_time(heard.time_ns), v, arrival});
     if (v.dropped()) {
-      if (dropped_.size() < kMostDropped) dropped_.push_back(heard);
+      if (dropped_.size() < kMaxDropped) dropped_.push_back(heard);
       continue;
     }
     contact_events_t late = newest_;

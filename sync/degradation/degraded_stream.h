@@ -38,10 +38,10 @@ template <class Message>
 class DelayQueue {
  public:
   // The longest delay of a profile, a minute, of a stream of 1 kHz.
-  static constexpr std::size_t kMost = 1 << 16;
+  static constexpr std::size_t kMax = 1 << 16;
   void push(HostTime release, Message m, HostTime arrival) {
     waiting_.emplace(release, std::make_pair(std::move(m), arrival));
-    if (waiting_.size() <= kMost) return;
+    if (waiting_.size() <= kMax) return;
     waiting_.erase(waiting_.begin());
     ++dropped_;
   }
@@ -218,7 +218,7 @@ class DegradedEvents {
 
  private:
   static constexpr std::size_t kRemembered = 8192;  // as sync/resampling/contact_stream.cpp
-  static constexpr std::size_t kMostDropped = 4096;
+  static constexpr std::size_t kMaxDropped = 4096;
   bool first_heard(std::int64_t id);
 
   DelayQueue<contact_events_t> waiting_;

@@ -14,7 +14,7 @@ namespace {
 enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicateDraw, kWireDraw };
 
 constexpr std::size_t kRememberedValues = 4096;
-constexpr std::size_t kMostStreams = 256;  // more channels, groups and tools than a sense reads
+constexpr std::size_t kMaxStreams = 256;  // more channels, groups and tools than a sense reads
 // Simulated time that falls back by more is a world that began anew, as in sync/clocks/sim_clock_tracker.h.
 constexpr Nanoseconds kAnew{1'000'000'000};
 
@@ -45,7 +45,7 @@ bool OperatorChain::in_time(const Rule& rule, SimTime t) const {
 }
 
 OperatorChain::Chain& OperatorChain::chain_of(Active& a, const StreamItem& item) {
-  if (a.chains.size() > kMostStreams) a.chains.clear();
+  if (a.chains.size() > kMaxStreams) a.chains.clear();
   const auto [it, fresh] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
   Chain& chain = it->second;
   if (fresh || chain.incarnation != item.incarnation || chain.newest - item.time > kAnew) {

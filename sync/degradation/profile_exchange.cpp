@@ -44,7 +44,7 @@ std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
   partial.pages[page.page] = page.text;
   if (static_cast<int>(partial.pages.size()) < page.pages) {
     partials_.push_back(std::move(partial));
-    if (partials_.size() > kMostOnTheirWay) partials_.pop_front();
+    if (partials_.size() > kMaxOnTheirWay) partials_.pop_front();
     return std::nullopt;
   }
   ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};

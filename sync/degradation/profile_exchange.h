@@ -40,7 +40,7 @@ std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, 
 class ProfileReceiver {
  public:
   // So many profiles may be on their way at once; the pages of the one heard of least lately are forgotten.
-  static constexpr std::size_t kMostOnTheirWay = 4;
+  static constexpr std::size_t kMaxOnTheirWay = 4;
 
   // The profile, when this page has made one whole that is newer than the one before. One whose hash does not fit,
   // or that is no profile, is refused whole: nothing changes.

@@ -12,7 +12,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::int64_t kMostStamp_ns = 4'000'000'000'000'000'000;  // the difference of two still is a number
+constexpr std::int64_t kMaxStamp_ns = 4'000'000'000'000'000'000;  // the difference of two still is a number
 
 std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
   std::uint64_t value = 0;
@@ -23,12 +23,12 @@ std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
 }  // namespace
 
 std::int64_t bounded_us(std::int64_t timestamp_us) {
-  return std::clamp(timestamp_us, -kMostStamp_ns / 1000, kMostStamp_ns / 1000);
+  return std::clamp(timestamp_us, -kMaxStamp_ns / 1000, kMaxStamp_ns / 1000);
 }
 
 HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_ns) {
-  const std::int64_t offset_ns = std::clamp(realtime_offset_ns, -kMostStamp_ns, kMostStamp_ns);
-  return host_time(std::clamp(bounded_us(timestamp_us) * 1000 - offset_ns, -kMostStamp_ns, kMostStamp_ns));
+  const std::int64_t offset_ns = std::clamp(realtime_offset_ns, -kMaxStamp_ns, kMaxStamp_ns);
+  return host_time(std::clamp(bounded_us(timestamp_us) * 1000 - offset_ns, -kMaxStamp_ns, kMaxStamp_ns));
 }
 
 HostTime LogOrigin::time(std::int64_t timestamp_us) const {
@@ -47,7 +47,7 @@ void LogClockDetector::observe(const LogEvent& event) {
   if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
   auto it = pairs_.find({header->run_id, header->clock});
   if (it == pairs_.end()) {
-    if (pairs_.size() >= kMostPairs) {
+    if (pairs_.size() >= kMaxPairs) {
       const auto rarest = std::min_element(pairs_.begin(), pairs_.end(), [](const auto& a, const auto& b) {
         return a.second.events < b.second.events;
       });
@@ -60,7 +60,7 @@ void LogClockDetector::observe(const LogEvent& event) {
   ++pair.events;
   if (header->source == static_cast<std::int32_t>(fnv1a_32("recorder"))) ++pair.of_recorder;
   const std::int64_t stamp_ns = bounded_us(event.timestamp_us) * 1000;
-  if (pair.differences_ns.size() < kMostSamples && header->publish_time_ns <= INT64_MAX / 2)
+  if (pair.differences_ns.size() < kMaxSamples && header->publish_time_ns <= INT64_MAX / 2)
     pair.differences_ns.push_back(stamp_ns - header->publish_time_ns);
 }
 
@@ -121,10 +121,10 @@ LogOrigin LogClockDetector::find() const {
 LogOrigin origin_of(std::span<const std::uint8_t> log) {
   // A second of a run; the largest scene at its head and then some.
   constexpr std::int64_t kWitnesses = 4096;
-  constexpr std::size_t kMostBytes = 320 << 20;
+  constexpr std::size_t kMaxBytes = 320 << 20;
   LogScanner scanner(log);
   LogClockDetector finder;
-  for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMostBytes && scanner.next(e);)
+  for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMaxBytes && scanner.next(e);)
     finder.observe(e);
   return finder.find();
 }

@@ -37,9 +37,9 @@ LogOrigin origin_of(std::span<const std::uint8_t> log);
 class LogClockDetector {
  public:
   // So many pairs of a run and a clock are told apart: a cluster has few hosts; damage makes up more.
-  static constexpr std::size_t kMostPairs = 64;
+  static constexpr std::size_t kMaxPairs = 64;
   // Events of each pair that its offset is estimated from.
-  static constexpr std::size_t kMostSamples = 4096;
+  static constexpr std::size_t kMaxSamples = 4096;
   // LOG_INFO is damaged where stamps read by it contradict what the senders say by more than this.
   static constexpr std::int64_t kContradiction_ns = 1'000'000'000;
   // So many messages of the recorder itself name its run and its clock; fewer may be noise.

@@ -25,7 +25,7 @@ void LogTimeRanges::note(std::int64_t t) {
     ages_.erase(next);
   }
   fullest_ = std::max(fullest_, at->second.events);
-  if (ages_.size() > kMost) forget();
+  if (ages_.size() > kMax) forget();
 }
 
 void LogTimeRanges::forget() {

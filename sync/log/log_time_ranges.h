@@ -15,7 +15,7 @@ class LogTimeRanges {
   static constexpr std::int64_t kApart_us = 60'000'000;
   // A log whose stamps are all noise takes no more memory than this. When there are more ages the emptiest half is
   // forgotten.
-  static constexpr std::size_t kMost = 65'536;
+  static constexpr std::size_t kMax = 65'536;
 
   // In any order; each takes the logarithm of the number of ages.
   void note(std::int64_t stamp_us);

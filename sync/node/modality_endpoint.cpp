@@ -8,7 +8,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::size_t kMostDecisions = 8192;
+constexpr std::size_t kMaxDecisions = 8192;
 constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
 constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
 constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as PresentationMatcher::kReportsWithin
@@ -183,7 +183,7 @@ void ModalityEndpoint::publish(HostTime now) {
 }
 
 void ModalityEndpoint::publish_decisions() {
-  if (decisions_.size() > kMostDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMostDecisions);
+  if (decisions_.size() > kMaxDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMaxDecisions);
   degraded_t m{};
   m.header.sim_time_ns = -1;
   m.modality = declaration_.modality;

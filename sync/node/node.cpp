@@ -57,7 +57,7 @@ constexpr Nanoseconds kReportPeriod{100'000'000};
 // A loop that was demoted gets its priority back after so long below 80 %.
 constexpr Nanoseconds kForgiven{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
-constexpr std::size_t kMostTagRequests = 64;
+constexpr std::size_t kMaxTagRequests = 64;
 // A note may quote what came over the bus; a report with it still fits a datagram.
 constexpr std::size_t kLongestNote = 140;
 
@@ -111,7 +111,7 @@ Node::Node(NodeDescriptor declaration, NodeOptions options)
       bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
       loop_(declaration_.rate_Hz),
       tags_(options_.name, options_.run_id),
-      tag_requests_(channels::kTagRequest, kMostTagRequests) {
+      tag_requests_(channels::kTagRequest, kMaxTagRequests) {
   bus_.follow_clocks();
   bus_.attach(tag_requests_);
   tag_work();

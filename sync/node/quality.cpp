@@ -5,7 +5,7 @@
 namespace tactus::sync {
 
 QualityLadder::QualityLadder(int steps, Nanoseconds budget, int calm_ticks)
-    : steps_(std::clamp(steps, 1, kMostSteps)), budget_(budget), calm_ticks_(std::max(calm_ticks, 1)) {
+    : steps_(std::clamp(steps, 1, kMaxSteps)), budget_(budget), calm_ticks_(std::max(calm_ticks, 1)) {
   ratio_.fill(1);
 }
 
@@ -19,7 +19,7 @@ void QualityLadder::add(Nanoseconds used) {
   if (count_ < kLeastTicks) return;
   if (count_ == kLeastTicks) learn();
   if (step_ + 1 < steps_ && overloaded()) {
-    if (on_trial_ > 0) doublings_ = std::min(doublings_ + 1, kMostDoublings);
+    if (on_trial_ > 0) doublings_ = std::min(doublings_ + 1, kMaxDoublings);
     on_trial_ = 0;
     left_at_[static_cast<std::size_t>(step_)] = quartile(3);
     go(step_ + 1);

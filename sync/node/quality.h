@@ -15,7 +15,7 @@ namespace tactus::sync {
 
 class QualityLadder {
  public:
-  static constexpr int kMostSteps = 8;
+  static constexpr int kMaxSteps = 8;
   static constexpr std::size_t kWindow = 32;  // design: half a second of pictures
   // A clear overload, of more than every second tick, is acted on after so many ticks of a step; a beginning one,
   // of every fourth, after a window. One outlier is neither.
@@ -32,7 +32,7 @@ class QualityLadder {
   // each trial time that it holds halves it again.
   static constexpr int kTrial = 8;
   // 2^10 of 2 s is half an hour.
-  static constexpr int kMostDoublings = 10;
+  static constexpr int kMaxDoublings = 10;
 
   // steps: 1 .. kMostSteps, what is outside is clamped. budget: what a tick may take. calm_ticks: time to spare
   // for so many ticks is long.
@@ -58,8 +58,8 @@ class QualityLadder {
   int step_ = 0;
   std::array<Nanoseconds, kWindow> used_{};  // of the step in use, in a ring
   std::size_t count_ = 0;
-  std::array<Nanoseconds, kMostSteps> left_at_{};  // upper quartile of a step when it was left for a cheaper one
-  std::array<double, kMostSteps> ratio_{};  // cost of a step to that of the next cheaper one, as learnt then
+  std::array<Nanoseconds, kMaxSteps> left_at_{};  // upper quartile of a step when it was left for a cheaper one
+  std::array<double, kMaxSteps> ratio_{};  // cost of a step to that of the next cheaper one, as learnt then
   int fits_ = 0, spare_ = 0;  // ticks in a row: the better step should fit; this one has time to spare
   int on_trial_ = 0;          // ticks of the trial of a better step; 0: none is
   int doublings_ = 0;

@@ -55,7 +55,7 @@ bool OverrunGuard::tick(HostTime begin, HostTime end) {
   busy_ += end - begin;
   const Nanoseconds span = end - window_begin_;
   if (span < kWindow) return false;
-  const bool too_busy = to_seconds(busy_) > kMostBusy * to_seconds(span);
+  const bool too_busy = to_seconds(busy_) > kMaxBusy * to_seconds(span);
   calm_ = too_busy ? Nanoseconds(0) : calm_ + span;
   window_begin_ = end;
   busy_ = Nanoseconds(0);

@@ -29,7 +29,7 @@ class OverrunGuard {
 
  private:
   static constexpr Nanoseconds kWindow{100'000'000};
-  static constexpr double kMostBusy = 0.8;
+  static constexpr double kMaxBusy = 0.8;
   HostTime window_begin_{};
   Nanoseconds busy_{0};
   Nanoseconds calm_{0};

@@ -14,7 +14,7 @@ void SettingMaps::set(const std::vector<map_def_t>& maps) {
   maps_.clear();
   const std::string prefix = node_ + ".";
   for (const map_def_t& def : maps)
-    if (def.setting.starts_with(prefix) && maps_.size() < kMost)
+    if (def.setting.starts_with(prefix) && maps_.size() < kMax)
       maps_.push_back({.def = def, .setting = def.setting.substr(prefix.size()), .said = {}});
 }
 
@@ -24,7 +24,7 @@ tag_request_t SettingMaps::request() const {
   tag_request_t m{};
   m.header.sim_time_ns = -1;
   // More than fit are asked for all together.
-  m.patterns = sources.size() > kMostPatterns ? std::vector<std::string>{"*"}
+  m.patterns = sources.size() > kMaxPatterns ? std::vector<std::string>{"*"}
                                               : std::vector<std::string>(sources.begin(), sources.end());
   m.pattern_count = static_cast<std::int32_t>(m.patterns.size());
   return m;

@@ -21,8 +21,8 @@ class SettingMaps {
  public:
   // A setting is changed at most so often: settings are changed by name and as text.
   static constexpr Nanoseconds kChangeEvery{10'000'000};
-  static constexpr std::size_t kMost = 32;
-  static constexpr std::size_t kMostPatterns = 16;  // of a tag_request_t
+  static constexpr std::size_t kMax = 32;
+  static constexpr std::size_t kMaxPatterns = 16;  // of a tag_request_t
 
   // node: the process whose settings are meant.
   explicit SettingMaps(std::string node) : node_(std::move(node)) {}

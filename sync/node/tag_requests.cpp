@@ -25,7 +25,7 @@ bool TagRequests::take(const tag_request_t& request, HostTime now) {
   const auto known = std::find_if(requests_.begin(), requests_.end(),
                                   [&](const Request& r) { return r.incarnation == request.header.incarnation; });
   if (known == requests_.end()) {
-    if (requests_.size() >= kMost) return false;
+    if (requests_.size() >= kMax) return false;
     requests_.push_back({request.header.incarnation, request.patterns, now + kHolds});
     return true;
   }

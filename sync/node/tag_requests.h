@@ -18,7 +18,7 @@ class TagRequests {
  public:
   static constexpr Nanoseconds kHolds{3'000'000'000};
   // Design: a recorder, some viewers and maps. Beyond these a new one is not heeded until one is over.
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
 
   // Requests of another run are not heeded.
   explicit TagRequests(std::int64_t run_id) : run_id_(run_id) {}

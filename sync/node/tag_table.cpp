@@ -6,7 +6,7 @@ namespace tactus::sync {
 
 void TagTable::push(const tag_list_t& m) {
   const std::pair key{m.header.incarnation, m.list};
-  if (!lists_.contains(key) && lists_.size() >= kMostLists)
+  if (!lists_.contains(key) && lists_.size() >= kMaxLists)
     lists_.erase(std::min_element(lists_.begin(), lists_.end(),
                                   [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
   List& list = lists_[key];

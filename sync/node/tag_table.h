@@ -15,7 +15,7 @@ namespace tactus::sync {
 class TagTable {
  public:
   // Lists of so many processes, counting those of which there is a newer one; the oldest of all is forgotten.
-  static constexpr std::size_t kMostLists = 64;
+  static constexpr std::size_t kMaxLists = 64;
 
   struct List {
     std::string node;

@@ -11,8 +11,8 @@ namespace tactus::sync {
 namespace {
 
 // So that a row with its columns fits a datagram: 12 bytes a column, and 140 for the rest.
-constexpr std::size_t kMostColumns = 100;
-constexpr std::size_t kMostRows = 128;
+constexpr std::size_t kMaxColumns = 100;
+constexpr std::size_t kMaxRows = 128;
 
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 48 &&
@@ -26,7 +26,7 @@ std::size_t rows_that_fit(tag_values_t m) {
   m.row_count = m.value_count = 0;
   m.times_ns.clear(), m.values.clear();
   const auto head = static_cast<std::size_t>(m.getEncodedSize());
-  return std::min(kMostRows, (channels::kMaxMessageBytes - head) / (8 + 8 * m.columns.size()));
+  return std::min(kMaxRows, (channels::kMaxMessageBytes - head) / (8 + 8 * m.columns.size()));
 }
 
 void clear(tag_values_t& m) {
@@ -43,7 +43,7 @@ void Tags::add(std::string name, std::string unit, Getter getter, double rate_Hz
   if (!is_name(name)) refuse("a name has 1 to 48 letters, digits, '.', '_' and '-'");
   if (unit.empty() || unit.size() > 16) refuse("its unit has 1 to 16 characters; \"1\" for a plain number");
   if (!(rate_Hz >= 0 && rate_Hz <= 1e6)) refuse("its rate lies within 0 and 1 MHz");
-  if (tags_.size() >= kMost) refuse("there are 1024 already");
+  if (tags_.size() >= kMax) refuse("there are 1024 already");
   for (const Tag& tag : tags_)
     if (tag.def.name == name) refuse("there is one of that name already");
   tags_.push_back({{std::move(name), std::move(unit), rate_Hz}, std::move(getter)});
@@ -86,7 +86,7 @@ void Tags::arrange() {
     const tag_def_t& def = tags_[i].def;
     if (!requests_.wants(node_ + "." + def.name)) continue;
     auto block = std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) {
-      return b.rate_Hz == def.rate_Hz && b.message.columns.size() < kMostColumns;
+      return b.rate_Hz == def.rate_Hz && b.message.columns.size() < kMaxColumns;
     });
     if (block == blocks_.end()) {
       block = blocks_.insert(blocks_.end(), Block{.rate_Hz = def.rate_Hz, .most_rows = 0, .message = {}});

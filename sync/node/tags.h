@@ -23,7 +23,7 @@ namespace tactus::sync {
 
 class Tags {
  public:
-  static constexpr std::size_t kMost = 1024;
+  static constexpr std::size_t kMax = 1024;
   // What is taken is sent at the latest after so long (design: a viewer's picture at 20 Hz).
   static constexpr Nanoseconds kSendEvery{50'000'000};
   static constexpr Nanoseconds kListEvery{1'000'000'000};

@@ -23,9 +23,9 @@ bool was_presented(std::int8_t outcome) {
 }
 
 // What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
-constexpr Nanoseconds kMostHeld{
+constexpr Nanoseconds kMaxHeld{
     61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
-constexpr Nanoseconds kMostUncertain{60'000'000'000};
+constexpr Nanoseconds kMaxUncertain{60'000'000'000};
 
 // Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
 bool is_onset(std::int8_t part, std::int8_t kind) {
@@ -130,7 +130,7 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
       const SenderClock::Reading at = clock.read(p.presented_ns, arrival);
       if (at.uncertainty >= Nanoseconds(0)) {
         report.presented_ns = to_ns(at.time);
-        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMostUncertain.count())) + at.uncertainty;
+        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMaxUncertain.count())) + at.uncertainty;
       } else {
         ++unmapped_reports_;
       }
@@ -165,7 +165,7 @@ void PresentationMatcher::observe(const degraded_t& m, HostTime) {
   for (const decision_t& d : m.decisions) {
     const auto it = d.is_event ? events_.find(d.key) : events_.end();
     if (it == events_.end() || !has_room(it->second.held, m.modality, kMaxSenses)) continue;
-    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMostHeld);
+    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMaxHeld);
   }
 }
 

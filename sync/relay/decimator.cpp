@@ -69,7 +69,7 @@ bool Decimator::due(Sender& s, const header_t& h) const {
 
 void Decimator::take(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
   if (!rule_.thins()) return out(message);
-  if (senders_.size() >= kMostSenders && !senders_.contains(h.source)) senders_.clear();
+  if (senders_.size() >= kMaxSenders && !senders_.contains(h.source)) senders_.clear();
   Sender& sender = senders_[h.source];
   if (sender.incarnation != h.incarnation) {
     sender = {};

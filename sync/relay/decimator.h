@@ -22,7 +22,7 @@ class Decimator {
  public:
   using Out = std::function<void(std::span<const std::uint8_t>)>;
   // Senders on a channel; more are of false messages, and all begin anew.
-  static constexpr std::size_t kMostSenders = 256;
+  static constexpr std::size_t kMaxSenders = 256;
 
   explicit Decimator(const PassRule& rule);
   ~Decimator();

@@ -51,7 +51,7 @@ class LineSocket {
   // waiting.
   template <class Hear>
   void read(std::span<const LineEnd> sites, Hear&& hear) {
-    for (int i = 0; i < kMost; ++i) {
+    for (int i = 0; i < kMax; ++i) {
       const auto arrived = receive(sites);
       if (!arrived) return;
       if (arrived->site < 0) continue;
@@ -66,7 +66,7 @@ class LineSocket {
   std::int64_t bad() const { return bad_; }
 
  private:
-  static constexpr int kMost = 4096;
+  static constexpr int kMax = 4096;
   struct Arrived {
     int site;  // -1: of nobody that was named
     std::span<const std::uint8_t> bytes;

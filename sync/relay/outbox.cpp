@@ -21,7 +21,7 @@ void Outbox::give_up(Urgency urgency, HostTime now) {
   Queue& queue = queue_of(urgency);
   const bool bulk = urgency == Urgency::kBulk;
   const HostTime oldest = now - (bulk ? kLatestBulk : kLatest);
-  while (!queue.waiting.empty() && (queue.waiting.front().since < oldest || queue.bytes > kMostBytes)) {
+  while (!queue.waiting.empty() && (queue.waiting.front().since < oldest || queue.bytes > kMaxBytes)) {
     queue.bytes -= queue.waiting.front().datagram.size();
     queue.waiting.pop_front();
     ++(bulk ? counts_.late_bulk : counts_.late);

@@ -31,7 +31,7 @@ class Outbox {
   // At once: ten of the longest datagrams. Half of that is never taken by assets, so that what is said together
   // goes together while a scene is on its way.
   static constexpr double kBurstBytes = 16'000, kNotForBulkBytes = kBurstBytes / 2;
-  static constexpr std::size_t kMostBytes = 1 << 20;  // of each urgency
+  static constexpr std::size_t kMaxBytes = 1 << 20;  // of each urgency
   static constexpr std::size_t kHeaders = 28;         // IP and UDP (RFC 791, RFC 768), of each datagram
 
   // bit_per_s 0: as much as comes.

@@ -9,7 +9,7 @@ bool Sides::lives(const header_t& h, int side, HostTime now) {
   Sender& sender = at->second;
   if (!fresh && sender.side != side && now - sender.heard < kForgotten) return ++echoes_, false;
   sender = {side, now};
-  if (senders_.size() > kMost)
+  if (senders_.size() > kMax)
     senders_.erase(std::min_element(senders_.begin(), senders_.end(),
                                     [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
   return true;

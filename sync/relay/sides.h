@@ -18,7 +18,7 @@ class Sides {
   // Silent for so long, a sender may turn up elsewhere.
   static constexpr Nanoseconds kForgotten{10'000'000'000};
   // As sync/bus/sequence.h for one channel; more are of false messages, and those not heard for longest go.
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
 
   // Whether this sender lives there: it does where it was heard first.
   bool lives(const header_t& h, int side, HostTime now);

@@ -53,8 +53,8 @@ struct TimeMap {
   static Nanoseconds scaled(Nanoseconds d, double factor) {
     if (factor == 1) return d;  // keeps whole nanoseconds exact
     const double ns = static_cast<double>(d.count()) * factor;
-    constexpr double kMost = 3e18;  // 95 years, so that what a message makes up does not overflow
-    return Nanoseconds(static_cast<std::int64_t>(!(ns > -kMost) ? -kMost : ns < kMost ? ns : kMost));
+    constexpr double kMax = 3e18;  // 95 years, so that what a message makes up does not overflow
+    return Nanoseconds(static_cast<std::int64_t>(!(ns > -kMax) ? -kMax : ns < kMax ? ns : kMax));
   }
 };
 

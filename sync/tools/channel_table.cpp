@@ -42,7 +42,7 @@ std::string begin_of(const TableContext& context, const LogEvent& event, HostTim
 }  // namespace
 
 void TableContext::learn(const LogEvent& event) {
-  if (event.channel == channels::kNodeHealth && names_.size() < kMostNames) {
+  if (event.channel == channels::kNodeHealth && names_.size() < kMaxNames) {
     if (const auto m = decode<node_health_t>(event.data.data(), event.data.size()))
       names_.emplace(m->header.source, m->node);
   } else if (event.channel == channels::kTagList) {

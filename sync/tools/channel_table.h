@@ -18,7 +18,7 @@ namespace tactus::sync {
 // What the columns that all tables have are filled from, and learnt of, all messages of a log.
 class TableContext {
  public:
-  static constexpr std::size_t kMostNames = 4096;
+  static constexpr std::size_t kMaxNames = 4096;
 
   explicit TableContext(const LogOrigin& origin) : origin_(origin) {}
   // Once for each event of the log, before any row is made: names of senders, lists of tags.

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t kMostFiles = 256;  // noise has more channels than anybody reads
+constexpr std::size_t kMaxFiles = 256;  // noise has more channels than anybody reads
 
 struct Wishes {
   std::vector<std::string> logs;
@@ -167,7 +167,7 @@ class Export {
     }
     auto it = channels_.find(name);
     if (it == channels_.end()) {
-      if (channels_.size() >= kMostFiles) {
+      if (channels_.size() >= kMaxFiles) {
         ++foreign_;
         return;
       }

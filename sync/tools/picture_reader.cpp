@@ -9,11 +9,11 @@ constexpr std::int32_t kChunkBytes = 1024;
 
 std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
   const bool last = m.chunk == m.chunks - 1;
-  if (m.chunks < 1 || m.chunks > kMostChunks || m.chunk < 0 || m.chunk >= m.chunks ||
+  if (m.chunks < 1 || m.chunks > kMaxChunks || m.chunk < 0 || m.chunk >= m.chunks ||
       m.size != static_cast<std::int32_t>(m.data.size()) || m.size < 1 || m.size > kChunkBytes ||
       (!last && m.size != kChunkBytes))
     return std::nullopt;
-  if (!partials_.contains(m.header.source) && partials_.size() == kMostSources)
+  if (!partials_.contains(m.header.source) && partials_.size() == kMaxSources)
     partials_.erase(std::min_element(partials_.begin(), partials_.end(), [](const auto& a, const auto& b) {
       return a.second.heard < b.second.heard;
     }));

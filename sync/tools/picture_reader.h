@@ -22,8 +22,8 @@ struct StreamedPicture {
 class PictureReader {
  public:
   // 4 MiB a picture; and so many walls. Of more, the one that was heard of least lately is forgotten.
-  static constexpr int kMostChunks = 4096;
-  static constexpr std::size_t kMostSources = 8;
+  static constexpr int kMaxChunks = 4096;
+  static constexpr std::size_t kMaxSources = 8;
 
   // The picture that this piece completes.
   std::optional<StreamedPicture> take(const picture_chunk_t& m);

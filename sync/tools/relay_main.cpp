@@ -19,14 +19,14 @@ using namespace tactus;
 
 namespace {
 
-constexpr std::uintmax_t kMostRulesBytes = 1 << 20;
+constexpr std::uintmax_t kMaxRulesBytes = 1 << 20;
 constexpr sync::Nanoseconds kNotePeriod{500'000'000};
 
 std::string read_rules(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) throw std::runtime_error("--rules " + path + " cannot be read; give a file of rules, as scripts/spread/relays/wide.xml");
-  if (text.str().size() > kMostRulesBytes) throw std::runtime_error("--rules " + path + " is larger than 1 MiB; give a file of rules");
+  if (text.str().size() > kMaxRulesBytes) throw std::runtime_error("--rules " + path + " is larger than 1 MiB; give a file of rules");
   return text.str();
 }
 

@@ -35,7 +35,7 @@ class Drops {
   void listen() {
     while (const auto m = healths_.pop()) {
       const header_t& h = m->message.header;
-      if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMost && !nodes_.contains({h.source, h.incarnation}))) continue;
+      if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMax && !nodes_.contains({h.source, h.incarnation}))) continue;
       nodes_.try_emplace({h.source, h.incarnation}, m->message.kernel_drops, 0).first->second.second = m->message.kernel_drops;
     }
   }
@@ -46,7 +46,7 @@ class Drops {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
   std::int64_t run_id_;
   sync::Queue<node_health_t>& healths_;
   std::map<std::pair<std::int32_t, std::int64_t>, std::pair<std::int64_t, std::int64_t>> nodes_;  // first and newest

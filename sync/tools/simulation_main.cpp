@@ -14,7 +14,7 @@ namespace {
 
 constexpr sync::Nanoseconds kPatience{
     3'000'000'000};                                // an answer comes with the next step; a file may take a while
-constexpr std::size_t kMostValues = 6;
+constexpr std::size_t kMaxValues = 6;
 
 // "steel_ball.mass": of what, and what of it.
 void split(const std::string& text, sim_command_t& c) {
@@ -48,7 +48,7 @@ void add_commands(CLI::App& app, Words& w) {
       app.add_subcommand("set", "sets a property of a body, a joint or the world; docs/commands.md lists them");
   set->add_option("NAME.PROPERTY", w.name, "for example steel_ball.mass, fan::axle.motor, world.gravity")
       ->required();
-  set->add_option("VALUE", w.values, "in SI units")->required()->expected(1, kMostValues);
+  set->add_option("VALUE", w.values, "in SI units")->required()->expected(1, kMaxValues);
   auto* push = app.add_subcommand("push", "a force on a body at its centre of mass");
   push->add_option("BODY", w.name)->required();
   push->add_option("FORCE", w.force_N, "FX FY FZ, N, along the axes of the world")->required()->expected(3);

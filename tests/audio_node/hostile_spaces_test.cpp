@@ -168,17 +168,17 @@ TEST_CASE(
   for (int block = 0; block < 200; ++block) {
     for (int i = 0; i < 8; ++i) {
       contact_event_t e = blow(++id, 1 + static_cast<int>(random() % 2));
-      e.approach_speed_m_s = static_cast<float>(kMostSpeedOfWorld_m_s);
-      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMostMassOfWorld_kg : 1e-6);
-      e.curvature_1_m = static_cast<float>(random() % 2 ? kMostCurvatureOfWorld_1_m : 0);
-      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMostWayOfWorld_m);
+      e.approach_speed_m_s = static_cast<float>(kMaxSpeedOfWorld_m_s);
+      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMaxMassOfWorld_kg : 1e-6);
+      e.curvature_1_m = static_cast<float>(random() % 2 ? kMaxCurvatureOfWorld_1_m : 0);
+      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMaxWayOfWorld_m);
       REQUIRE(plausible(e));
       stage->hit(e);
     }
     sync::Contacts contacts;
     for (int i = 0; i < 30; ++i) {
-      contact_t c = stroke(i, static_cast<float>(kMostSpeedOfWorld_m_s), static_cast<float>(kMostForceOfWorld_N));
-      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMostSpeedOfWorld_m_s : 0);
+      contact_t c = stroke(i, static_cast<float>(kMaxSpeedOfWorld_m_s), static_cast<float>(kMaxForceOfWorld_N));
+      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMaxSpeedOfWorld_m_s : 0);
       REQUIRE(plausible(c));
       contacts.push_back(c);
     }

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (const auto* hand = std::get_if<live::HandAt>(&m))
       if (!(hand->x >= -1 && hand->x <= 1 && hand->push_m >= -1 && hand->push_m <= 1)) std::abort();
     if (const auto* watch = std::get_if<live::WatchThese>(&m))
-      if (watch->names.size() > live::kMostWatched) std::abort();
+      if (watch->names.size() > live::kMaxWatched) std::abort();
   } catch (const std::invalid_argument& e) {
     if (*e.what() == 0) std::abort();
   }

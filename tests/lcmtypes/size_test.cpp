@@ -9,7 +9,7 @@
 using namespace tactus;
 
 namespace {
-constexpr std::size_t kMost = channels::kMaxMessageBytes;
+constexpr std::size_t kMax = channels::kMaxMessageBytes;
 
 template <class Item>
 std::vector<Item> full(test::Samples& samples, int count) {
@@ -26,7 +26,7 @@ TEST_CASE("A page of 7 planes and 7 books of a touch model fits a datagram") {
   m.planes = full<touch_plane_t>(samples, 7);
   m.applied = full<touch_applied_t>(samples, 7);
   m.plane_count = m.applied_count = 7;
-  CHECK(sync::encode(m).size() <= kMost);
+  CHECK(sync::encode(m).size() <= kMax);
 }
 
 TEST_CASE("A tool state with 12 constraints fits a datagram") {
@@ -35,7 +35,7 @@ TEST_CASE("A tool state with 12 constraints fits a datagram") {
   samples.fill(m);
   m.constraints = full<tool_constraint_t>(samples, 12);
   m.constraint_count = 12;
-  CHECK(sync::encode(m).size() <= kMost);
+  CHECK(sync::encode(m).size() <= kMax);
 }
 
 TEST_CASE("A page holds at least 3 contacts of 4 points, 13 events, 18 bodies") {
@@ -44,15 +44,15 @@ TEST_CASE("A page holds at least 3 contacts of 4 points, 13 events, 18 bodies") 
   contacts.contacts = full<contact_t>(samples, 3);
   for (contact_t& c : contacts.contacts) c.points = full<contact_point_t>(samples, 4), c.point_count = 4;
   contacts.count = 3;
-  CHECK(sync::encode(contacts).size() <= kMost);
+  CHECK(sync::encode(contacts).size() <= kMax);
   contact_events_t events{};
   events.events = full<contact_event_t>(samples, 13);
   events.count = 13;
-  CHECK(sync::encode(events).size() <= kMost);
+  CHECK(sync::encode(events).size() <= kMax);
   world_state_t world{};
   world.bodies = full<body_state_t>(samples, 18);
   world.count = 18;
-  CHECK(sync::encode(world).size() <= kMost);
+  CHECK(sync::encode(world).size() <= kMax);
 }
 
 TEST_CASE("A health report with both histograms full, 8 inputs and a long note fits a datagram") {
@@ -68,7 +68,7 @@ TEST_CASE("A health report with both histograms full, 8 inputs and a long note f
   m.inputs = full<input_health_t>(samples, 8);
   for (input_health_t& i : m.inputs) i.channel = "CONTACT_EVENTS";
   m.input_count = 8;
-  CHECK(sync::encode(m).size() <= kMost);
+  CHECK(sync::encode(m).size() <= kMax);
 }
 
 TEST_CASE("A report of 30 presentations fits a datagram") {
@@ -77,7 +77,7 @@ TEST_CASE("A report of 30 presentations fits a datagram") {
   m.modality = std::string(16, 'm');
   m.reports = full<presentation_t>(samples, 30);
   m.count = 30;
-  CHECK(sync::encode(m).size() <= kMost);
+  CHECK(sync::encode(m).size() <= kMax);
 }
 
 TEST_CASE("A manifest page of 12 long names and a full chunk fit a datagram") {
@@ -86,10 +86,10 @@ TEST_CASE("A manifest page of 12 long names and a full chunk fit a datagram") {
   manifest.assets = full<asset_ref_t>(samples, 12);
   manifest.count = 12;
   for (auto& a : manifest.assets) a.name = std::string(64, 'n');
-  CHECK(sync::encode(manifest).size() <= kMost);
+  CHECK(sync::encode(manifest).size() <= kMax);
   asset_chunk_t chunk{};
   samples.fill(chunk);
   chunk.data.assign(1024, 1);
   chunk.size = 1024;
-  CHECK(sync::encode(chunk).size() <= kMost);
+  CHECK(sync::encode(chunk).size() <= kMax);
 }

@@ -25,7 +25,7 @@ const std::vector<std::string> kGood{
 // What a message may hold at the most, whatever was sent.
 void check_bounds(const BrowserMessage& m) {
   if (const auto* w = std::get_if<WatchThese>(&m)) {
-    CHECK(w->names.size() <= kMostWatched);
+    CHECK(w->names.size() <= kMaxWatched);
     for (const std::string& n : w->names) CHECK((!n.empty() && n.size() <= 192));
   } else if (const auto* c = std::get_if<Command>(&m)) {
     CHECK((c->kind >= sim_command_t::PAUSE && c->kind <= sim_command_t::RESET));
@@ -111,10 +111,10 @@ TEST_CASE("What is no message of a page, or beyond its range, is refused with a 
     CHECK_FALSE(taken(text));
   }
   nlohmann::json many{{"t", "watch"}, {"names", nlohmann::json::array()}};
-  for (std::size_t i = 0; i <= kMostWatched; ++i) many["names"].push_back("n" + std::to_string(i));
+  for (std::size_t i = 0; i <= kMaxWatched; ++i) many["names"].push_back("n" + std::to_string(i));
   CHECK_FALSE(taken(many.dump()));
-  CHECK_FALSE(taken(std::string(kMostBrowserBytes + 1, ' ')));
-  CHECK_FALSE(taken(std::string(kMostBrowserBytes, '[')));  // deep
+  CHECK_FALSE(taken(std::string(kMaxBrowserBytes + 1, ' ')));
+  CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep
 }
 
 TEST_CASE("10,000 mutated messages are taken within their bounds or refused with a sentence") {

@@ -133,10 +133,10 @@ TEST_CASE("A flood is bounded and what is left out counted, and hostile bytes ar
   }
   for (int i = 0; i < 200; ++i) f.take(channels::kNodeHealth, health("node_" + std::to_string(i)));
   const json news = f.feed.news(at(0));
-  CHECK(news["events"].size() == Feed::kMostOfFrame);
-  CHECK(news["presented"].size() == Feed::kMostOfFrame);
-  CHECK(news["left_out"] == 2 * (10'000 - Feed::kMostOfFrame));
-  CHECK(news["health"].size() == Feed::kMostNodes);
+  CHECK(news["events"].size() == Feed::kMaxOfFrame);
+  CHECK(news["presented"].size() == Feed::kMaxOfFrame);
+  CHECK(news["left_out"] == 2 * (10'000 - Feed::kMaxOfFrame));
+  CHECK(news["health"].size() == Feed::kMaxNodes);
 
   std::mt19937 random(1);
   const std::vector<std::vector<std::uint8_t>> good{sync::encode(hit(1, 1)), sync::encode(heard("audio", 1, 1)),

@@ -13,14 +13,14 @@ std::shared_ptr<const std::string> text(std::string s) { return std::make_shared
 
 TEST_CASE("What does not fit into the queue of a page is refused and counted, and what waits goes out in order") {
   SendQueue queue;
-  for (std::size_t i = 0; i < SendQueue::kMostMessages; ++i) REQUIRE(queue.push(text(std::to_string(i))));
+  for (std::size_t i = 0; i < SendQueue::kMaxMessages; ++i) REQUIRE(queue.push(text(std::to_string(i))));
   CHECK_FALSE(queue.push(text("late")));
   CHECK(queue.dropped() == 1);
-  for (std::size_t i = 0; i < SendQueue::kMostMessages; ++i) CHECK(*queue.pop()->bytes == std::to_string(i));
+  for (std::size_t i = 0; i < SendQueue::kMaxMessages; ++i) CHECK(*queue.pop()->bytes == std::to_string(i));
   CHECK_FALSE(queue.pop());
   CHECK(queue.bytes() == 0);
-  CHECK_FALSE(queue.push(text(std::string(SendQueue::kMostBytes + 1, 'x'))));
-  CHECK(queue.push(text(std::string(SendQueue::kMostBytes, 'x'))));
+  CHECK_FALSE(queue.push(text(std::string(SendQueue::kMaxBytes + 1, 'x'))));
+  CHECK(queue.push(text(std::string(SendQueue::kMaxBytes, 'x'))));
   CHECK_FALSE(queue.push(text("x")));
   CHECK(queue.dropped() == 3);
 }
@@ -48,8 +48,8 @@ TEST_CASE("Whatever is put in and taken out, a queue stays within its bounds, an
         break;
       default: queue.push(text(std::string(random() % 200'000, 't'))), ++pushed;
     }
-    REQUIRE(queue.bytes() <= SendQueue::kMostBytes);
-    REQUIRE(queue.waiting() <= SendQueue::kMostMessages + 1);
+    REQUIRE(queue.bytes() <= SendQueue::kMaxBytes);
+    REQUIRE(queue.waiting() <= SendQueue::kMaxMessages + 1);
   }
   while (const auto next = queue.pop()) ++(next->binary ? shown : popped);
   CHECK(pushed == popped + queue.dropped());

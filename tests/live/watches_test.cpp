@@ -61,7 +61,7 @@ TEST_CASE("Two hands that send one variable are two curves") {
 
   SECTION("and of more senders than can be told apart the later ones are left out") {
     for (int i = 0; i < 100; ++i) w.tool_at(1, i, "node_" + std::to_string(i));
-    CHECK(w.watches.values().size() == Watches::kMostSenders - 2);
+    CHECK(w.watches.values().size() == Watches::kMaxSenders - 2);
   }
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by 
   CHECK(w.watches.values().size() == 200);
   for (int i = 0; i < 100'000; ++i) w.tool_at(2 + 0.005 * i, i);
   const auto all = w.watches.values();
-  REQUIRE(all.size() == Watches::kMostWaiting);
+  REQUIRE(all.size() == Watches::kMaxWaiting);
   CHECK(all.back()[2] == 99'999);  // a log that was wound shows what lies just before its place
 }
 

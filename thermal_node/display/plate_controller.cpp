@@ -11,7 +11,7 @@ namespace {
 constexpr double kClosing_s = 0.03;
 constexpr double kIntegral_s = 0.5;
 // Of the integral: what a finger can give at most, 20 kW/m^2 on 1 cm^2.
-constexpr double kMostUnknown_W = 2;
+constexpr double kMaxUnknown_W = 2;
 // Beyond a limit by so much is a fault, not an overshoot.
 constexpr double kSlack_K = 1;
 
@@ -44,7 +44,7 @@ PlateDrive PlateController::step(const PeltierState& s, double wanted_degC, doub
   // No windup: only while the plate is free to follow.
   if (!drive.limited && dt_s > 0)
     integral_W_ = std::clamp(integral_W_ - plant_.plate_J_K * gap_K / kClosing_s / kIntegral_s * dt_s,
-                             -kMostUnknown_W, kMostUnknown_W);
+                             -kMaxUnknown_W, kMaxUnknown_W);
   return drive;
 }
 

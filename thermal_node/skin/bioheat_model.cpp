@@ -10,7 +10,7 @@ namespace {
 // Heat passes this many s^0.5 in about (95/2)^2 s = 2000 s: beyond it a thing is infinite.
 constexpr double kFarthest = 95;
 // Of the thinnest cells that a caller may ask for.
-constexpr std::size_t kMostCells = 1000;
+constexpr std::size_t kMaxCells = 1000;
 
 // Wider than any material by far; beyond it the grid would lose its numbers.
 bool conducts(double conductivity_W_mK, double heat_capacity_J_m3K) {
@@ -24,7 +24,7 @@ BioheatModel::Grid BioheatModel::grid_of(const Tissue& tissue, const Mesh& mesh)
   Grid grid;
   const Layer& top = tissue.layers.front();
   double next = mesh.first_cell * std::sqrt(top.conductivity_W_mK / (top.density_kg_m3 * top.specific_heat_J_kgK));
-  std::vector<double> widths(kMostCells);
+  std::vector<double> widths(kMaxCells);
   for (const Layer& layer : tissue.layers) {
     const std::size_t count = growing_widths(layer.thickness_m, next, mesh.growth, widths);
     const double blood = layer.perfused ? tissue.perfusion_1_s * kBloodHeatCapacity_J_m3K : 0;
@@ -46,9 +46,9 @@ BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid)
     : tissue_(tissue),
       mesh_(mesh),
       width_m_(std::move(grid.width_m)),
-      columns_(std::move(grid.cells), kThings, kMostCells),
-      thing_width_m_(kMostCells),
-      thing_cells_(kMostCells) {
+      columns_(std::move(grid.cells), kThings, kMaxCells),
+      thing_width_m_(kMaxCells),
+      thing_cells_(kMaxCells) {
   reset();
 }
 

@@ -7,7 +7,7 @@
 namespace tactus::thermal {
 namespace {
 
-constexpr double kMostSubsteps = 2000;
+constexpr double kMaxSubsteps = 2000;
 // Alexander 1977, two stages: gamma = 1 - 1/sqrt(2).
 constexpr double kGamma = 0.29289321881345254;
 // Of the thinnest layer or thing.
@@ -137,7 +137,7 @@ void HeatColumns::step(double dt_s, std::span<const double> contact_W_m2K, doubl
   }
   flows_ = {};
   if (dt_s > 0) {
-    const double count = std::clamp(std::ceil(dt_s / longest_substep_s), 1.0, kMostSubsteps), h_s = dt_s / count;
+    const double count = std::clamp(std::ceil(dt_s / longest_substep_s), 1.0, kMaxSubsteps), h_s = dt_s / count;
     factor(1, kGamma * h_s);
     for (int i = 0; i < static_cast<int>(count); ++i) {
       solve(false);

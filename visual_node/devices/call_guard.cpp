@@ -22,7 +22,7 @@ void CallGuard::watch(const std::stop_token& stop) {
     const std::uint64_t now = calls_.load(std::memory_order_relaxed);
     looks = now % 2 == 1 && now == seen ? looks + 1 : 0;
     seen = now;
-    if (looks < kMostLooks) continue;
+    if (looks < kMaxLooks) continue;
     constexpr std::string_view kSaid =
         "visual_node: the display server does not answer: the node ends; see whether the desktop hangs, or leave "
         "--window out\n";

@@ -12,7 +12,7 @@ namespace tactus::visual {
 class CallGuard {
  public:
   // design: so many looks, so far apart, find the same call under way: 5 s. A desktop under load may need one.
-  static constexpr int kMostLooks = 10, kLook_ms = 500;
+  static constexpr int kMaxLooks = 10, kLook_ms = 500;
 
   CallGuard();
   // Around each call. Never waits. Of one thread.

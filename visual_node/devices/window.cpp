@@ -30,7 +30,7 @@ struct ProtocolError {
 };
 constexpr unsigned char kBadWindow = 3, kBadDrawable = 9;
 
-constexpr std::size_t kMostKeys = 64;  // between two frames
+constexpr std::size_t kMaxKeys = 64;  // between two frames
 
 // A mark is moved on while an arrow is held; no other key means more when it is held.
 bool repeats(int key) {
@@ -69,7 +69,7 @@ class Window : public Display {
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       auto& keys = static_cast<Window*>(glfwGetWindowUserPointer(w))->keys_;
-      if ((action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key))) && keys.size() < kMostKeys)
+      if ((action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key))) && keys.size() < kMaxKeys)
         keys.push_back(key);
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {

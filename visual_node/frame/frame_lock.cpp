@@ -9,7 +9,7 @@ namespace tactus::visual {
 namespace {
 
 // Of a clock that was put forward nobody has missed frames: no more than half an hour is counted at 60 Hz.
-constexpr std::int64_t kMostSkipped = 100'000;
+constexpr std::int64_t kMaxSkipped = 100'000;
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanosecond
   AgreedFrame frame;
   const std::optional<std::int64_t> before = grid_.last();
   frame.number = grid_.pick(clock_.room(now + likely() - kGrace, now));
-  if (before) frame.skipped = std::clamp<std::int64_t>(frame.number - *before - 1, 0, kMostSkipped);
+  if (before) frame.skipped = std::clamp<std::int64_t>(frame.number - *before - 1, 0, kMaxSkipped);
   frame.due = grid_.due(frame.number);
   frame.here = clock_.here(frame.due, now);
   const RoomTime by = frame.due - lag_;

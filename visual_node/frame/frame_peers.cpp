@@ -7,7 +7,7 @@ namespace tactus::visual {
 void FramePeers::hear(const frame_shown_t& m, std::int64_t own, sync::HostTime arrival) {
   if (m.header.incarnation == own) return;
   std::erase_if(walls_, [&](const auto& w) { return arrival - w.second.heard > kGone; });
-  if (!walls_.contains(m.header.incarnation) && walls_.size() >= kMost) return;
+  if (!walls_.contains(m.header.incarnation) && walls_.size() >= kMax) return;
   Wall& wall = walls_[m.header.incarnation];
   wall.heard = arrival;
   wall.drawn = m.frame;  // not the largest: after another clock has come they are small again

@@ -19,7 +19,7 @@ class FramePeers {
   // are in time. design: a quarter of a second, and half a second, at 60 Hz
   static constexpr int kGiveUp = 15, kReturn = 30;
   // More walls than a room has are a mistake.
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
 
   // own: incarnation of this process, whose messages come back to it.
   void hear(const frame_shown_t& m, std::int64_t own, sync::HostTime arrival);

@@ -22,7 +22,7 @@ void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
                        m.header.seq,
                        {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
                         to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
-  while (samples_.size() > kMost || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();
+  while (samples_.size() > kMax || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();
 }
 
 std::optional<HeadSample> HeadSamples::told_by(RoomTime t) const {

@@ -22,7 +22,7 @@ struct HeadSample {
 class HeadSamples {
  public:
   // design: as sync::PoseHistory
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
   static constexpr sync::Nanoseconds kSpan{1'000'000'000};
 
   void push(const tool_state_t& m, RoomTime sent);

@@ -20,13 +20,13 @@ constexpr std::size_t kLinesOfPiece = 100'000;  // more than what a file of 64 k
 // Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": number of the piece
 // and line. Each becomes one clause, but of those after the first few, which follow from them, only the number;
 // warnings are left out, since what is given to a shader sets variables before they are used.
-constexpr int kMostClauses = 3;  // design: what is read at a glance
+constexpr int kMaxClauses = 3;  // design: what is read at a glance
 std::string with_files(const std::string& log, const std::vector<std::string>& names) {
   static const std::regex position(R"(^(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
   std::string text, line;
   int clauses = 0;
   for (std::istringstream lines(log.c_str()); std::getline(lines, line);) {
-    if (line.empty() || line.find(": warning") != std::string::npos || ++clauses > kMostClauses) continue;
+    if (line.empty() || line.find(": warning") != std::string::npos || ++clauses > kMaxClauses) continue;
     if (std::smatch found; std::regex_search(line, found, position)) {
       const auto number = static_cast<std::size_t>(std::stoul(found[1].str().substr(0, 9)));
       const std::size_t piece = number / kLinesOfPiece;
@@ -35,7 +35,7 @@ std::string with_files(const std::string& log, const std::vector<std::string>& n
     }
     text += (text.empty() ? "" : "; ") + line;
   }
-  if (clauses > kMostClauses) text += "; and " + std::to_string(clauses - kMostClauses) + " more";
+  if (clauses > kMaxClauses) text += "; and " + std::to_string(clauses - kMaxClauses) + " more";
   return text;
 }
 

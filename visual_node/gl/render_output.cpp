@@ -32,11 +32,11 @@ void RenderOutput::open() {
 std::string RenderOutput::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
   if (!draws()) return {};
   std::string why = display_->lost();
-  const bool hangs = unfinished_ >= kMostUnfinished;
+  const bool hangs = unfinished_ >= kMaxUnfinished;
   if (why.empty() && hangs) why = "the graphics device does not finish what it is given";
   if (why.empty()) return {};
   losses_.push_back(now);
-  if (losses_.size() > kMostLosses) {
+  if (losses_.size() > kMaxLosses) {
     if (now - losses_.front() < kLossesWithin)
       throw std::runtime_error(why + ", " + std::to_string(losses_.size()) +
                                " times in a minute: look what the system's log says of it");

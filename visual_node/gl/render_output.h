@@ -23,10 +23,10 @@ std::unique_ptr<Display> make_display(const Settings& settings, bool window);
 class RenderOutput {
  public:
   // What is lost more often than so many times in so long is given up.
-  static constexpr std::size_t kMostLosses = 3;
+  static constexpr std::size_t kMaxLosses = 3;
   static constexpr sync::Nanoseconds kLossesWithin{60'000'000'000};
   // A device that does not finish so many pictures in a row hangs.
-  static constexpr int kMostUnfinished = 3;
+  static constexpr int kMaxUnfinished = 3;
 
   // Throws std::runtime_error with one sentence when nothing can be drawn on.
   RenderOutput(const Settings& settings, bool window, MakeDisplay make = make_display);

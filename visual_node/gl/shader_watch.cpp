@@ -10,8 +10,8 @@
 namespace tactus::visual {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 65536;      // design: ten times the longest of ours
-constexpr std::size_t kMostFiles = 64;            // design
+constexpr std::uintmax_t kMaxBytes = 65536;      // design: ten times the longest of ours
+constexpr std::size_t kMaxFiles = 64;            // design
 constexpr std::chrono::milliseconds kEvery{400};  // design: as soon as one has looked up from the editor
 
 }  // namespace
@@ -25,11 +25,11 @@ struct ShaderWatch::Shared {
 ShaderFolder read_shader_folder(const std::string& folder) {
   ShaderFolder files;
   std::error_code none;
-  for (std::filesystem::directory_iterator it(folder, none), end; !none && it != end && files.size() < kMostFiles;
+  for (std::filesystem::directory_iterator it(folder, none), end; !none && it != end && files.size() < kMaxFiles;
        it.increment(none)) {
     const std::string kind = it->path().extension().string();
     if (kind != ".frag" && kind != ".vert" && kind != ".glsl") continue;
-    if (auto text = sync::read_small_file(it->path(), kMostBytes))
+    if (auto text = sync::read_small_file(it->path(), kMaxBytes))
       files.emplace(it->path().filename().string(), std::move(*text));
   }
   return files;

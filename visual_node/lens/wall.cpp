@@ -19,8 +19,8 @@ constexpr const char* kColumns =
 // Corners are measured by hand: sides that meet at 90 degrees but for this, 3 mm on 3 m (design).
 constexpr double kSquare = 1e-3;
 constexpr double kLeastSide_m = 0.01;
-constexpr std::size_t kMostWalls = 16;
-constexpr std::uintmax_t kMostBytes = 65536;  // design: far more than so many walls take
+constexpr std::size_t kMaxWalls = 16;
+constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than so many walls take
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
   throw std::runtime_error("the room " + name + " " + why +
@@ -77,7 +77,7 @@ Room parse_room(const std::string& csv, const std::string& name) {
       refuse(name, "has in its " + which + " (" + wall.name + ") no rectangle of at least 1 cm");
     if (room.named(wall.name)) refuse(name, "has two walls " + wall.name);
     room.walls.push_back(wall);
-    if (room.walls.size() > kMostWalls) refuse(name, "has more than " + std::to_string(kMostWalls) + " walls");
+    if (room.walls.size() > kMaxWalls) refuse(name, "has more than " + std::to_string(kMaxWalls) + " walls");
   }
   if (room.walls.empty()) refuse(name, "has no wall");
   return room;
@@ -86,7 +86,7 @@ Room parse_room(const std::string& csv, const std::string& name) {
 Room load_room(const std::string& name_or_path) {
   if (const std::string_view known = room_text(name_or_path + ".csv"); !known.empty())
     return parse_room(std::string(known), name_or_path);
-  const auto text = sync::read_small_file(name_or_path, kMostBytes);
+  const auto text = sync::read_small_file(name_or_path, kMaxBytes);
   if (!text) refuse(name_or_path, "cannot be read");
   return parse_room(*text, name_or_path);
 }

@@ -5,7 +5,7 @@
 namespace tactus::visual {
 
 void SimulationWishes::ask(Act act, std::int64_t id) {
-  if (waiting_.size() >= kMostWaiting) return;
+  if (waiting_.size() >= kMaxWaiting) return;
   sim_command_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // the bus stamps them

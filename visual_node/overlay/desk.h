@@ -19,7 +19,7 @@ namespace tactus::visual {
 // out.
 class SimulationWishes {
  public:
-  static constexpr std::size_t kMostWaiting = 8;                // more keys than that are not kept
+  static constexpr std::size_t kMaxWaiting = 8;                // more keys than that are not kept
   static constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
   static constexpr sync::Nanoseconds kPatience{3'000'000'000};  // then nobody is there
 

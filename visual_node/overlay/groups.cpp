@@ -14,7 +14,7 @@ void Groups::push(const world_state_t& m) {
   if (m.header.incarnation != incarnation_) told_.clear();
   incarnation_ = m.header.incarnation;
   for (const body_state_t& b : m.bodies) {
-    if (b.body < 0 || b.body >= kMostBodies) continue;
+    if (b.body < 0 || b.body >= kMaxBodies) continue;
     Told& told = told_[b.body];
     if (m.header.seq < told.seq) continue;  // overtaken on the way
     told = {m.header.seq, m.group == world_state_t::AHEAD};

@@ -12,7 +12,7 @@ namespace tactus::visual {
 class Groups {
  public:
   // No scene has more bodies.
-  static constexpr int kMostBodies = 1 << 16;
+  static constexpr int kMaxBodies = 1 << 16;
 
   void push(const world_state_t& m);
   void forget() { *this = {}; }

@@ -13,7 +13,7 @@ namespace {
 
 // Messages of a channel between two frames: a state of 1 kHz for a tenth of a second, or two snapshots of 300
 // contacts.
-constexpr std::size_t kMostHeard = 256;
+constexpr std::size_t kMaxHeard = 256;
 // The first line is below the word that says how good the frame is.
 constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
 
@@ -56,7 +56,7 @@ void LiveOverlays::listen() {
   for (auto& [channel, queue] : heard_)
     queue->set_wanted(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
   for (const std::string& channel : wanted)
-    if (!heard_.contains(channel)) heard_[channel] = &bus_.raw(channel.c_str(), kMostHeard);
+    if (!heard_.contains(channel)) heard_[channel] = &bus_.raw(channel.c_str(), kMaxHeard);
   if (!on_.on(Overlay::kForces)) tools_.clear();
   if (!on_.on(Overlay::kGroups)) groups_.forget();
 }
@@ -108,7 +108,7 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   auto& strokes = frame.list.strokes;
   if (on_.on(Overlay::kContacts)) append_contacts(strokes, touching.value);
   if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_);
-  for (std::size_t i = 0; i < std::min<std::size_t>(frame.tools.size(), kMostTools); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(frame.tools.size(), kMaxTools); ++i) {
     if (on_.on(Overlay::kTools)) append_tool(strokes, frame.tools[i]);
     const auto state = tools_.find(static_cast<int>(i));
     if (on_.on(Overlay::kForces) && state != tools_.end())

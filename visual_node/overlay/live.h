@@ -47,7 +47,7 @@ class LiveOverlays {
   void append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width, int picture_height);
 
  private:
-  static constexpr int kMostTools = 64;
+  static constexpr int kMaxTools = 64;
   bool wants_contacts() const {
     return on_.on(Overlay::kContacts) || on_.on(Overlay::kForces) || on_.on(Overlay::kReport);
   }

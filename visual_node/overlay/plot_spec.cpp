@@ -97,8 +97,8 @@ std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string
     const std::string_view one = trimmed(list.substr(0, end));
     list = end == std::string_view::npos ? std::string_view{} : list.substr(end + 1);
     if (one.empty() || one == "none") continue;
-    if (specs.size() == kMostPlots) {
-      trouble.push_back("more than " + std::to_string(kMostPlots) + " plots: the rest is left out");
+    if (specs.size() == kMaxPlots) {
+      trouble.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is left out");
       break;
     }
     try {

@@ -27,7 +27,7 @@ struct PlotSpec {
   std::optional<std::variant<double, std::string>> read(std::span<const std::uint8_t> bytes) const;
 };
 
-inline constexpr std::size_t kMostPlots = 12;
+inline constexpr std::size_t kMaxPlots = 12;
 
 // Throws std::invalid_argument with one sentence, which gives the names that are nearest.
 PlotSpec parse_plot(std::string_view text);

@@ -22,7 +22,7 @@ void QuestionDesk::begin(const question_t& m) {
   if (m.kind != question_t::NUMBER) return;
   // The last step may be a shorter one: both ends can be answered.
   steps_ = std::ceil((m.highest - m.lowest) / m.step - 1e-9);
-  if (!(steps_ <= kMostSteps)) steps_ = kMostSteps, step_ = (m.highest - m.lowest) / kMostSteps;
+  if (!(steps_ <= kMaxSteps)) steps_ = kMaxSteps, step_ = (m.highest - m.lowest) / kMaxSteps;
   mark_ = std::floor(steps_ / 2);
 }
 

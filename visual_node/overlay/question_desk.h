@@ -18,7 +18,7 @@ class QuestionDesk {
  public:
   static constexpr std::size_t kRemembered = 64;  // design: answers; a leader asks one question after the other
   static constexpr double kCoarseShare = 0.1;     // design: ten presses from end to end
-  static constexpr double kMostSteps = 10'000;    // design: a mark is not moved finer than that
+  static constexpr double kMaxSteps = 10'000;    // design: a mark is not moved finer than that
 
   explicit QuestionDesk(std::int64_t run_id) : asked_(run_id) {}
 

@@ -113,8 +113,8 @@ class Layout {
     y += line(size_);
     const float middle = y + kTrack * size_ / 2;
     const double steps = (m_.highest - m_.lowest) / m_.step;
-    constexpr double kMostMarks = 20;  // design: more cannot be told apart
-    const int marks = steps <= kMostMarks ? static_cast<int>(std::lround(steps)) : 10;
+    constexpr double kMaxMarks = 20;  // design: more cannot be told apart
+    const int marks = steps <= kMaxMarks ? static_cast<int>(std::lround(steps)) : 10;
     for (int i = 0; i <= marks; ++i)
       fill(overlay, left + knob / 2 + track * static_cast<float>(i) / static_cast<float>(marks) - size_ / 2,
            middle - 4 * size_, size_, 8 * size_, kQuiet);

@@ -19,7 +19,7 @@ Eigen::Vector3f middle(const contact_point_t& p) {
 }
 
 std::span<const contact_t> drawn(std::span<const contact_t> contacts) {
-  return contacts.first(std::min(contacts.size(), kMostContactsDrawn));
+  return contacts.first(std::min(contacts.size(), kMaxContactsDrawn));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace tactus::visual {
 
 // Of a world with more contacts the first are drawn.
-inline constexpr std::size_t kMostContactsDrawn = 2048;
+inline constexpr std::size_t kMaxContactsDrawn = 2048;
 // Length of a normal, m; of the cross at a point half of it.
 inline constexpr float kNormal_m = 0.03f;
 

@@ -78,7 +78,7 @@ std::vector<picture_chunk_t> PictureStream::take_chunks() {
     if (const std::unique_lock lock(outbox_->mutex, std::try_to_lock); lock.owns_lock())
       sending_.swap(outbox_->ready);
   }
-  const std::size_t end = std::min(sending_.size(), sent_ + kMostChunksATick);
+  const std::size_t end = std::min(sending_.size(), sent_ + kMaxChunksATick);
   std::vector<picture_chunk_t> chunks;
   for (; sent_ < end; ++sent_) chunks.push_back(std::move(sending_[sent_]));
   return chunks;

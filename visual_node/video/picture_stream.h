@@ -24,7 +24,7 @@ std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, s
 class PictureStream {
  public:
   // A tick sends no more: 16 KiB, 1 MB/s at 60 Hz, so that a burst of them fills no socket.
-  static constexpr std::size_t kMostChunksATick = 16;
+  static constexpr std::size_t kMaxChunksATick = 16;
 
   PictureStream();
   ~PictureStream();

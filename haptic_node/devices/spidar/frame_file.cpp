@@ -11,7 +11,7 @@ namespace tactus::haptic {
 namespace {
 
 using nlohmann::json;
-constexpr std::uintmax_t kMostBytes = 64 << 10;
+constexpr std::uintmax_t kMaxBytes = 64 << 10;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what) {
   throw std::runtime_error("string frame " + name + ": " + what);
@@ -50,7 +50,7 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
       {"workspace_tilt_rad", &f.workspace_tilt_rad}};
   for (const auto& [field, content] : file.items()) {
     if (field == "strings") {
-      if (!content.is_array() || content.size() > kMostStrings)
+      if (!content.is_array() || content.size() > kMaxStrings)
         refuse(name, "\"strings\" is no list of four or eight");
       for (const json& s : content) f.strings.push_back(string_ends(s, name));
       continue;
@@ -69,7 +69,7 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
 
 StringFrame read_frame(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > kMostBytes)
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > kMaxBytes)
     refuse(path, "it is no regular file of at most 64 kB; name a JSON file");
   std::ifstream in(path);
   std::ostringstream text;

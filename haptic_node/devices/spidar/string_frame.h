@@ -12,12 +12,12 @@
 
 namespace tactus::haptic {
 
-inline constexpr int kMostStrings = 8;
+inline constexpr int kMaxStrings = 8;
 
 // One value per string: lengths in m or tensions in N. Never allocates.
-using PerString = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStrings, 1>;
+using PerString = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStrings, 1>;
 // Column i: force and, with eight strings, torque about the grip's origin per newton of tension of string i.
-using StructureMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMostStrings>;
+using StructureMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxStrings>;
 
 struct GripPose {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // of the grip's origin in the frame

@@ -11,7 +11,7 @@
 namespace tactus::haptic {
 
 // Counts since the grip was held in the middle of its frame; positive is longer.
-using Counts = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1, 0, kMostStrings, 1>;
+using Counts = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1, 0, kMaxStrings, 1>;
 
 class StringMotors {
  public:

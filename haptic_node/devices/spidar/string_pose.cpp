@@ -6,9 +6,9 @@
 namespace tactus::haptic {
 namespace {
 
-constexpr int kMostSteps = 30;
+constexpr int kMaxSteps = 30;
 // Damping relative to the diagonal (Marquardt 1963): next to none at first, since it starts from the last pose.
-constexpr double kLeastDamping = 1e-12, kFirstDamping = 1e-9, kMostDamping = 1e6;
+constexpr double kLeastDamping = 1e-12, kFirstDamping = 1e-9, kMaxDamping = 1e6;
 
 // A change of position and a rotation in units of lever_m, so that both are lengths.
 GripPose moved(const GripPose& pose, const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>& by, double lever_m) {
@@ -34,7 +34,7 @@ SolvedPose solve_pose(const StringFrame& frame, const PerString& lengths_m, cons
   out.pose = from;
   PerString error = string_lengths(frame, out.pose) - lengths_m;
   double damping = kFirstDamping;
-  while (out.steps < kMostSteps && !out.converged) {
+  while (out.steps < kMaxSteps && !out.converged) {
     ++out.steps;
     // A string gets shorter by what its end moves along it: the lengths' derivative is minus the structure matrix.
     const StructureMatrix w = structure_matrix(frame, out.pose);
@@ -56,8 +56,8 @@ SolvedPose solve_pose(const StringFrame& frame, const PerString& lengths_m, cons
         out.converged = std::isfinite(step.norm());
         break;
       }
-      if (!better && (damping *= 10) > kMostDamping) {
-        out.steps = kMostSteps;
+      if (!better && (damping *= 10) > kMaxDamping) {
+        out.steps = kMaxSteps;
         break;
       }
     }

@@ -22,14 +22,14 @@ constexpr double kRoom = 0.02;
 // the limits of every string, which leaves a convex polygon.
 struct Solutions {
   PerString particular;
-  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMostStrings, 2>
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxStrings, 2>
       null;  // orthonormal columns; with four strings one is 0
   double least, most;
 };
 
 // At most four corners and one more per cut.
 struct Polygon {
-  std::array<Vector2, 4 + 2 * kMostStrings> corner;
+  std::array<Vector2, 4 + 2 * kMaxStrings> corner;
   int size = 0;
 };
 
@@ -49,7 +49,7 @@ void cut(Polygon& p, const Vector2& normal, double bound) {
 
 Polygon allowed(const Solutions& s, double share) {
   // |z| = |tensions - their part in the row space|, so no z outside this square is within the limits.
-  const double reach = 2 * s.most * kMostStrings + share * s.particular.norm();
+  const double reach = 2 * s.most * kMaxStrings + share * s.particular.norm();
   Polygon p;
   p.corner[0] = {-reach, -reach}, p.corner[1] = {reach, -reach}, p.corner[2] = {reach, reach},
   p.corner[3] = {-reach, reach};

@@ -7,9 +7,9 @@ namespace tactus::haptic {
 
 Eigen::Vector3d WindowVelocity::add(const Eigen::Vector3d& position_m, sync::HostTime at) {
   if (count_ > 0 && at <= back(0).at) clear();
-  newest_ = (newest_ + 1) % kMost;
+  newest_ = (newest_ + 1) % kMax;
   samples_[newest_] = {position_m, at};
-  count_ = std::min(count_ + 1, kMost);
+  count_ = std::min(count_ + 1, kMax);
 
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {

@@ -24,11 +24,11 @@ class WindowVelocity {
     sync::HostTime at{};
   };
   // design: 20 ms at 1 kHz, about the lag that a hand's servo forgives.
-  static constexpr std::size_t kMost = 20;
-  const Sample& back(std::size_t age) const { return samples_[(newest_ + kMost - age) % kMost]; }
+  static constexpr std::size_t kMax = 20;
+  const Sample& back(std::size_t age) const { return samples_[(newest_ + kMax - age) % kMax]; }
 
   double step_m_;
-  std::array<Sample, kMost> samples_;
+  std::array<Sample, kMax> samples_;
   std::size_t newest_ = 0, count_ = 0;
 };
 

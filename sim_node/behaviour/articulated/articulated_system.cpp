@@ -11,7 +11,7 @@ namespace {
 // it.
 constexpr double kStiff = 0.3;
 // Growth of sub-steps (Hairer, Norsett and Wanner 1993, equation II.4.13, with the constants given there).
-constexpr double kSafety = 0.9, kLeast = 0.2, kMost = 5;
+constexpr double kSafety = 0.9, kLeast = 0.2, kMax = 5;
 
 void quaternion_rate(const double* q, const Eigen::Vector3d& spin, bool in_body, double* out) {
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]), rate(0, spin.x(), spin.y(), spin.z());
@@ -176,7 +176,7 @@ void ArticulatedSystem::step(double h_s) {
     pair_.attempt(slope, y_, h);
     ++substeps_;
     const double error = relative_error();
-    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kLeast, kMost);
+    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kLeast, kMax);
     if (error > 1 && h > finest * 1.01) continue;
     y_ = pair_.result();
     pair_.accept();

@@ -63,12 +63,12 @@ class Dynamics {
   struct Work {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Eigen::Vector3d centre;                       // from the common point, m
-    Eigen::Matrix<double, 6, kMostDofs> axes;     // S: motion for unit rate of each dof
+    Eigen::Matrix<double, 6, kMaxDofs> axes;     // S: motion for unit rate of each dof
     Spatial velocity, bias;                       // v, and c: acceleration at zero joint acceleration
     SpatialInertia inertia;                       // rigid, then articulated: I^A
     Spatial force;                                // p^A
-    Eigen::Matrix<double, 6, kMostDofs> carried;  // U = I^A S
-    Eigen::Matrix<double, 6, kMostDofs> shared;   // U D^-1
+    Eigen::Matrix<double, 6, kMaxDofs> carried;  // U = I^A S
+    Eigen::Matrix<double, 6, kMaxDofs> shared;   // U D^-1
     Eigen::Matrix3d inverse;                      // D^-1
     Eigen::Vector3d drive;                        // u
     Spatial acceleration = Spatial::Zero();

@@ -10,7 +10,7 @@
 
 namespace tactus::sim::articulated {
 
-inline constexpr int kMostDofs = 3;  // of a joint; a free base has six of its own
+inline constexpr int kMaxDofs = 3;  // of a joint; a free base has six of its own
 
 struct LinkDef {
   int parent = -1;       // an earlier link; -1: the world

@@ -13,13 +13,13 @@ constexpr double kBend_m = 1e-4;
 // An overlap that deep may have its normal wrong: the step is halved instead, m.
 constexpr double kDeep_m = 3e-4;
 // An overlap above this is put apart, m: design: half of what may be seen by the proofs, 10 um.
-constexpr double kOverlap_m = 5e-6, kMostOverlap_m = 1e-5;
+constexpr double kOverlap_m = 5e-6, kMaxOverlap_m = 1e-5;
 // By so much a body may come further than its speed said, m; design: gravity over 4 ms; below what detectors add.
 constexpr double kFurther_m = 1e-4;
 // Contacts are not sought further ahead than this, m: what was planar from afar may be seen edge on when it comes;
 // design: a step of 1 ms at 20 m/s.
 constexpr double kFarthest_m = 0.0201;
-constexpr int kMostPieces = 64, kMostRounds = 8, kMostSearches = 3;
+constexpr int kMaxPieces = 64, kMaxRounds = 8, kMaxSearches = 3;
 
 double deepest_of(const Manifold& m) {
   double depth = -1;
@@ -108,7 +108,7 @@ bool Advance::attempt(World& world, ContactSource& source, double& dt, double fi
     world.take_back(kept_);
     return false;
   }
-  if (report_.found_again < kMostSearches * report_.pieces && came_further(world, dt)) {
+  if (report_.found_again < kMaxSearches * report_.pieces && came_further(world, dt)) {
     ++report_.found_again;
     source.find(assumed_, world.active_bodies(), dt, ahead_);
     if (lacks_pair(contacts)) {
@@ -140,7 +140,7 @@ void Advance::clear_overlaps(World& world, ContactSource& source, double next) {
     const double depth = deepest_of(m);
     return depth > kOverlap_m && depth <= kDeep_m;
   };
-  for (int round = 0; round < kMostRounds && std::any_of(after_.begin(), after_.end(), overlaps); ++round) {
+  for (int round = 0; round < kMaxRounds && std::any_of(after_.begin(), after_.end(), overlaps); ++round) {
     world.separate(after_, kDeep_m);
     ++report_.separated;
     source.find(world.motions(), world.active_bodies(), next, after_);
@@ -153,7 +153,7 @@ void Advance::hold_back(World& world, ContactSource& source, double next, std::s
   held_.clear();
   for (bool changed = true; changed;) {
     changed = false;
-    for_each_deeper(after_, before, kMostOverlap_m, [&](const Manifold& m, double) {
+    for_each_deeper(after_, before, kMaxOverlap_m, [&](const Manifold& m, double) {
       for (const int body : {m.body_a, m.body_b}) {
         const int unit = world.unit_of(body);
         const auto active = world.active_units();
@@ -211,7 +211,7 @@ double Advance::horizon_s(const World& world, double h) const {
     fastest = std::max(
         fastest, m.velocity_m_s.norm() + extents_[static_cast<std::size_t>(body)].bend_m * m.spin_rad_s.norm());
   }
-  return fastest * h > kFarthest_m ? std::max(h / kMostPieces, kFarthest_m / fastest) : h;
+  return fastest * h > kFarthest_m ? std::max(h / kMaxPieces, kFarthest_m / fastest) : h;
 }
 
 const StepReport& Advance::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
@@ -219,7 +219,7 @@ const StepReport& Advance::step(World& world, ContactSource& source, double h, s
   report_ = {};
   next_h = std::max(h, next_h);
   solved.clear();
-  const double finest = h / kMostPieces;
+  const double finest = h / kMaxPieces;
   double begun = 0, dt = horizon_s(world, h);
   while (h - begun > 1e-9 * h) {
     const double left = h - begun;

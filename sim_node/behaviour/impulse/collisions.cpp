@@ -8,10 +8,10 @@ namespace tactus::sim::impulse {
 namespace {
 
 // Of one pair: sweeps over its points, and the change of speed below which they have settled, m/s.
-constexpr int kMostSweeps = 50;
+constexpr int kMaxSweeps = 50;
 constexpr double kSettled_m_s = 1e-12;
 // Blows of one step per group: a row of n balls needs up to n/2 for each; beyond, the contact solver ends it.
-constexpr std::size_t kMostBlows = 16;
+constexpr std::size_t kMaxBlows = 16;
 // A gap below this is none: the residual of the sweeps, m.
 constexpr double kTouching_m = 2e-6;
 
@@ -132,7 +132,7 @@ void Collisions::rebound(ContactGroup& g) {
   const auto keep = [this](double v, const double*) { before_.push_back(v); };
   of_mover(g.mover_a, keep);
   if (g.mover_b != g.mover_a) of_mover(g.mover_b, keep);
-  for (int round = 0; round < kMostSweeps; ++round) {
+  for (int round = 0; round < kMaxSweeps; ++round) {
     double change = 0;
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -168,7 +168,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   h_ = h;
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
-  const std::size_t most = kMostBlows * rows.groups.size();
+  const std::size_t most = kMaxBlows * rows.groups.size();
   for (std::size_t blow = 0; blow < most; ++blow) {
     const auto fastest = std::max_element(approach_.begin(), approach_.end());
     if (*fastest <= 0) break;

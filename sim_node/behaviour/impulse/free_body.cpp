@@ -14,7 +14,7 @@ constexpr double kHardlyTurns_rad = 1e-5;
 // The turn of a step is integrated in pieces of this, rad, where the classical step errs by its fifth power, 1e-4;
 // design: a body that turns further than 32 of them in a step spins faster than any step resolves.
 constexpr double kPiece_rad = 0.15;
-constexpr int kMostPieces = 32;
+constexpr int kMaxPieces = 32;
 
 Eigen::Matrix3d in_world(const Eigen::Quaterniond& orientation, const Eigen::Matrix3d& in_body) {
   const Eigen::Matrix3d r = orientation.toRotationMatrix();
@@ -42,7 +42,7 @@ Eigen::Vector3d mean_spin(const FreeBody& body, const Eigen::Vector3d& momentum,
     const Eigen::Vector3d w = r * (inverse * (r.transpose() * momentum));
     return 0.5 * (Eigen::Quaterniond(0, w.x(), w.y(), w.z()) * turn).coeffs();
   };
-  const int pieces = std::clamp(static_cast<int>(spin.norm() * step / kPiece_rad), 1, kMostPieces);
+  const int pieces = std::clamp(static_cast<int>(spin.norm() * step / kPiece_rad), 1, kMaxPieces);
   const double h = step / pieces;
   Eigen::Vector4d q = body.orientation.coeffs();
   for (int i = 0; i < pieces; ++i) {

@@ -6,7 +6,7 @@ namespace tactus::sim::impulse {
 namespace {
 
 constexpr int kFlies = 1 << 20;
-constexpr int kMostLayers = 256;   // what is higher counts as flying
+constexpr int kMaxLayers = 256;   // what is higher counts as flying
 constexpr std::size_t kTurns = 8;  // groups that take turns; design: as many as hide the latency of one point
 constexpr int kSweeps = 5;         // over the points of one group; design: four corners settle to 1 %
 
@@ -18,7 +18,7 @@ void Layers::find(const ContactRows& rows, int movers) {
     for (const int mover : {g.mover_a, g.mover_b})
       if (mover >= 0) layer_[static_cast<std::size_t>(mover)] = kFlies;
   bool changed = true;
-  for (int pass = 0; changed && pass < kMostLayers; ++pass) {
+  for (int pass = 0; changed && pass < kMaxLayers; ++pass) {
     changed = false;
     for (const ContactGroup& g : rows.groups) {
       const auto lift = [&](int below, int mover) {

@@ -8,7 +8,7 @@ namespace tactus::sim::impulse {
 namespace {
 
 // Sweeps over all contacts, most, and the change below which they end, m: a hundredth of what may be left.
-constexpr int kMostSweeps = 200;
+constexpr int kMaxSweeps = 200;
 constexpr double kSettled_m = 1e-7;
 
 }  // namespace
@@ -118,7 +118,7 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
   weigh_anew(contacts);
   build_rows(contacts, 1);
   // As velocities over one second: the least change, by inertia, that leaves no overlap.
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (ContactPoint& p : rows_.points) {
       if (p.gap_m < -most_m) continue;

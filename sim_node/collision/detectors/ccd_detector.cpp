@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 // libccd compares it with squared distances: 10 um, below what the senses resolve.
 constexpr double kAccuracy_m2 = 1e-10;
 // Rounds after which libccd gives up; curved shapes take tens.
-constexpr unsigned long kMostRounds = 200;
+constexpr unsigned long kMaxRounds = 200;
 // A vertex may stick so far out of the plane of a face of a convex mesh, m: rounding of a file's decimals.
 constexpr double kConvex_m = 1e-6;
 
@@ -127,7 +127,7 @@ class CcdDetector : public Detector {
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;
     ccd.center1 = ccd.center2 = centre;
-    ccd.max_iterations = kMostRounds;
+    ccd.max_iterations = kMaxRounds;
     ccd.epa_tolerance = ccd.mpr_tolerance = ccd.dist_tolerance = kAccuracy_m2;
     ccd_real_t depth = 0;
     ccd_vec3_t way, at;

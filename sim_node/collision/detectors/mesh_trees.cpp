@@ -7,7 +7,7 @@ namespace tactus::sim {
 namespace {
 
 // Samples along one side of a heightfield; finer ones are thinned.
-constexpr int kMostSamples = 1025;
+constexpr int kMaxSamples = 1025;
 
 TriangleMesh mesh_of_box(const Eigen::Vector3d& half) {
   TriangleMesh m;
@@ -25,7 +25,7 @@ template <class Use>
 auto with_mesh(const ShapeDef& shape, const WorldDef& world, Use&& use) {
   const auto at = static_cast<std::size_t>(shape.mesh);
   if (shape.kind == ShapeKind::kMesh) return use(world.meshes.at(at));
-  if (shape.kind == ShapeKind::kHeightfield) return use(triangulate(world.heightfields.at(at), kMostSamples));
+  if (shape.kind == ShapeKind::kHeightfield) return use(triangulate(world.heightfields.at(at), kMaxSamples));
   return use(mesh_of_box(gaps::convex_of(shape).half_m));
 }
 

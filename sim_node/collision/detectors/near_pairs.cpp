@@ -16,7 +16,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // A blow is followed through so many bodies, each hit by the one before: design: beyond that each has lost most of
 // it.
-constexpr int kMostBlows = 8;
+constexpr int kMaxBlows = 8;
 // Friction adds at most as much across: a coefficient of up to 1; what is rougher is found when it has come
 // further than was sought (impulse::Advance).
 constexpr double kWithFriction = 2;
@@ -226,7 +226,7 @@ std::span<const NearPair> NearPairs::find(std::span<const BodyMotion> bodies, st
     pairs_.clear();
     for (std::size_t i = 0; i < swept_.size(); ++i) with_fixed(i, bodies, h);
     among_moving(bodies, h);
-    if (round == kMostBlows || !strike(bodies, active, h)) break;
+    if (round == kMaxBlows || !strike(bodies, active, h)) break;
   }
   const auto before = [](const NearPair& x, const NearPair& y) {
     return x.shape_a != y.shape_a ? x.shape_a < y.shape_a : x.shape_b < y.shape_b;

@@ -8,11 +8,11 @@ namespace tactus::sim {
 namespace {
 
 // Two boxes have at most 8 points, meshes many more.
-constexpr int kMostRaw = 64;
+constexpr int kMaxRaw = 64;
 
 class OdeDetector : public Detector {
  public:
-  OdeDetector() : raw_(kMostRaw) {}
+  OdeDetector() : raw_(kMaxRaw) {}
   ~OdeDetector() override {
     for (const Shape& s : shapes_) dGeomDestroy(s.geom);
   }
@@ -42,7 +42,7 @@ class OdeDetector : public Detector {
     const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     put(sa, pose_a);
     put(sb, pose_b);
-    const int count = dCollide(sa.geom, sb.geom, kMostRaw, raw_.data(), sizeof(dContactGeom));
+    const int count = dCollide(sa.geom, sb.geom, kMaxRaw, raw_.data(), sizeof(dContactGeom));
     for (int i = 0; i < count; ++i) {
       const dContactGeom& c = raw_[static_cast<std::size_t>(i)];
       PointPair p;

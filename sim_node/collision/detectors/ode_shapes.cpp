@@ -6,7 +6,7 @@ namespace tactus::sim::ode {
 namespace {
 
 // Two boxes have at most 8 points, meshes many more.
-constexpr int kMostRaw = 64;
+constexpr int kMaxRaw = 64;
 // What never moves is not tested against what never moves.
 constexpr unsigned long kStatic = 1, kMoving = 2;
 
@@ -56,8 +56,8 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
   }
   for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
   std::sort(apart_.begin(), apart_.end());
-  raw_.resize(kMostRaw);
-  found_.reserve(kMostRaw);
+  raw_.resize(kMaxRaw);
+  found_.reserve(kMaxRaw);
 }
 
 bool Shapes::may_collide(int a, int b) const {
@@ -65,7 +65,7 @@ bool Shapes::may_collide(int a, int b) const {
 }
 
 void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb) {
-  const int count = dCollide(ga, gb, kMostRaw, raw_.data(), sizeof(dContactGeom));
+  const int count = dCollide(ga, gb, kMaxRaw, raw_.data(), sizeof(dContactGeom));
   found_.clear();
   for (int i = 0; i < count; ++i) {
     const dContactGeom& c = raw_[static_cast<std::size_t>(i)];

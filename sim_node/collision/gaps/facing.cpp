@@ -74,7 +74,7 @@ struct Collector {
   const Seen &a, &b;
   double reach_m;
   FacingList& out;
-  std::array<Vector2d, FacingList::kMost> places;
+  std::array<Vector2d, FacingList::kMax> places;
 
   void add(const Vector2d& p) {
     const double ha = a.height_at(p), hb = b.height_at(p);
@@ -82,7 +82,7 @@ struct Collector {
     // Where corners lie on edges or on corners, each is found several times.
     for (int i = 0; i < out.count; ++i)
       if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kOnePlace_m * kOnePlace_m) return;
-    if (out.count < FacingList::kMost) places[static_cast<std::size_t>(out.count)] = p;
+    if (out.count < FacingList::kMax) places[static_cast<std::size_t>(out.count)] = p;
     const Vector3d flat = p.x() * a.u + p.y() * a.v;
     out.add({flat + ha * a.n, flat + hb * a.n, hb - ha});
   }

@@ -28,11 +28,11 @@ struct Facing {
   double gap_m;  // along n
 };
 struct FacingList {
-  static constexpr int kMost = 40;  // two discs or a disc and a box have at most 18, two quadrilaterals 24
+  static constexpr int kMax = 40;  // two discs or a disc and a box have at most 18, two quadrilaterals 24
   int count = 0;
-  std::array<Facing, kMost> at;
+  std::array<Facing, kMax> at;
   void add(const Facing& f) {
-    if (count < kMost) at[static_cast<std::size_t>(count++)] = f;
+    if (count < kMax) at[static_cast<std::size_t>(count++)] = f;
   }
 };
 

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Curved cores come nearer by a share in each round; polytopes end within ten.
-constexpr int kMostRounds = 100;
+constexpr int kMaxRounds = 100;
 // What a further round could still bring, as a share of the squared distance: 1e-12 of it is 5e-13 of the
 // distance.
 constexpr double kSettled = 1e-12;
@@ -131,7 +131,7 @@ Apart nearest_points(const Convex& a, const Convex& b, const Eigen::Isometry3d& 
   if (v.squaredNorm() == 0) v = Vector3d::UnitX();
   Simplex simplex;
   double squared = std::numeric_limits<double>::max();
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const Corner next = furthest(-v);
     const double along = v.dot(next.at), v2 = v.squaredNorm();
     if (along > 0 && along * along > reach_m * reach_m * v2) return Apart::kFar;

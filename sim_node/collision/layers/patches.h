@@ -10,7 +10,7 @@
 
 namespace tactus::sim {
 
-inline constexpr int kMostPatchPoints = 4;
+inline constexpr int kMaxPatchPoints = 4;
 
 // One stretch of contact with one direction.
 struct ContactPatch {
@@ -20,7 +20,7 @@ struct ContactPatch {
   // The deepest pair and the corners of the patch. Each carries 1 / count of the stiffness, so that the patch is
   // as stiff however finely it is divided.
   int count = 0;
-  std::array<PointPair, kMostPatchPoints> points;
+  std::array<PointPair, kMaxPatchPoints> points;
   double share() const { return count > 0 ? 1.0 / count : 0; }
 };
 

@@ -5,7 +5,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostHoles = 16;  // of a game_state_t
+constexpr std::size_t kMaxHoles = 16;  // of a game_state_t
 constexpr std::size_t kLongestName = 64;
 
 // The body of that name, or the only link of the model of that name; -1: there is none.
@@ -43,8 +43,8 @@ HoleDef read_hole(const LoadContext& context, const sdf::Element& element) {
 void read_holes(LoadContext& context, const sdf::ElementPtr& world) {
   for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
     if (element->GetName() != "tactus:hole") continue;
-    if (context.world.holes.size() >= kMostHoles)
-      context.refuse(*element, "is one too many: a game has at most " + std::to_string(kMostHoles) + " holes");
+    if (context.world.holes.size() >= kMaxHoles)
+      context.refuse(*element, "is one too many: a game has at most " + std::to_string(kMaxHoles) + " holes");
     context.world.holes.push_back(read_hole(context, *element));
   }
 }

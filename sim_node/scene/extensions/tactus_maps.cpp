@@ -10,8 +10,8 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMostMaps = 64;
-constexpr double kMost = 1e9;
+constexpr std::size_t kMaxMaps = 64;
+constexpr double kMax = 1e9;
 
 struct Name {
   std::string node, rest;
@@ -51,13 +51,13 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
   map.setting = attributes.required_text("to");
   split(context, element, map.tag, "from");
   const sync::SettingRow& row = row_of(context, element, split(context, element, map.setting, "to"));
-  map.gain = attributes.quantity("gain", "1", -kMost, kMost).value_or(1);
+  map.gain = attributes.quantity("gain", "1", -kMax, kMax).value_or(1);
   const std::string unit = std::string_view(row.unit) == "count" ? "1" : row.unit;
   const double initial = sync::parse_quantity(row.initial, unit);
   const std::string_view safety = row.safety;
   // A limit that protects a person is not driven beyond its default.
   const double low = safety == "min" ? initial : row.min, high = safety == "max" ? initial : row.max;
-  map.offset = attributes.quantity("offset", unit, -kMost, kMost).value_or(0);
+  map.offset = attributes.quantity("offset", unit, -kMax, kMax).value_or(0);
   map.low = attributes.quantity("low", unit, low, high).value_or(low);
   map.high = attributes.quantity("high", unit, low, high).value_or(high);
   attributes.done();
@@ -70,8 +70,8 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
 void read_maps(LoadContext& context, const sdf::ElementPtr& world) {
   for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
     if (element->GetName() != "tactus:map") continue;
-    if (context.world.maps.size() >= kMostMaps)
-      context.refuse(*element, "is one too many: a scene has at most " + std::to_string(kMostMaps) + " maps");
+    if (context.world.maps.size() >= kMaxMaps)
+      context.refuse(*element, "is one too many: a scene has at most " + std::to_string(kMaxMaps) + " maps");
     context.world.maps.push_back(read_map(context, *element));
   }
 }

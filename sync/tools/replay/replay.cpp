@@ -80,7 +80,7 @@ void Replay::poll(HostTime now, const Take& take) {
   if (paused_ || over_) return;
   const HostTime until = std::min(due(now), pause_at_.value_or(HostTime::max()));
   const double speed = speed_ == 0 ? measured_speed_ : speed_;
-  for (int looked = 0; looked < kMostLooked; ++looked) {
+  for (int looked = 0; looked < kMaxLooked; ++looked) {
     if (!read() || pending_at_ > end_) {
       if (pause_at_ && *pause_at_ <= end_ && due(now) >= *pause_at_) return pause(now);
       if (due(now) < end_) return;  // the silence before the end is played, too
@@ -107,7 +107,7 @@ void Replay::poll(HostTime now, const Take& take) {
   // More is due than may be sent, or looked at.
   if (speed_ == 0) return;
   const Nanoseconds behind = now - anchor_live_ - scaled(position_ - anchor_recorded_, 1 / speed_);
-  if (behind <= kMostBehind) return;
+  if (behind <= kMaxBehind) return;
   behind_ += behind;
   anchor(now);
 }

@@ -30,10 +30,10 @@ class Replay {
   // No more in one poll: LCM's own queue takes 30 messages, and its default receive buffer 90.
   static constexpr int kBurst = 20;
   // Events of the log looked at in one poll, sent or not.
-  static constexpr int kMostLooked = 20'000;
+  static constexpr int kMaxLooked = 20'000;
   // A replay that is so far behind its time does not catch up: it goes on from where it is, later by this, and
   // counts it.
-  static constexpr Nanoseconds kMostBehind{100'000'000};
+  static constexpr Nanoseconds kMaxBehind{100'000'000};
 
   // `log` outlives this. Throws std::runtime_error with one sentence when it holds no event, or not what the
   // options ask for.

@@ -20,7 +20,7 @@ constexpr std::array kWithheld{
     kPictureChunk, kLogInfo,        kLogTypes,     kTagRequest,    kQuestion,
     kAnswer,       "LCM_SELF_TEST"};
 // A log of noise has more channels than anybody remembers.
-constexpr std::size_t kMostDecided = 4096;
+constexpr std::size_t kMaxDecided = 4096;
 
 std::optional<std::regex> expression(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
@@ -66,7 +66,7 @@ const ReplayChoice::Channel& ReplayChoice::decide(std::string_view recorded) {
   if (matches(leave_out_)) c.goes = false;
   for (const auto& [from, to] : rename_)
     if (recorded == from) c.name = to;
-  if (decided_.size() < kMostDecided) return decided_.emplace(name, std::move(c)).first->second;
+  if (decided_.size() < kMaxDecided) return decided_.emplace(name, std::move(c)).first->second;
   return scratch_ = std::move(c);
 }
 

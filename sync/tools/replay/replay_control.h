@@ -30,7 +30,7 @@ class Lines {
       if (c != '\n') {
         if (line_.size() <= kLongest) line_ += c;
       } else {
-        if (line_.size() <= kLongest && ready_.size() < kMost) ready_.push_back(line_);
+        if (line_.size() <= kLongest && ready_.size() < kMax) ready_.push_back(line_);
         line_.clear();
       }
     }
@@ -44,7 +44,7 @@ class Lines {
   }
 
  private:
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMax = 1000;
   std::string line_;
   std::deque<std::string> ready_;
 };

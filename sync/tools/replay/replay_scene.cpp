@@ -17,7 +17,7 @@ std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& 
       if (const Asset* asset = receiver.asset(ref.hash)) out.push_back({ref.kind, ref.name, asset->bytes});
     return out;
   };
-  for (LogEvent e; scanner.at() < kMostSceneBytes && scanner.next(e);) {
+  for (LogEvent e; scanner.at() < kMaxSceneBytes && scanner.next(e);) {
     if (e.channel != channels::kSceneManifest && e.channel != channels::kAssetChunk) continue;
     now += Nanoseconds(1000);
     bus.hear(e.channel, e.data, now);

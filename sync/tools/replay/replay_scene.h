@@ -15,6 +15,6 @@ namespace tactus::sync {
 std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin);
 
 // A scene of the largest size that any node takes, and what crossed the bus meanwhile.
-inline constexpr std::size_t kMostSceneBytes = 512 << 20;
+inline constexpr std::size_t kMaxSceneBytes = 512 << 20;
 
 }  // namespace tactus::sync

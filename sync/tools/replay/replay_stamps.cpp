@@ -69,7 +69,7 @@ void ReplayStamps::hear(const LogEvent& event, const ReplayMoment& moment) {
 bool ReplayStamps::restamp(std::span<std::uint8_t> message, const ReplayMoment& moment, HostTime now) {
   const auto header = peek_header(message.data(), message.size());
   if (!header) return false;
-  if (moment.pass != pass_ || senders_.size() > kMostSenders) senders_.clear();
+  if (moment.pass != pass_ || senders_.size() > kMaxSenders) senders_.clear();
   pass_ = moment.pass;
   const OwnClock recorder(origin_.info.header.run_id, origin_.info.header.clock, &maps_);
   SenderClock& sender = senders_.try_emplace({header->source, header->incarnation}, recorder).first->second;
@@ -101,7 +101,7 @@ bool ReplayStamps::restamp(std::span<std::uint8_t> message, const ReplayMoment& 
   const Nanoseconds ahead(std::max<std::int64_t>(0, host_ns - header->publish_time_ns));
   const HostTime host = publish - slowed(Nanoseconds(since), moment.speed) + slowed(ahead, moment.speed);
   put(message, kSimHost, static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(host))));
-  put(message, kSimRate, std::bit_cast<std::uint64_t>(std::min(kMostRate, rate * moment.speed)));
+  put(message, kSimRate, std::bit_cast<std::uint64_t>(std::min(kMaxRate, rate * moment.speed)));
   return true;
 }
 

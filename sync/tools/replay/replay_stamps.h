@@ -31,9 +31,9 @@ struct ReplayMoment {
 class ReplayStamps {
  public:
   // Senders of a log; noise makes up more.
-  static constexpr std::size_t kMostSenders = 256;
+  static constexpr std::size_t kMaxSenders = 256;
   // As fast as any receiver believes a simulation to run (lcmtypes/valid.cpp).
-  static constexpr double kMostRate = 100;
+  static constexpr double kMaxRate = 100;
 
   ReplayStamps(const LogOrigin& origin, Identity live);
   // Every event of the log, in order, before it is restamped or left out.

@@ -15,7 +15,7 @@ double of_sorted(const std::vector<double>& sorted, double share) {
 
 void Arrivals::add(HostTime arrival, std::size_t bytes) {
   kept_.push_back({arrival, static_cast<std::uint32_t>(bytes)});
-  if (kept_.size() > kMost) kept_.pop_front();
+  if (kept_.size() > kMax) kept_.pop_front();
 }
 
 std::size_t Arrivals::first(HostTime now) const {

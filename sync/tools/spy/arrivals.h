@@ -13,7 +13,7 @@ class Arrivals {
  public:
   // What is looked at: the last two seconds, of which so many messages (1 kHz).
   static constexpr Nanoseconds kSpan{2'000'000'000};
-  static constexpr std::size_t kMost = 2048;
+  static constexpr std::size_t kMax = 2048;
 
   void add(HostTime arrival, std::size_t bytes);
 

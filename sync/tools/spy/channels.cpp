@@ -9,7 +9,7 @@ namespace tactus::sync::spy {
 Channels::Sender* Channels::sender_of(Channel& channel, std::int32_t source) const {
   const auto known = channel.senders.find(source);
   if (known != channel.senders.end()) return &known->second;
-  if (channel.senders.size() >= kMostSenders) return nullptr;
+  if (channel.senders.size() >= kMaxSenders) return nullptr;
   return &channel.senders.emplace(source, Sender(own_)).first->second;
 }
 
@@ -17,7 +17,7 @@ void Channels::push(const MessageBatch::Message& m) {
   ++messages_;
   auto it = channels_.find(m.channel);
   if (it == channels_.end()) {
-    if (channels_.size() >= kMost) {
+    if (channels_.size() >= kMax) {
       ++beyond_;
       return;
     }

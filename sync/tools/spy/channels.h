@@ -32,8 +32,8 @@ struct ChannelFigures {
 
 class Channels {
  public:
-  static constexpr std::size_t kMost = 512;
-  static constexpr std::size_t kMostSenders = 16;  // of a channel
+  static constexpr std::size_t kMax = 512;
+  static constexpr std::size_t kMaxSenders = 16;  // of a channel
 
   explicit Channels(OwnClock own) : own_(own) {}
 

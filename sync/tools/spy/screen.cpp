@@ -124,7 +124,7 @@ void Screen::push(const tag_values_t& m, HostTime arrival) {
     const std::string name = list.node + "." + tag.name;
     auto it = tags_.find(name);
     if (it == tags_.end()) {
-      if (tags_.size() >= kMostTags) return;
+      if (tags_.size() >= kMaxTags) return;
       it = tags_.emplace(name, Variable()).first;
     }
     it->second.unit = tag.unit;
@@ -184,7 +184,7 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
     rows.push_back({path, cut(line, columns)});
     if (path != marked_name_ || std::holds_alternative<std::string>(value)) return;
     const std::size_t room = columns > 60 ? columns - 60 : 10;
-    const Spark::Drawn course = course_.draw(now, std::min(room, Spark::kMost));
+    const Spark::Drawn course = course_.draw(now, std::min(room, Spark::kMax));
     rows.push_back({path + " ", "    " + course.text + format("  %.4g .. %.4g", course.lowest, course.highest)});
   });
   return rows;
@@ -192,7 +192,7 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
 
 std::vector<Screen::Row> Screen::tag_rows(HostTime now, std::size_t columns) const {
   std::vector<Row> rows;
-  const std::size_t room = columns > 66 ? std::min(columns - 58, Spark::kMost) : 0;
+  const std::size_t room = columns > 66 ? std::min(columns - 58, Spark::kMax) : 0;
   for (const auto& [name, v] : tags_)
     rows.push_back({name, cut(padded(cut(name, 36), 36) + format(" %12.5g ", v.value) + padded(v.unit, 6),
                               columns - (room > 0)) +
@@ -241,7 +241,7 @@ std::vector<std::string> Screen::draw(const Channels& channels, HostTime now, st
   }
   std::string foot = std::to_string(channels.messages()) + " messages";
   if (channels.beyond() > 0)
-    foot += ", " + std::to_string(channels.beyond()) + " on channels beyond " + std::to_string(Channels::kMost);
+    foot += ", " + std::to_string(channels.beyond()) + " on channels beyond " + std::to_string(Channels::kMax);
   if (all.size() > visible)
     foot += ", " + std::string(kTitles[static_cast<int>(page_)]) + " " + std::to_string(cursor_ + 1) + " of " +
             std::to_string(all.size());

@@ -21,7 +21,7 @@ class Screen {
  public:
   // A course has a column each quarter of a second.
   static constexpr Nanoseconds kColumn{250'000'000};
-  static constexpr std::size_t kMostTags = 4096;
+  static constexpr std::size_t kMaxTags = 4096;
 
   void press(Key key);
   bool over() const { return over_; }

@@ -14,7 +14,7 @@ void Spark::add(double value, HostTime at) {
     return;
   }
   columns_.push_back({column, value});
-  if (columns_.size() > kMost) columns_.pop_front();
+  if (columns_.size() > kMax) columns_.pop_front();
 }
 
 Spark::Drawn Spark::draw(HostTime now, std::size_t columns) const {

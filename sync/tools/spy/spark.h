@@ -10,7 +10,7 @@ namespace tactus::sync::spy {
 
 class Spark {
  public:
-  static constexpr std::size_t kMost = 240;  // columns of the widest terminal that is drawn for
+  static constexpr std::size_t kMax = 240;  // columns of the widest terminal that is drawn for
 
   // each: so much time is one column. The last value of a column is shown.
   explicit Spark(Nanoseconds each) : each_(each) {}

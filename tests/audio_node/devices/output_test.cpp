@@ -73,8 +73,8 @@ std::string note_after_telling(const Settings& settings, std::optional<sync::Nan
     Scrape scrape;
     RecordedContact rub;
     scrape.at = rub.at = now + output.latency() + kLead;
-    for (int i = 0; i < 2 * Scrapes::kMost; ++i) output.submit(scrape);
-    for (int i = 0; i < 2 * Loops::kMost; ++i) output.submit(rub);
+    for (int i = 0; i < 2 * Scrapes::kMax; ++i) output.submit(scrape);
+    for (int i = 0; i < 2 * Loops::kMax; ++i) output.submit(rub);
   }
   return output.note();
 }

@@ -73,9 +73,9 @@ TEST_CASE("A hit that the late policy drops while it waits is said to be, and co
 
 TEST_CASE("No flood of hits waits without end: what is too many is not kept") {
   DueHits due;
-  for (std::size_t i = 0; i < DueHits::kMost; ++i) REQUIRE(due.push({}, at_ms(0)));
+  for (std::size_t i = 0; i < DueHits::kMax; ++i) REQUIRE(due.push({}, at_ms(0)));
   CHECK_FALSE(due.push({}, at_ms(0)));
-  CHECK(due.size() == DueHits::kMost);
+  CHECK(due.size() == DueHits::kMax);
   due.handle(
       at_ms(0), kLate, [] { return false; }, [](const auto&, auto) {}, [](const auto&, auto) {});
   CHECK(due.push({}, at_ms(0)));

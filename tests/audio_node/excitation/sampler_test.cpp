@@ -253,17 +253,17 @@ TEST_CASE("Of more contacts than can be heard at a time the loudest are played, 
   std::vector<RecordedContact> rubs;
   for (int ms = 1; ms < 100; ++ms) {
     sync::Contacts all;
-    for (int i = 0; i < 2 * Loops::kMost; ++i) {
+    for (int i = 0; i < 2 * Loops::kMax; ++i) {
       contact_t c = sliding(0.2, 0, 1 + i);
       c.contact_id = i;
       all.push_back(c);
     }
     rubs = w.sampler.rubs(all, sync::host_time(1'000'000 * ms));
   }
-  REQUIRE(rubs.size() == Loops::kMost);
-  for (const RecordedContact& r : rubs) CHECK(r.contact >= Loops::kMost);
+  REQUIRE(rubs.size() == Loops::kMax);
+  for (const RecordedContact& r : rubs) CHECK(r.contact >= Loops::kMax);
   CHECK(w.sampler.modal_of(0, Interaction::kScrape) == 1);
-  CHECK(w.sampler.modal_of(2 * Loops::kMost - 1, Interaction::kScrape) == 0);
+  CHECK(w.sampler.modal_of(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
 }
 
 TEST_CASE("Absurd events and contacts play finite sound") {

@@ -393,7 +393,7 @@ TEST_CASE("Of very many contacts the strongest are heard, and they are looked at
     many.back().contact_id = i;
   }
   const auto all = h.slides.scrapes(many, sim_ms(501), at_ms(501), 0.001);
-  REQUIRE(all.size() == Scrapes::kMost);
-  for (const Scrape& s : all) CHECK(s.id >= 200 - Scrapes::kMost);
+  REQUIRE(all.size() == Scrapes::kMax);
+  for (const Scrape& s : all) CHECK(s.id >= 200 - Scrapes::kMax);
   CHECK(h.slides.period_s() == Approx(1 / 60.));
 }

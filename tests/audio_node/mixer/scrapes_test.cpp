@@ -253,12 +253,12 @@ TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
 
 TEST_CASE("More contacts than there is room for leave those that are heard alone") {
   auto scrapes = std::make_unique<Scrapes>(kRate);
-  for (int i = 0; i < 3 * Scrapes::kMost; ++i) {
+  for (int i = 0; i < 3 * Scrapes::kMax; ++i) {
     Scrape s = along_x(&wavy(), 0.1, 0);
     s.id = i;
     scrapes->take(s);
   }
-  CHECK(scrapes->active() == Scrapes::kMost);
+  CHECK(scrapes->active() == Scrapes::kMax);
   CHECK(scrapes->force(0) != nullptr);
 }
 

@@ -104,14 +104,14 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
 
 TEST_CASE("More speeds than can be played are named, and a faint layer is not made all noise") {
   const SoundFolder folder;
-  for (int i = 1; i <= kMostLayers + 2; ++i)
+  for (int i = 1; i <= kMaxLayers + 2; ++i)
     folder.write("oak/scrape/0." + std::to_string(10 + i) + ".wav", tone(500, 0.5));
   folder.write("steel/scrape/0.1.wav", tone(500, 0.5, 1e-3));
   folder.write("steel/scrape/1.wav", tone(500, 0.5, 0.9));
   const Database d = read(folder);
   const Layers* many = d.find("oak", "oak", Interaction::kScrape).alone[0];
   REQUIRE(many);
-  CHECK(many->by_speed.size() == static_cast<std::size_t>(kMostLayers));
+  CHECK(many->by_speed.size() == static_cast<std::size_t>(kMaxLayers));
   REQUIRE(d.faults.size() == 1);
   CHECK_THAT(d.faults[0].what, Catch::Contains("8 speeds"));
   const Layers* faint = d.find("steel", "steel", Interaction::kScrape).alone[0];

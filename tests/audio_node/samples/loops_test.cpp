@@ -151,9 +151,9 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
   for (std::int64_t id = 0; id < 100; ++id) {
     RecordedContact r;
     r.contact = id, r.database = 1, r.at = at(0), r.layers = &l, r.level = 0.01f, r.speed_m_s = 1;
-    CHECK(loops.take(r) == (id < Loops::kMost));
+    CHECK(loops.take(r) == (id < Loops::kMax));
   }
-  CHECK(loops.active() == Loops::kMost);
+  CHECK(loops.active() == Loops::kMax);
 }
 
 TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {

@@ -113,12 +113,12 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
 TEST_CASE("When all are in use the quietest gives way, and fades without a click") {
   const Recording r = recording(tone(200, 2, 0.5));
   Shots shots(kRate);
-  for (int i = 0; i < Shots::kMost; ++i) shots.take(shot(r, i == 20 ? 1e-3f : 1e-2f), 1, 0);
+  for (int i = 0; i < Shots::kMax; ++i) shots.take(shot(r, i == 20 ? 1e-3f : 1e-2f), 1, 0);
   left_of(shots, 1);
-  CHECK(shots.active() == Shots::kMost);
+  CHECK(shots.active() == Shots::kMax);
   shots.take(shot(r, 1e-2f), 1, 0);
   const auto left = left_of(shots, 10);
-  CHECK(shots.active() == Shots::kMost);
+  CHECK(shots.active() == Shots::kMax);
   // All but the weak one go on: 63 in step, one that begins. Of a cosine 0.5 cos(w n) no step is above 0.5 w, and
   // the new one begins with its first sample.
   const double w = 2 * std::numbers::pi * 200 / kRate;
@@ -127,9 +127,9 @@ TEST_CASE("When all are in use the quietest gives way, and fades without a click
   // Beyond what may fade at a time one ends at once; never more than there is room for.
   for (int i = 0; i < 1000; ++i) shots.take(shot(r), 1, 0);
   left_of(shots, 1);
-  CHECK(shots.active() <= Shots::kMost + 16);
+  CHECK(shots.active() <= Shots::kMax + 16);
   left_of(shots, 10);
-  CHECK(shots.active() == Shots::kMost);
+  CHECK(shots.active() == Shots::kMax);
 }
 
 TEST_CASE("A recording of silence or of nothing is over at once, and no strength plays nothing") {

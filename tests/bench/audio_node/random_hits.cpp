@@ -19,7 +19,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr double kLeastGap_s = 0.07, kMostGap_s = 0.13;  // 10 a second; the board has fallen silent by then
+constexpr double kLeastGap_s = 0.07, kMaxGap_s = 0.13;  // 10 a second; the board has fallen silent by then
 constexpr double kAround_m = 0.08;                       // of the listener, who is amid the board
 constexpr sync::Nanoseconds kRepeat{50'000'000};         // as sim_node/publish repeats its events
 constexpr sync::Nanoseconds kGrace{3'000'000'000};       // in which the scene is read, as sim_node's scene_grace
@@ -83,7 +83,7 @@ int main(int argc, char** argv) try {
   std::cerr << "sim_node: the world begins" << std::endl;
 
   std::mt19937_64 random(options.seed);
-  std::uniform_real_distribution<double> gap_s(kLeastGap_s, kMostGap_s), azimuth_rad(-M_PI, M_PI);
+  std::uniform_real_distribution<double> gap_s(kLeastGap_s, kMaxGap_s), azimuth_rad(-M_PI, M_PI);
   const sync::HostTime begin = sync::host_now();
   sync::Nanoseconds next = sync::from_seconds(1);
   std::int64_t hits = 0, ticks = 0;

@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   m.bump_height_m = 1e-4, m.friction_black = 0.5, m.friction_white = 2;
   const ReliefLevels relief(make_relief(heights(), m));
   const FrictionMap friction(heights(), m);
-  const scene_t scene = floor_and_balls(Scrapes::kMost);
+  const scene_t scene = floor_and_balls(Scrapes::kMax);
   const Impacts impacts(
       scene, [](std::int64_t) { return std::nullopt; }, Settings{}, kRate_Hz, 1);
   const double period_us = 1e6 * kFrames / kRate_Hz;
@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
       sync::Contacts contacts;
       for (int i = 0; i < count; ++i) {
         contact_t c{};
-        c.contact_id = i, c.body_b = i % Scrapes::kMost + 1, c.tool = -1, c.kind = contact_t::SURFACE;
+        c.contact_id = i, c.body_b = i % Scrapes::kMax + 1, c.tool = -1, c.kind = contact_t::SURFACE;
         c.normal.z = 1, c.normal_force_N = 1, c.sliding_velocity_m_s.x = 0.1f;
         c.points.resize(1), c.point_count = 1;
         c.points[0].a_body_m.x = c.points[0].a_world_m.x = 1e-4f * static_cast<float>(tick);

@@ -47,7 +47,7 @@ constexpr Network kNetworks[] = {{"as it is"},
                                  {"25 ms late, bursts", 25, 1000, true},
                                  {"10 ms late, frozen", 10, 1000, false, true}};
 constexpr const char* kActs[] = {"press", "tap", "push"};
-constexpr double kMostGenerated_mJ = 1;
+constexpr double kMaxGenerated_mJ = 1;
 
 struct SurfaceKind {
   double mass_kg, stiffness_N_m;  // 0: a wall
@@ -151,7 +151,7 @@ nlohmann::json as_json(const SurfaceKind& surface, const char* hand, const Episo
 }
 
 bool good(const SurfaceKind& surface, const Network& network, const Row& r) {
-  if (r.generated_mJ > kMostGenerated_mJ || r.cycle) return false;
+  if (r.generated_mJ > kMaxGenerated_mJ || r.cycle) return false;
   if (surface.mass_kg <= 0) return r.of_ideal > 0.75 && r.most_of_ideal < 1.25;
   return r.of_design >= (network.bursts || network.freezes ? 0.2 : 0.5) && r.pushed >= 0;
 }

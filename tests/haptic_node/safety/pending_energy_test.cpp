@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kDt = 1e-3, kMost_N = 8;
+constexpr double kDt = 1e-3, kMax_N = 8;
 
 // A body that a hand pushes down and others hold with a force of their own, and the estimate of what it was given,
 // from what is told of it some milliseconds late until nothing is told any more.
@@ -47,13 +47,13 @@ struct Pushed {
     ++age_ms;
     if (on_the_way.size() > late_ms) {
       if (ms <= told_until_ms) {
-        unseen.tell(on_the_way.front().told, kMost_N);
+        unseen.tell(on_the_way.front().told, kMax_N);
         told_J = on_the_way.front().work_J;
         age_ms = static_cast<int>(late_ms);
       }
       on_the_way.pop_front();
     }
-    return unseen.energy_J(1e-3 * age_ms, kMost_N) - (work_J - told_J);
+    return unseen.energy_J(1e-3 * age_ms, kMax_N) - (work_J - told_J);
   }
   bool stops = false;  // as friction does
 };
@@ -127,7 +127,7 @@ TEST_CASE("A body that comes gives no more than its motion") {
   for (int ms = 0; ms < 100; ++ms) {
     const double off_J = body.step(2);
     CHECK(off_J >= 0);
-    CHECK(body.unseen.energy_J(1e-3 * body.age_ms, kMost_N) >= -motion_J);
+    CHECK(body.unseen.energy_J(1e-3 * body.age_ms, kMax_N) >= -motion_J);
   }
 }
 
@@ -148,5 +148,5 @@ TEST_CASE("A push that was never applied does not stay unseen for ever") {
   for (int ms = 0; ms < 100; ++ms) body.step(1);
   body.impulse_N_s -= 0.5;  // from now on the simulation tells of less
   for (int ms = 0; ms < 100; ++ms) body.step(0);
-  CHECK(body.unseen.energy_J(0.002, kMost_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
+  CHECK(body.unseen.energy_J(0.002, kMax_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
 }

@@ -242,7 +242,7 @@ TEST_CASE("What cannot be done is refused with a sentence, and nothing changes")
 
 TEST_CASE("No more pushes act at once than there may be") {
   Bench b;
-  for (std::size_t i = 0; i < Simulation::kMostWrenches; ++i)
+  for (std::size_t i = 0; i < Simulation::kMaxWrenches; ++i)
     CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
   CHECK_THAT(b.refusal(push("ball", {0.01, 0, 0}, 0.05)), Catch::Contains("as many pushes"));
   for (int i = 0; i < 60; ++i) b.tick();
@@ -274,7 +274,7 @@ TEST_CASE("A kept state is put back under its name, from memory and, by another 
 
 TEST_CASE("So many states are kept and no more. A name that is used again takes the place of the old one") {
   Bench b;
-  for (std::size_t i = 0; i < StateStore::kMost; ++i)
+  for (std::size_t i = 0; i < StateStore::kMax; ++i)
     CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s" + std::to_string(i))).done == 1);
   CHECK_THAT(b.refusal(command(sim_command_t::SNAPSHOT, "another")), Catch::Contains("as many states"));
   CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s3")).done == 1);

@@ -10,14 +10,14 @@ TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") 
   // What each takes beside its bytes.
   MessageBatch one;
   REQUIRE(one.add(kStart, {"A", bytes(50)}, 1000));
-  const std::size_t beside = one.bytes() - 51, kMost = 100 + 2 * beside;
+  const std::size_t beside = one.bytes() - 51, kMax = 100 + 2 * beside;
   CHECK(beside > 0);
   MessageBatch batch;
-  CHECK(batch.add(kStart, {"A", bytes(50)}, kMost));
-  CHECK_FALSE(batch.add(kStart, {"A", bytes(60)}, kMost));
-  CHECK(batch.add(kStart + Nanoseconds(1), {"BB", bytes(47), false}, kMost));
+  CHECK(batch.add(kStart, {"A", bytes(50)}, kMax));
+  CHECK_FALSE(batch.add(kStart, {"A", bytes(60)}, kMax));
+  CHECK(batch.add(kStart + Nanoseconds(1), {"BB", bytes(47), false}, kMax));
   REQUIRE(batch.size() == 2);
-  CHECK(batch.bytes() == kMost);
+  CHECK(batch.bytes() == kMax);
   CHECK(batch[0].channel == "A");
   CHECK(batch[0].data.size() == 50);
   CHECK(batch[0].whole);

@@ -146,6 +146,6 @@ TEST_CASE("A ladder of one step stays on it, and one of no sensible length is cl
     QualityLadder ladder(steps, kBudget);
     for (int i = 0; i < 2000; ++i) ladder.add(3 * kBudget);
     CHECK(ladder.step() == ladder.steps() - 1);
-    CHECK(ladder.steps() == std::clamp(steps, 1, QualityLadder::kMostSteps));
+    CHECK(ladder.steps() == std::clamp(steps, 1, QualityLadder::kMaxSteps));
   }
 }

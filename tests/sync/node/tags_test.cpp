@@ -174,7 +174,7 @@ TEST_CASE("Values of a list that nobody has told are counted, and a flood of lis
     list->header.incarnation = 100 + i;
     table.push(*list);
   }
-  CHECK(table.lists().size() == TagTable::kMostLists);
+  CHECK(table.lists().size() == TagTable::kMaxLists);
   list->header.incarnation = 3;
   table.push(*list);
   table.read(*values, take);

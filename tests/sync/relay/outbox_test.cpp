@@ -102,7 +102,7 @@ TEST_CASE("A line carries no more than its rate over any time, and a burst") {
 TEST_CASE("An outbox keeps a bounded number of bytes, whatever is pushed") {
   Outbox outbox(16e3);
   for (int i = 0; i < 5000; ++i) outbox.push(Urgency::kFirst, datagram(1), kBegin);
-  CHECK(outbox.counts().late >= 5000 - static_cast<std::int64_t>(Outbox::kMostBytes / 1000));
+  CHECK(outbox.counts().late >= 5000 - static_cast<std::int64_t>(Outbox::kMaxBytes / 1000));
 }
 
 TEST_CASE("What the network refuses is counted and not sent again") {

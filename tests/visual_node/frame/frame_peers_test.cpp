@@ -75,5 +75,5 @@ TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is given up too, one that 
 
 TEST_CASE_METHOD(Room, "A flood of walls is kept within bounds") {
   for (std::int64_t wall = 10; wall < 10'000; ++wall) drawn(wall, 1);
-  CHECK(peers.present(now) == static_cast<int>(FramePeers::kMost));
+  CHECK(peers.present(now) == static_cast<int>(FramePeers::kMax));
 }

@@ -52,7 +52,7 @@ TEST_CASE("Another process that holds the head, or a clock put back, ends what w
   HeadSamples samples;
   for (int i = 0; i < 10'000; ++i) samples.push(head(i, 0), kBegin + sync::Nanoseconds(i * 1000));
   CHECK_FALSE(
-      samples.told_by(kBegin + sync::Nanoseconds(1000 * (10'000 - 1 - static_cast<int>(HeadSamples::kMost)))));
+      samples.told_by(kBegin + sync::Nanoseconds(1000 * (10'000 - 1 - static_cast<int>(HeadSamples::kMax)))));
   CHECK(samples.told_by(kBegin + milliseconds(9)));
   samples.push(head(7, 0), kBegin - milliseconds(2000));
   CHECK(samples.told_by(kBegin)->publish_ns == 7);

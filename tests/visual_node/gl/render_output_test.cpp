@@ -99,7 +99,7 @@ TEST_CASE(
     CHECK_FALSE(stage.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
   }
   now_s += 1000;
-  for (std::size_t i = 0; i < RenderOutput::kMostLosses; ++i) {
+  for (std::size_t i = 0; i < RenderOutput::kMaxLosses; ++i) {
     f.trouble = "the graphics device was reset";
     CHECK_FALSE(stage.recover(at_s(now_s += 1), nullptr, {}).empty());
   }

@@ -151,5 +151,5 @@ TEST_CASE("Keys that are held down fill no memory, and each asks for its own") {
     wishes.push(reply(c->id, false));
     ++answered;
   }
-  CHECK(answered == SimulationWishes::kMostWaiting);
+  CHECK(answered == SimulationWishes::kMaxWaiting);
 }

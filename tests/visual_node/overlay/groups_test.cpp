@@ -43,7 +43,7 @@ TEST_CASE("Another life of the simulation begins with nothing, and a body that c
   groups.push(told(3, world_state_t::AHEAD, 1, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.visual() == 1);
-  groups.push(told(Groups::kMostBodies, world_state_t::NOW, 2, 2));
+  groups.push(told(Groups::kMaxBodies, world_state_t::NOW, 2, 2));
   groups.push(told(-1, world_state_t::NOW, 3, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.tints(2).size() == 2);  // fewer than it was told of

@@ -65,7 +65,7 @@ TEST_CASE("A plot of what there is not is refused in one sentence with the names
   std::string many;
   for (int i = 0; i < 40; ++i) many += "text TOOL_STATE.tool;";
   std::vector<std::string> trouble;
-  CHECK(parse_plots(many, trouble).size() == kMostPlots);
+  CHECK(parse_plots(many, trouble).size() == kMaxPlots);
   CHECK(trouble.size() == 1);
 }
 

@@ -71,6 +71,6 @@ TEST_CASE("A spring joins proxy and device when they are apart") {
 
 TEST_CASE("However many contacts there are, so many lines are drawn") {
   std::vector<Stroke> strokes;
-  append_contacts(strokes, std::vector(kMostContactsDrawn + 500, contact(4, -1)));
-  CHECK(strokes.size() == kMostContactsDrawn * 16);
+  append_contacts(strokes, std::vector(kMaxContactsDrawn + 500, contact(4, -1)));
+  CHECK(strokes.size() == kMaxContactsDrawn * 16);
 }

@@ -178,7 +178,7 @@ TEST_CASE("A stream sends a bounded number of pieces a tick, and leaves pictures
   for (int tick = 0; got.size() < 2 && tick < 2'000'000; ++tick) {
     stream.add(at_ms(tick), tick, at_ms(tick + 5), read);
     const auto chunks = stream.take_chunks();
-    REQUIRE(chunks.size() <= PictureStream::kMostChunksATick);
+    REQUIRE(chunks.size() <= PictureStream::kMaxChunksATick);
     for (picture_chunk_t c : chunks) {
       c.header.incarnation = 1;
       if (auto whole = reader.take(c)) got.push_back(std::move(*whole));

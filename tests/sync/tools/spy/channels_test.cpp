@@ -93,10 +93,10 @@ TEST_CASE("Messages of others are shown by their bytes, torn ones are counted") 
 TEST_CASE("However many channels and senders are made up, so many are kept and the rest is counted") {
   Heard h;
   for (int i = 0; i < 2000; ++i) h.hear("NOISE_" + std::to_string(i), {1}, at_ms(9000));
-  CHECK(h.channels.figures(at_ms(9000)).size() == Channels::kMost);
-  CHECK(h.channels.beyond() == 2000 - static_cast<std::int64_t>(Channels::kMost));
+  CHECK(h.channels.figures(at_ms(9000)).size() == Channels::kMax);
+  CHECK(h.channels.beyond() == 2000 - static_cast<std::int64_t>(Channels::kMax));
   CHECK(h.channels.messages() == 2000);
   Heard many;
   for (int i = 0; i < 2000; ++i) many.tool(i, at_ms(9000), at_ms(9000), i + 1);
-  CHECK(many.of("TOOL_STATE").senders == static_cast<int>(Channels::kMostSenders));
+  CHECK(many.of("TOOL_STATE").senders == static_cast<int>(Channels::kMaxSenders));
 }
