@@ -235,7 +235,7 @@ int tactus::audio::run(int argc, char** argv) try {
         impacts->hear_from(ear.at(scheduled));
         audio::Strike strike = impacts->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
           const auto pose = bodies.pose(body, sync::sim_time(event.time_ns));
-          if (pose.how == sync::SampleStatus::kNone) return std::nullopt;
+          if (pose.status == sync::SampleStatus::kNone) return std::nullopt;
           return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
         });
         sampler->record(strike, event, *impacts);

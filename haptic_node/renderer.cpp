@@ -217,7 +217,7 @@ void Renderer::split(const Wrench& felt_constraint) {
   }
 }
 
-sync::SampleStatus Renderer::how(const TickInput& in) const {
+sync::SampleStatus Renderer::status(const TickInput& in) const {
   if (!model_time_ || !in.touch_arrival) return sync::SampleStatus::kNone;
   if (fade_.lost()) return sync::SampleStatus::kStale;
   if (!in.map) return sync::SampleStatus::kHeld;
@@ -243,7 +243,7 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.energy_J = static_cast<float>(safety_.energy_J());
   m.generated_J = static_cast<float>(passivity_.generated_J());
   m.coupling = static_cast<float>(passivity_.factor());
-  m.touch_how = static_cast<std::int8_t>(how(in));
+  m.touch_how = static_cast<std::int8_t>(status(in));
   m.fade = static_cast<float>(share());
   m.buttons = device_.buttons;
   book_.tell(in.now, m.constraints);

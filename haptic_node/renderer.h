@@ -86,7 +86,7 @@ class Renderer {
   Wrench constraint_wrench(double dt);
   void split(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
-  sync::SampleStatus how(const TickInput& in) const;
+  sync::SampleStatus status(const TickInput& in) const;
   sync::Nanoseconds uncertainty() const;
 
   int tool_;

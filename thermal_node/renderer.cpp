@@ -36,7 +36,7 @@ ControllerLimits limits(const Settings& s) {
 // As published: what is no quantity reads as none.
 float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
 
-bool usable(sync::SampleStatus how) { return how != sync::SampleStatus::kNone && how != sync::SampleStatus::kStale; }
+bool usable(sync::SampleStatus status) { return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale; }
 
 }  // namespace
 
@@ -175,7 +175,7 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   for (const contact_event_t& event : tick.events) report(event, tick);
 
   const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
-  const bool lost = input_lost_ = !usable(tick.contact.how);
+  const bool lost = input_lost_ = !usable(tick.contact.status);
   ++tick_;
   Exchange e;
   if (interval_s > 0) add_missed_touches(e, tick, interval_s);

@@ -76,7 +76,7 @@ Sliding::Ground Sliding::ground(const contact_t& c, std::size_t side, sync::SimT
   g.surface = surfaces_->of(g.material);
   if (const auto stands = standing_.find(g.body); stands != standing_.end())
     g.to_body = stands->second.conjugate();
-  else if (const auto pose = bodies_.pose(g.body, t); pose.how != sync::SampleStatus::kNone)
+  else if (const auto pose = bodies_.pose(g.body, t); pose.status != sync::SampleStatus::kNone)
     g.to_body = pose.value.orientation.conjugate();
   return g;
 }
@@ -162,7 +162,7 @@ void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const
   live.struck_m = point, live.since_s = 0;
   const PoseOf pose = [&](int body) -> std::optional<Eigen::Isometry3d> {
     const auto p = bodies_.pose(body, t);
-    if (p.how == sync::SampleStatus::kNone) return std::nullopt;
+    if (p.status == sync::SampleStatus::kNone) return std::nullopt;
     return Eigen::Translation3d(p.value.position) * p.value.orientation;
   };
   for (std::size_t i = 0; i < 2; ++i) {

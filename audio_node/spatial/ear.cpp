@@ -16,7 +16,7 @@ void Ear::push(const tool_state_t& state, sync::HostTime arrival) {
 }
 
 Eigen::Isometry3d Ear::at(sync::HostTime t) {
-  if (const auto head = head_.at(t); tool_ >= 0 && head.how != sync::SampleStatus::kNone)
+  if (const auto head = head_.at(t); tool_ >= 0 && head.status != sync::SampleStatus::kNone)
     last_ = listener_of(scene_, view_of(scene_, head.value.position, head.value.orientation));
   return last_;
 }

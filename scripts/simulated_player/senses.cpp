@@ -74,7 +74,7 @@ void Senses::look(sync::HostTime now) {
     if (!map || !rendered("visual", now)) continue;
     const auto pose = bodies_.pose(rules_.goals[i].body, map->to_sim(now - eyes_.delay()));
     // A picture of what is too old says so itself.
-    if (pose.how != sync::SampleStatus::kNone && pose.how != sync::SampleStatus::kStale) shown_[i] = pose.value.position;
+    if (pose.status != sync::SampleStatus::kNone && pose.status != sync::SampleStatus::kStale) shown_[i] = pose.value.position;
   }
 }
 

@@ -91,7 +91,7 @@ ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, const Impact&
           .normal = impact.normal};
 }
 
-void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& how) {
+void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& status) {
   const Manifold& m = c.manifold;
   when = std::max(when, c.last_event);
   c.last_event = when;
@@ -105,11 +105,11 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.material_a = surfaces_[static_cast<std::size_t>(m.shape_a)].material;
   e.material_b = surfaces_[static_cast<std::size_t>(m.shape_b)].material;
   e.tool = -1;
-  e.point_m = to_vec3f(how.place_m);
-  e.normal = to_vec3f(how.normal);
-  e.approach_speed_m_s = static_cast<float>(std::max(0.0, how.speed_m_s));
-  e.effective_mass_kg = static_cast<float>(how.mass_kg);
-  e.curvature_1_m = static_cast<float>(how.curvature_1_m);
+  e.point_m = to_vec3f(status.place_m);
+  e.normal = to_vec3f(status.normal);
+  e.approach_speed_m_s = static_cast<float>(std::max(0.0, status.speed_m_s));
+  e.effective_mass_kg = static_cast<float>(status.mass_kg);
+  e.curvature_1_m = static_cast<float>(status.curvature_1_m);
 }
 
 void ContactTracker::tell(LiveContact& c, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
@@ -138,12 +138,12 @@ void ContactTracker::remember(LiveContact& c, std::span<const BodyMotion> bodies
   c.b_body_m = b.to_body(p.point_m - 0.5 * p.depth_m * p.normal);
 }
 
-template <class SampleStatus>
-void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, SampleStatus how) {
-  if (is_new) emit(c, contact_event_t::BEGIN, when, how());
+template <class DescribeMeeting>
+void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeMeeting describe) {
+  if (is_new) emit(c, contact_event_t::BEGIN, when, describe());
   const bool rested = !c.has_hit || now_ - c.last_hit >= sync::from_seconds(settings_.hit_interval_s);
   if (c.armed && rested && speed_m_s > settings_.hit_speed_m_s) {
-    emit(c, contact_event_t::HIT, when, how());
+    emit(c, contact_event_t::HIT, when, describe());
     c.armed = false;
     c.has_hit = true;
     c.last_hit = now_;
@@ -169,10 +169,10 @@ bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* 
   const bool ended = c.gap_m > settings_.contact_end_gap_m ||
                      now_ - c.apart_since > sync::from_seconds(settings_.contact_end_time_s);
   if (ended) {
-    Meeting how = meeting(m, bodies);
-    how.speed_m_s = 0;
-    how.place_m = on_a;
-    emit(c, contact_event_t::END, c.apart_since, how);
+    Meeting status = meeting(m, bodies);
+    status.speed_m_s = 0;
+    status.place_m = on_a;
+    emit(c, contact_event_t::END, c.apart_since, status);
   }
   return ended;
 }

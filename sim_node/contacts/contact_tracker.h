@@ -83,13 +83,13 @@ class ContactTracker {
   Meeting meeting(const Manifold& contact, std::span<const BodyMotion> bodies) const;
   Meeting meeting(const Manifold& contact, const Impact& impact) const;
   void follow(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
-  // A hit when the surfaces close fast enough. how: gives the Meeting, should there be something to say.
-  template <class SampleStatus>
-  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, SampleStatus how);
+  // A hit when the surfaces close fast enough. describe() returns the Meeting; it is called only when an event is emitted.
+  template <class DescribeMeeting>
+  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeMeeting describe);
   // True when it has ended.
   bool part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
   void remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls);
-  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& how);
+  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& status);
   double curvature_of(const Manifold& contact, const ManifoldPoint& p, std::span<const BodyMotion> bodies) const;
 
   std::vector<SurfaceTraits> surfaces_;

@@ -107,7 +107,7 @@ class SceneReceiver {
   void free_some();
   void drop(std::deque<Bytes>& chunks);
   void give_up(HostTime now);
-  void ask(HostTime now);
+  void request_missing(HostTime now);
   bool complete();
 
   Bus& bus_;

@@ -68,7 +68,7 @@ bool SceneReceiver::poll(HostTime now) {
   if (now - progress_ > kGiveUp)
     give_up(now);
   else if (now >= next_request_)
-    ask(now);
+    request_missing(now);
   return false;
 }
 
@@ -188,7 +188,7 @@ void SceneReceiver::give_up(HostTime now) {
   given_up_until_ = now + kGiveUp;
 }
 
-void SceneReceiver::ask(HostTime now) {
+void SceneReceiver::request_missing(HostTime now) {
   next_request_ = now + kAskAgainAfter;
   int left = kMaxRequests, under_way = 0;
   for (const auto& [hash, in] : incoming_) {

@@ -16,7 +16,7 @@ std::int64_t request_id();
 // The reply of this run to `question`; nothing: nobody answered for so long. For programs that a person runs: it
 // waits.
 template <class Question, class Reply>
-std::optional<Reply> ask(Bus& bus, const char* channel, Question& question, Queue<Reply>& replies,
+std::optional<Reply> request(Bus& bus, const char* channel, Question& question, Queue<Reply>& replies,
                          Nanoseconds patience) {
   constexpr Nanoseconds kRepeat{100'000'000};  // a datagram may be lost
   const HostTime begin = host_now();

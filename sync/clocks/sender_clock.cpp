@@ -13,7 +13,7 @@ bool SenderClock::observe(const header_t& h, HostTime arrival) {
   if (ours() && clock_ == own_.clock) return false;
   const bool jumped = one_way_.observe(h.publish_time_ns, arrival);
   const Reading reading = read(h.publish_time_ns, arrival);
-  if (reading.how != ClockSource::kMapped) return jumped;
+  if (reading.source != ClockSource::kMapped) return jumped;
   const bool contradicted = reading.time - reading.uncertainty > arrival + kTolerance;
   if (contradicted) distrust_until_ = arrival + kDistrust;
   return contradicted;

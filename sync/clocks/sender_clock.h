@@ -21,7 +21,7 @@ class SenderClock {
   enum class ClockSource { kUnknown, kSame, kMapped, kOneWay };
   struct Reading {
     HostTime time{};
-    ClockSource how = ClockSource::kUnknown;
+    ClockSource source = ClockSource::kUnknown;
     Nanoseconds uncertainty{-1};  // half width; -1: not known
   };
   // The next waves of probes have noticed the jump by then: two periods, their length and the maps' own.

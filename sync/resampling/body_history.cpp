@@ -126,7 +126,7 @@ void BodyHistory::forget_after(SimTime latest) {
   }
 }
 
-SampleStatus BodyHistory::how(SimTime t) const {
+SampleStatus BodyHistory::status(SimTime t) const {
   if (!newest_) return SampleStatus::kNone;
   return t <= *newest_ ? SampleStatus::kInterpolated : past(t - *newest_);
 }
@@ -148,7 +148,7 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
   }
   const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
   // At rest it is left out, and well known. One that was moving is missing: its page was lost.
-  return {moved_on(before.pose, dt_s), rests(before.pose) ? how(t) : past(t - before.time)};
+  return {moved_on(before.pose, dt_s), rests(before.pose) ? status(t) : past(t - before.time)};
 }
 
 }  // namespace tactus::sync

@@ -51,7 +51,7 @@ class BodyHistory {
   // and moves on as past the newest sample.
   Sample<BodyPose> pose(int body, SimTime t) const;
   // How the newest snapshot as a whole relates to t; it may be of an instant to come.
-  SampleStatus how(SimTime t) const;
+  SampleStatus status(SimTime t) const;
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
   // Pages more than 1 s ahead of their simulation's own time, and bodies beyond kMaxBodies.
   std::int64_t refused() const { return refused_; }

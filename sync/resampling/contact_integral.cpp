@@ -55,7 +55,7 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
   ContactIntegral result;
   if (t1 <= t0) return result;
   const auto& group = snapshots_[0];
-  result.how = how(group, t1 - Nanoseconds(1));
+  result.status = status(group, t1 - Nanoseconds(1));
   const double length_s = to_seconds(t1 - t0);
   std::vector<Interval> touching;
   std::map<std::int64_t, Sum> sums;

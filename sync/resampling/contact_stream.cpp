@@ -173,7 +173,7 @@ bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
   return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
 }
 
-SampleStatus ContactStream::how(const std::deque<Snapshot>& group, SimTime t) const {
+SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t) const {
   if (group.empty() || t < group.front().time) return SampleStatus::kNone;
   if (t > group.back().time) return t - group.back().time <= kStaleAfter ? SampleStatus::kHeld : SampleStatus::kStale;
   const auto it =
@@ -191,7 +191,7 @@ bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const
 
 void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
   const auto& group = snapshots_[number];
-  if (how(group, t) == SampleStatus::kNone) return;
+  if (status(group, t) == SampleStatus::kNone) return;
   const auto after =
       std::upper_bound(group.begin(), group.end(), t, [](SimTime x, const Snapshot& s) { return x < s.time; });
   const auto before = std::prev(after);
@@ -235,7 +235,7 @@ Sample<Contacts> ContactStream::state_at(SimTime t) const {
   Sample<Contacts> state;
   std::vector<Candidate> found;
   for (std::size_t group = 0; group < kGroups; ++group) {
-    state.how = std::max(state.how, how(snapshots_[group], t));
+    state.status = std::max(state.status, status(snapshots_[group], t));
     append_state(group, t, found);
   }
   keep_last_told(found);

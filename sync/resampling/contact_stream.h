@@ -35,7 +35,7 @@ struct ContactIntegral {
   double area_m2 = 0;           // mean area over the whole interval
   std::int32_t material = -1;   // of the other body of the contact that lasted longest; -1: none
   std::int32_t body = -1;
-  SampleStatus how = SampleStatus::kNone;
+  SampleStatus status = SampleStatus::kNone;
   std::vector<ContactPart> parts;  // all bodies touched, by body and material; they add up to the whole but for the time
 };
 
@@ -113,7 +113,7 @@ class ContactStream {
   void bound_partial(std::size_t group);
   void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
-  SampleStatus how(const std::deque<Snapshot>& group, SimTime t) const;
+  SampleStatus status(const std::deque<Snapshot>& group, SimTime t) const;
   struct Candidate {  // for the state at an instant
     contact_t contact;
     std::int64_t seq = 0;

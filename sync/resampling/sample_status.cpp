@@ -2,8 +2,8 @@
 
 namespace tactus::sync {
 
-const char* to_string(SampleStatus how) {
-  switch (how) {
+const char* to_string(SampleStatus status) {
+  switch (status) {
     case SampleStatus::kNone: return "none";
     case SampleStatus::kExact: return "exact";
     case SampleStatus::kInterpolated: return "interpolated";

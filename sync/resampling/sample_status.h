@@ -19,7 +19,7 @@ const char* to_string(SampleStatus);
 template <class T>
 struct Sample {
   T value{};
-  SampleStatus how = SampleStatus::kNone;
+  SampleStatus status = SampleStatus::kNone;
 };
 
 }  // namespace tactus::sync

@@ -127,15 +127,15 @@ TEST_CASE("A lost touch model fades to no force from 50 to 70 ms after its last 
 
 TEST_CASE("How the touch model was obtained is said") {
   Bench bench;
-  const auto how = [](const TickOutput& out) { return static_cast<sync::SampleStatus>(out.state.touch_how); };
-  CHECK(how(bench.tick(0, Vector3d::Zero())) == sync::SampleStatus::kNone);
+  const auto status = [](const TickOutput& out) { return static_cast<sync::SampleStatus>(out.state.touch_how); };
+  CHECK(status(bench.tick(0, Vector3d::Zero())) == sync::SampleStatus::kNone);
   CHECK(bench.tick(1, Vector3d::Zero()).state.header.sim_time_ns == -1);
   const auto m = model(2, {});
-  CHECK(how(bench.tick(2, Vector3d::Zero(), &m)) == sync::SampleStatus::kExact);
-  CHECK(how(bench.tick(3, Vector3d::Zero())) == sync::SampleStatus::kExtrapolated);
+  CHECK(status(bench.tick(2, Vector3d::Zero(), &m)) == sync::SampleStatus::kExact);
+  CHECK(status(bench.tick(3, Vector3d::Zero())) == sync::SampleStatus::kExtrapolated);
   CHECK(bench.tick(4, Vector3d::Zero()).state.header.sim_time_ns == 4 * kMs);
-  CHECK(how(bench.tick(40, Vector3d::Zero())) == sync::SampleStatus::kHeld);
-  CHECK(how(bench.tick(60, Vector3d::Zero())) == sync::SampleStatus::kStale);
+  CHECK(status(bench.tick(40, Vector3d::Zero())) == sync::SampleStatus::kHeld);
+  CHECK(status(bench.tick(60, Vector3d::Zero())) == sync::SampleStatus::kStale);
 }
 
 TEST_CASE("Every begin and hit of the own tool has exactly one report, of the right part") {

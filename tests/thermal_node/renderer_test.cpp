@@ -123,13 +123,13 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
 }
 
 TEST_CASE("Input that is stale or absent returns the command to resting skin, no faster than the element") {
-  for (const sync::SampleStatus how : {sync::SampleStatus::kStale, sync::SampleStatus::kNone}) {
+  for (const sync::SampleStatus status : {sync::SampleStatus::kStale, sync::SampleStatus::kNone}) {
     Hand hand;
     float before = hand.press(kCopper, 1, 250).commanded_degC;
     REQUIRE(before < 26);
     for (int i = 0; i < 50; ++i) {
       Tick tick = hand.next();
-      tick.contact.how = how;
+      tick.contact.status = status;
       touch(tick, kCopper, 1);
       const thermal_state_t state = hand.renderer.step(tick);
       CHECK(hand.renderer.input_lost());
@@ -323,7 +323,7 @@ TEST_CASE("However slow a display is on purpose, it is in the safe range, and lo
   thermal_state_t state{};
   for (int i = 0; i < 50; ++i) {
     Tick tick = hand.next();
-    tick.contact.how = sync::SampleStatus::kStale;
+    tick.contact.status = sync::SampleStatus::kStale;
     state = hand.renderer.step(tick, {.response_s = 60});
   }
   CHECK(state.commanded_degC == 33);

@@ -27,7 +27,7 @@ double Fan::wind_m_s(sync::SimTime t) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& [body, radius_m] : radius_m_) {
     const auto pose = bodies_.pose(body, t);
-    if (pose.how == sync::SampleStatus::kNone || pose.how == sync::SampleStatus::kStale) continue;
+    if (pose.status == sync::SampleStatus::kNone || pose.status == sync::SampleStatus::kStale) continue;
     sum += air_velocity_m_s(head_, pose.value.position, radius_m, pose.value.velocity);
   }
   return sum.norm();

@@ -31,13 +31,13 @@ Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime
   tick.events = stream.take_events(tick.sim_end);
   if (tick.sim_end > tick.sim_begin) {
     const auto contact = stream.integral(tick.sim_begin, tick.sim_end, tool, tool_body);
-    const bool commanded_gap = contact.how == sync::SampleStatus::kStale && !silent;
+    const bool commanded_gap = contact.status == sync::SampleStatus::kStale && !silent;
     if (!commanded_gap) {
       contact_ = contact;
       contact_interval_ = tick.sim_end - tick.sim_begin;
     }
   } else if (silent) {
-    contact_.how = sync::SampleStatus::kStale;  // paused, and now silent
+    contact_.status = sync::SampleStatus::kStale;  // paused, and now silent
   }
   tick.contact = contact_;
   tick.contact_interval = contact_interval_;

@@ -27,7 +27,7 @@ const char* word(const Frame& frame) {
     case node_health_t::WAITING:
     case node_health_t::READY: return "WAITING";
     case node_health_t::INPUT_LOST: return "LOST";
-    case node_health_t::STALE: return frame.how == sync::SampleStatus::kHeld ? "HELD" : "STALE";
+    case node_health_t::STALE: return frame.status == sync::SampleStatus::kHeld ? "HELD" : "STALE";
     default: return "";
   }
 }
@@ -78,7 +78,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
   frame.samples = newest_samples(now);
   bodies_.keep(delay);
   frame.instant = instant;
-  if (instant) frame.how = bodies_.how(*instant);
+  if (instant) frame.status = bodies_.status(*instant);
   judge(frame, now, newest_arrival);
   if (view_) {
     frame.tools = tool_poses(instant, now);
@@ -106,18 +106,18 @@ void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds de
 
 void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {
   const bool commanded = now - newest_arrival <= sync::BodyHistory::kStaleAfter;
-  const bool stale = frame.how == sync::SampleStatus::kStale && !commanded;
+  const bool stale = frame.status == sync::SampleStatus::kStale && !commanded;
   if (!stale) stale_since_.reset();
   if (stale && !stale_since_) stale_since_ = now;
   if (!scene_) {
     frame.note = "waits for the scene";
-  } else if (frame.how == sync::SampleStatus::kNone) {
+  } else if (frame.status == sync::SampleStatus::kNone) {
     frame.state = node_health_t::READY;
     frame.note = "waits for the state of the world";
   } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
     frame.state = node_health_t::INPUT_LOST;
     frame.note = "no state of the world: shows the last";
-  } else if (stale || (frame.how == sync::SampleStatus::kHeld && !commanded)) {
+  } else if (stale || (frame.status == sync::SampleStatus::kHeld && !commanded)) {
     frame.state = node_health_t::STALE;
     frame.note = "shows the last state of the world";
   } else {
@@ -151,8 +151,8 @@ std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::Sim
   poses.reserve(scene_->bodies.size());
   for (const body_def_t& body : scene_->bodies) {
     sync::Sample<sync::BodyPose> sample;
-    if (t && !body.is_static) sample = bodies_.pose(body.id, *t), poses_.add(sample.how);
-    poses.push_back(sample.how == sync::SampleStatus::kNone ? to_eigen(body.pose) : to_isometry(sample.value));
+    if (t && !body.is_static) sample = bodies_.pose(body.id, *t), poses_.add(sample.status);
+    poses.push_back(sample.status == sync::SampleStatus::kNone ? to_eigen(body.pose) : to_isometry(sample.value));
   }
   return poses;
 }
@@ -191,11 +191,11 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
 std::optional<Eigen::Isometry3d> FrameComposer::view_of_head(const sync::Sample<sync::BodyPose>& head,
                                                              Frame& frame) const {
   if (head_tool_ < 0) return {};
-  if (head.how == sync::SampleStatus::kNone || head.how == sync::SampleStatus::kStale)
-    frame.note += std::string(frame.note.empty() ? "" : "; ") + (head.how == sync::SampleStatus::kNone
+  if (head.status == sync::SampleStatus::kNone || head.status == sync::SampleStatus::kStale)
+    frame.note += std::string(frame.note.empty() ? "" : "; ") + (head.status == sync::SampleStatus::kNone
                                                                      ? "no head yet: the view is the scene's"
                                                                      : "the head is lost: the view stays");
-  if (head.how == sync::SampleStatus::kNone) return {};
+  if (head.status == sync::SampleStatus::kNone) return {};
   return view_of(*scene_, head.value.position, head.value.orientation);
 }
 

@@ -27,7 +27,7 @@ namespace tactus::visual {
 
 struct Frame {
   DrawList list;
-  sync::SampleStatus how = sync::SampleStatus::kNone;            // how the poses of the bodies were obtained
+  sync::SampleStatus status = sync::SampleStatus::kNone;            // how the poses of the bodies were obtained
   std::int8_t state = node_health_t::WAITING;  // of the node, for its health
   std::string note;
   std::int64_t number = 0;

@@ -11,8 +11,8 @@ namespace tactus::visual {
 
 class HowCount {
  public:
-  void add(sync::SampleStatus how) { ++counts_[static_cast<std::size_t>(how)]; }
-  std::int64_t of(sync::SampleStatus how) const { return counts_[static_cast<std::size_t>(how)]; }
+  void add(sync::SampleStatus status) { ++counts_[static_cast<std::size_t>(status)]; }
+  std::int64_t of(sync::SampleStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
   // One line, in percent of all; empty: there was none.
   std::string text() const {
     std::int64_t all = 0;

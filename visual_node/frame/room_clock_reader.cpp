@@ -32,8 +32,8 @@ void RoomClockReader::hear(const header_t& header, const sim_clock_t& clock, syn
 }
 
 bool RoomClockReader::mapped(sync::HostTime now) const {
-  const auto how = sender_.read(last_.publish_time_ns, now).how;
-  return how == sync::SenderClock::SampleStatus::kSame || how == sync::SenderClock::SampleStatus::kMapped;
+  const auto status = sender_.read(last_.publish_time_ns, now).status;
+  return status == sync::SenderClock::SampleStatus::kSame || status == sync::SenderClock::SampleStatus::kMapped;
 }
 
 sync::HostTime RoomClockReader::here(RoomTime t, sync::HostTime now) const {

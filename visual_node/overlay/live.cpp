@@ -88,8 +88,8 @@ std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStat
       InputLine line{channel, sync::age_of(inbox->count(), bus_.clocks(), now), sync::SampleStatus::kNone};
       if (line.age.age < sync::Nanoseconds(0) && inbox->count().newest_arrival != sync::HostTime{})
         line.age.age = now - inbox->count().newest_arrival;
-      if (channel == channels::kWorldState) line.how = frame.how;
-      if (channel == channels::kContacts) line.how = contacts;
+      if (channel == channels::kWorldState) line.status = frame.status;
+      if (channel == channels::kContacts) line.status = contacts;
       lines.push_back(line);
       break;
     }
@@ -118,7 +118,7 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   facts.physics = physics_;
   facts.haptic_bodies = groups_.haptic();
   facts.visual_bodies = groups_.visual();
-  if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.how, now);
+  if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.status, now);
   // What a program reads at the lower edge is drawn over by nothing.
   const float bottom = static_cast<float>(picture_height - markers_px_);
   float right = static_cast<float>(picture_width);

@@ -64,9 +64,9 @@ void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
 
 void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {
   for (const InputLine& i : f.inputs) {
-    const std::string how = i.how == sync::SampleStatus::kNone ? "" : std::string(" ") + sync::to_string(i.how);
-    lines.push_back(i.age.age < sync::Nanoseconds(0) ? i.channel + " nothing yet" + how
-                                                     : i.channel + " " + age(i.age.age) + how);
+    const std::string status = i.status == sync::SampleStatus::kNone ? "" : std::string(" ") + sync::to_string(i.status);
+    lines.push_back(i.age.age < sync::Nanoseconds(0) ? i.channel + " nothing yet" + status
+                                                     : i.channel + " " + age(i.age.age) + status);
   }
 }
 

@@ -32,7 +32,7 @@ class TickTimes {
 struct InputLine {
   std::string channel;
   sync::InputAge age;
-  sync::SampleStatus how = sync::SampleStatus::kNone;  // how what is drawn of it was obtained; kNone: it is not resampled
+  sync::SampleStatus status = sync::SampleStatus::kNone;  // how what is drawn of it was obtained; kNone: it is not resampled
 };
 
 struct PanelFacts {

@@ -279,7 +279,7 @@ TEST_CASE("A contact that moves between the groups is there once, whenever it is
       for (const contact_t& c : state.value) CHECK(ids.insert(c.contact_id).second);
       ++looked;
       missing += ids.size() < 19;
-      CHECK(state.how != sync::SampleStatus::kStale);
+      CHECK(state.status != sync::SampleStatus::kStale);
     }
   }
   INFO(missing << " of " << looked);

@@ -38,7 +38,7 @@ TEST_CASE("Nobody's clock is unknown, and maps to itself") {
   Fixture f;
   CHECK_FALSE(f.clock.known());
   CHECK(f.clock.to_host(77, host_time(5)) == host_time(77));
-  CHECK(f.clock.read(77, host_time(5)).how == SenderClock::ClockSource::kUnknown);
+  CHECK(f.clock.read(77, host_time(5)).source == SenderClock::ClockSource::kUnknown);
 }
 
 TEST_CASE("A sender of our own run and clock is read as it is") {
@@ -52,12 +52,12 @@ TEST_CASE("A sender of another clock is read through the map of it, with its unc
   Fixture f;
   const HostTime now = host_time(100 * kSecond);
   f.clock.observe(stamped(to_ns(now) + kAhead - 3 * kMs, kTheirs), now);
-  CHECK(f.clock.read(to_ns(now) + kAhead, now).how == SenderClock::ClockSource::kOneWay);
+  CHECK(f.clock.read(to_ns(now) + kAhead, now).source == SenderClock::ClockSource::kOneWay);
   CHECK(f.clock.read(to_ns(now) + kAhead, now).time - now == Nanoseconds(3 * kMs));
   CHECK(f.clock.read(to_ns(now) + kAhead, now).uncertainty == Nanoseconds(-1));
   f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
   const auto mapped = f.clock.read(to_ns(now) + kAhead, now);
-  CHECK(mapped.how == SenderClock::ClockSource::kMapped);
+  CHECK(mapped.source == SenderClock::ClockSource::kMapped);
   CHECK(mapped.time == now);
   CHECK(mapped.uncertainty >= Nanoseconds(100'000));
   CHECK(mapped.uncertainty < Nanoseconds(101'000));
@@ -67,7 +67,7 @@ TEST_CASE("A sender of another clock is read through the map of it, with its unc
     CHECK(f.clock.read(to_ns(later) + kAhead, later).uncertainty >= Nanoseconds(300'000));
     const HostTime much_later = now + Nanoseconds(2'000 * kSecond);
     f.clock.observe(stamped(to_ns(much_later) + kAhead - kMs, kTheirs), much_later);
-    CHECK(f.clock.read(to_ns(much_later) + kAhead, much_later).how == SenderClock::ClockSource::kOneWay);
+    CHECK(f.clock.read(to_ns(much_later) + kAhead, much_later).source == SenderClock::ClockSource::kOneWay);
   }
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("A replayed log is read by arrival, though its clock is mapped, or our
   for (const std::int32_t clock : {kOurs, kTheirs}) {
     SenderClock replayed{OwnClock(kRun, kOurs, &f.maps)};
     replayed.observe(stamped(5 * kSecond, clock, kRun + 1), now);
-    CHECK(replayed.read(5 * kSecond, now).how == SenderClock::ClockSource::kOneWay);
+    CHECK(replayed.read(5 * kSecond, now).source == SenderClock::ClockSource::kOneWay);
     CHECK(replayed.to_host(5 * kSecond, now) == now);
   }
 }
@@ -93,17 +93,17 @@ TEST_CASE("A map that the stamps contradict is not believed until the probes hav
     const std::int64_t jump = 50 * kMs;
     const HostTime t = now + Nanoseconds(kSecond);
     CHECK(f.clock.observe(sent(t, jump), t));
-    CHECK(f.clock.read(to_ns(t) + kAhead + jump, t).how == SenderClock::ClockSource::kOneWay);
+    CHECK(f.clock.read(to_ns(t) + kAhead + jump, t).source == SenderClock::ClockSource::kOneWay);
     CHECK(f.clock.to_host(to_ns(t) + kAhead + jump, t) - t <= Nanoseconds(kMs));
     const HostTime later = t + SenderClock::kDistrust;
     f.maps.observe(map_of(kAhead + jump, to_ns(later), 5, 1), later);
-    CHECK(f.clock.read(to_ns(later) + kAhead + jump, later).how == SenderClock::ClockSource::kMapped);
+    CHECK(f.clock.read(to_ns(later) + kAhead + jump, later).source == SenderClock::ClockSource::kMapped);
     CHECK(f.clock.to_host(to_ns(later) + kAhead + jump, later) == later);
   }
   SECTION("but old messages that come late, as after a stall of ours, are no reason") {
     const HostTime t = now + Nanoseconds(5 * kSecond);
     CHECK_FALSE(f.clock.observe(sent(now, 0), t));
-    CHECK(f.clock.read(to_ns(t) + kAhead, t).how == SenderClock::ClockSource::kMapped);
+    CHECK(f.clock.read(to_ns(t) + kAhead, t).source == SenderClock::ClockSource::kMapped);
     CHECK(f.clock.to_host(to_ns(t) + kAhead, t) == t);
   }
   SECTION("back: it looks like latency until the map of the new epoch is there") {

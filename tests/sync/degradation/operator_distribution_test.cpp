@@ -216,7 +216,7 @@ TEST_CASE("Frozen at the last a touch goes on until it is stale. Frozen to nothi
     CHECK(state.value.size() == (zero && ms >= 100 ? 0 : 1));
     if (!zero && ms >= 100) {
       CHECK(state.value.at(0).normal_force_N == 99);
-      CHECK(state.how == (ms <= 149 ? SampleStatus::kHeld : SampleStatus::kStale));
+      CHECK(state.status == (ms <= 149 ? SampleStatus::kHeld : SampleStatus::kStale));
     }
   }
 }

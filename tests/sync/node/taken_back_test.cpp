@@ -115,15 +115,15 @@ TEST_CASE("What was taken back never comes back, however pages overtake each oth
         const auto hold = that_hold(came, body);
         for (const auto& [time_ms, sample] : hold) {
           const auto pose = history.pose(body, sim_time(time_ms * kMs));
-          REQUIRE(pose.how == SampleStatus::kExact);
+          REQUIRE(pose.status == SampleStatus::kExact);
           REQUIRE(pose.value.position.x() == static_cast<double>(sample.seq));
           ++compared;
         }
         // Nothing is there that does not hold.
         for (const Said& s : came) {
           if (hold.contains(s.time_ms)) continue;
-          const auto how = history.pose(body, sim_time(s.time_ms * kMs)).how;
-          REQUIRE(how != SampleStatus::kExact);
+          const auto status = history.pose(body, sim_time(s.time_ms * kMs)).status;
+          REQUIRE(status != SampleStatus::kExact);
           ++voided;
         }
       }
@@ -164,14 +164,14 @@ TEST_CASE(
   history.push(message({0, 0, 0, world_state_t::NOW, {0}}), at(0));
   history.push(message({0, 40, 1, world_state_t::AHEAD, {0}}), at(0));
   CHECK(history.refused() == 0);
-  CHECK(history.pose(0, sim_time(40 * kMs)).how == SampleStatus::kExact);
+  CHECK(history.pose(0, sim_time(40 * kMs)).status == SampleStatus::kExact);
   history.push(message({0, 1'100, 2, world_state_t::AHEAD, {0}}), at(0));
   CHECK(history.refused() == 1);
   // A forged number that no honest page reaches.
   history.push(message({1, 1, std::int64_t{1} << 60, world_state_t::NOW, {0}}), at(1));
   for (std::int64_t ms = 17, seq = 3; ms < 2'000; ms += 17, ++seq)
     history.push(message({ms, ms + 17, seq, world_state_t::AHEAD, {0}}), at(ms));
-  CHECK(history.pose(0, sim_time(1'700 * kMs)).how == SampleStatus::kExact);
+  CHECK(history.pose(0, sim_time(1'700 * kMs)).status == SampleStatus::kExact);
 }
 
 TEST_CASE("A body that rested moves off within the last snapshot, however long it had rested") {

@@ -44,7 +44,7 @@ TEST_CASE("A thrown body is followed exactly between snapshots") {
   for (int i = 0; i < 10; ++i) history.push(page(i * 16 * kMs, 3, x(i * 0.016), v(i * 0.016)), at(i * 16 * kMs));
   for (double t = 0.001; t < 0.14; t += 0.0037) {
     const auto s = history.pose(3, SimTime(from_seconds(t)));
-    CHECK(s.how == SampleStatus::kInterpolated);
+    CHECK(s.status == SampleStatus::kInterpolated);
     CHECK((s.value.position - x(t)).norm() < 1e-7);
   }
 }
@@ -61,14 +61,14 @@ TEST_CASE("A turning body is interpolated along the short way round") {
 TEST_CASE("Past the newest snapshot a body moves on for 50 ms, is then held, then stale") {
   BodyHistory history(1);
   history.push(page(0, 0, {1, 0, 0}, {2, 0, 0}), at(0));
-  CHECK(history.pose(0, sim_time(0)).how == SampleStatus::kExact);
+  CHECK(history.pose(0, sim_time(0)).status == SampleStatus::kExact);
   const auto moving = history.pose(0, sim_time(40 * kMs));
-  CHECK(moving.how == SampleStatus::kExtrapolated);
+  CHECK(moving.status == SampleStatus::kExtrapolated);
   CHECK(moving.value.position.x() == Approx(1.08));
   const auto held = history.pose(0, sim_time(150 * kMs));
-  CHECK(held.how == SampleStatus::kHeld);
+  CHECK(held.status == SampleStatus::kHeld);
   CHECK(held.value.position.x() == Approx(1.1));
-  CHECK(history.pose(0, sim_time(300 * kMs)).how == SampleStatus::kStale);
+  CHECK(history.pose(0, sim_time(300 * kMs)).status == SampleStatus::kStale);
 }
 
 TEST_CASE("A body that newer snapshots leave out rests where it was") {
@@ -77,7 +77,7 @@ TEST_CASE("A body that newer snapshots leave out rests where it was") {
   for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
   const auto s = history.pose(0, sim_time(49 * 16 * kMs));
   CHECK(s.value.position.isApprox(Eigen::Vector3d(1, 2, 3)));
-  CHECK(s.how == SampleStatus::kInterpolated);
+  CHECK(s.status == SampleStatus::kInterpolated);
 }
 
 TEST_CASE("A moving body whose page was lost moves on, and is not called known because others are") {
@@ -86,17 +86,17 @@ TEST_CASE("A moving body whose page was lost moves on, and is not called known b
   for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
   const auto s = history.pose(0, sim_time(16 * kMs));
   CHECK(s.value.position.x() == Approx(1.032));
-  CHECK(s.how == SampleStatus::kExtrapolated);
-  CHECK(history.pose(0, sim_time(100 * kMs)).how == SampleStatus::kHeld);
-  CHECK(history.pose(0, sim_time(300 * kMs)).how == SampleStatus::kStale);
+  CHECK(s.status == SampleStatus::kExtrapolated);
+  CHECK(history.pose(0, sim_time(100 * kMs)).status == SampleStatus::kHeld);
+  CHECK(history.pose(0, sim_time(300 * kMs)).status == SampleStatus::kStale);
 }
 
 TEST_CASE("A restarted simulation leaves no pose of the old one") {
   BodyHistory history(1);
   history.push(page(900 * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(900 * kMs));
   history.push(page(0, 1, {0, 0, 0}, {0, 0, 0}, 0, 2), at(901 * kMs));
-  CHECK(history.pose(0, sim_time(0)).how == SampleStatus::kNone);
-  CHECK(history.pose(1, sim_time(0)).how == SampleStatus::kExact);
+  CHECK(history.pose(0, sim_time(0)).status == SampleStatus::kNone);
+  CHECK(history.pose(1, sim_time(0)).status == SampleStatus::kExact);
 }
 
 TEST_CASE("A page far in the future is refused, and what comes after it is heard") {
@@ -108,7 +108,7 @@ TEST_CASE("A page far in the future is refused, and what comes after it is heard
   CHECK(history.refused() == 1);
   history.push(page(16 * kMs, 0, {2, 0, 0}, {0, 0, 0}), at(16 * kMs));
   CHECK(history.pose(0, sim_time(16 * kMs)).value.position.x() == 2);
-  CHECK(history.how(sim_time(300 * kMs)) == SampleStatus::kStale);
+  CHECK(history.status(sim_time(300 * kMs)) == SampleStatus::kStale);
 }
 
 TEST_CASE("What a false first page left is forgotten when the time turns out to be another") {
@@ -118,14 +118,14 @@ TEST_CASE("What a false first page left is forgotten when the time turns out to 
   history.push(forged, at(0));
   for (int ms = 16; ms <= 320; ms += 16) history.push(page(ms * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(ms * kMs));
   CHECK(history.pose(0, sim_time(320 * kMs)).value.position.x() == 1);
-  CHECK(history.how(sim_time(600 * kMs)) == SampleStatus::kStale);
+  CHECK(history.status(sim_time(600 * kMs)) == SampleStatus::kStale);
 }
 
 TEST_CASE("Bodies beyond what any scene can tell of are refused") {
   BodyHistory history(1);
   history.push(page(0, BodyHistory::kMaxBodies, {1, 0, 0}, {0, 0, 0}), at(0));
   CHECK(history.refused() == 1);
-  CHECK(history.pose(BodyHistory::kMaxBodies, sim_time(0)).how == SampleStatus::kNone);
+  CHECK(history.pose(BodyHistory::kMaxBodies, sim_time(0)).status == SampleStatus::kNone);
 }
 
 TEST_CASE("A sense that presents seconds late still finds where bodies were, however long") {
@@ -137,7 +137,7 @@ TEST_CASE("A sense that presents seconds late still finds where bodies were, how
     history.push(page(now, 0, {1e-9 * static_cast<double>(now), 0, 0}, {1, 0, 0}), at(now));
     if (then < 0) continue;
     const auto s = history.pose(0, sim_time(then));
-    REQUIRE((s.how == SampleStatus::kExact || s.how == SampleStatus::kInterpolated));
+    REQUIRE((s.status == SampleStatus::kExact || s.status == SampleStatus::kInterpolated));
     REQUIRE(s.value.position.x() == Approx(1e-9 * static_cast<double>(then)).margin(1e-6));
   }
 }

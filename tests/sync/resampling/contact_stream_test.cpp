@@ -127,16 +127,16 @@ TEST_CASE("Events come out in order of their time, each once, whatever the wire 
 
 TEST_CASE("The state at a time says how it was obtained") {
   ContactStream stream(kRun);
-  CHECK(stream.state_at(sim_time(0)).how == SampleStatus::kNone);
+  CHECK(stream.state_at(sim_time(0)).status == SampleStatus::kNone);
   stream.push(frame(10 * kMs, {contact(1, 2)}), at(10 * kMs));
   stream.push(frame(20 * kMs, {contact(1, 4)}), at(20 * kMs));
-  CHECK(stream.state_at(sim_time(10 * kMs)).how == SampleStatus::kExact);
+  CHECK(stream.state_at(sim_time(10 * kMs)).status == SampleStatus::kExact);
   const auto middle = stream.state_at(sim_time(15 * kMs));
-  CHECK(middle.how == SampleStatus::kInterpolated);
+  CHECK(middle.status == SampleStatus::kInterpolated);
   REQUIRE(middle.value.size() == 1);
   CHECK(middle.value[0].normal_force_N == Approx(3));
-  CHECK(stream.state_at(sim_time(60 * kMs)).how == SampleStatus::kHeld);
-  CHECK(stream.state_at(sim_time(71 * kMs)).how == SampleStatus::kStale);
+  CHECK(stream.state_at(sim_time(60 * kMs)).status == SampleStatus::kHeld);
+  CHECK(stream.state_at(sim_time(71 * kMs)).status == SampleStatus::kStale);
 }
 
 TEST_CASE("A snapshot counts only when all its pages have arrived, in any order") {
@@ -156,7 +156,7 @@ TEST_CASE("A snapshot that was overtaken on its way becomes whole all the same, 
   for (int ms = 39; ms >= 0; --ms) stream.push(frame(ms * kMs, {}, 1, 2), at((80 - ms) * kMs));
   for (int ms = 0; ms < 40; ++ms) {
     const auto state = stream.state_at(sim_time(ms * kMs));
-    CHECK(state.how == SampleStatus::kExact);
+    CHECK(state.status == SampleStatus::kExact);
     REQUIRE(state.value.size() == 1);
     CHECK(state.value[0].normal_force_N == static_cast<float>(ms * ms));
   }
@@ -290,7 +290,7 @@ TEST_CASE("A snapshot far in the future is refused, and what comes after it is h
   }
   stream.push(frame(20 * kMs, {contact(1, 2)}), at(20 * kMs));
   const auto state = stream.state_at(sim_time(20 * kMs));
-  CHECK(state.how == SampleStatus::kExact);
+  CHECK(state.status == SampleStatus::kExact);
   REQUIRE(state.value.size() == 1);
   CHECK(state.value[0].contact_id == 1);
 }
@@ -359,7 +359,7 @@ TEST_CASE("A sense that presents seconds late still finds what was touched, howe
     const std::int64_t end = ms * kMs - late, begin = end - 20 * kMs;
     if (begin < 0 || ms % 20 != 0) continue;
     const auto felt = stream.integral(sim_time(begin), sim_time(end), 0);
-    REQUIRE((felt.how == SampleStatus::kExact || felt.how == SampleStatus::kInterpolated));
+    REQUIRE((felt.status == SampleStatus::kExact || felt.status == SampleStatus::kInterpolated));
     // Each snapshot holds for its millisecond: the mean of twenty.
     REQUIRE(felt.force_N == Approx(1e-3 * (static_cast<double>(begin / kMs) + 9.5)).epsilon(1e-5));
   }

@@ -50,18 +50,18 @@ double error_rad(const Sample<BodyPose>& s, double ms) {
 }  // namespace
 
 TEST_CASE("Of what was never heard there is no pose") {
-  CHECK(PoseHistory(kRun).at(host_time(kMs)).how == SampleStatus::kNone);
+  CHECK(PoseHistory(kRun).at(host_time(kMs)).status == SampleStatus::kNone);
 }
 
 TEST_CASE("A pose is exact where it was reported, and between reports the even motion that it was") {
   const Heard h;
-  CHECK(h.at(200).how == SampleStatus::kExact);
+  CHECK(h.at(200).status == SampleStatus::kExact);
   for (const double ms : {100.0, 101.0, 102.5, 399.9}) {
     const auto s = h.at(ms);
     CHECK(error_m(s, ms) < 1e-9);
     CHECK(error_rad(s, ms) < 1e-7);
   }
-  CHECK(h.at(101).how == SampleStatus::kInterpolated);
+  CHECK(h.at(101).status == SampleStatus::kInterpolated);
 }
 
 TEST_CASE(
@@ -69,41 +69,41 @@ TEST_CASE(
     "forgotten") {
   const Heard h;
   const auto soon = h.at(415);
-  CHECK(soon.how == SampleStatus::kExtrapolated);
+  CHECK(soon.status == SampleStatus::kExtrapolated);
   CHECK(error_m(soon, 415) < 1e-6);
   CHECK(error_rad(soon, 415) < 1e-6);
   const auto later = h.at(500);
-  CHECK(later.how == SampleStatus::kHeld);
+  CHECK(later.status == SampleStatus::kHeld);
   CHECK(error_m(later, 420) < 1e-6);
   const auto lost = h.at(10'000);
-  CHECK(lost.how == SampleStatus::kStale);
+  CHECK(lost.status == SampleStatus::kStale);
   CHECK(error_m(lost, 400) < 1e-6);  // where it was last seen
 }
 
 TEST_CASE("A second of the past is kept, and before it the oldest is held") {
   const Heard h(3000);
   CHECK(error_m(h.at(2100), 2100) < 1e-9);
-  CHECK(h.at(1000).how == SampleStatus::kHeld);
+  CHECK(h.at(1000).status == SampleStatus::kHeld);
 }
 
 TEST_CASE("A report that is overtaken changes nothing, and another process that takes over ends what was") {
   Heard h;
   h.history.push(head_at(100 * kMs), host_time(402 * kMs));
-  CHECK(h.at(400).how == SampleStatus::kExact);
+  CHECK(h.at(400).status == SampleStatus::kExact);
   h.history.push(head_at(404 * kMs, 10), host_time(405 * kMs));
-  CHECK(h.at(300).how == SampleStatus::kHeld);
-  CHECK(h.at(404).how == SampleStatus::kExact);
+  CHECK(h.at(300).status == SampleStatus::kHeld);
+  CHECK(h.at(404).status == SampleStatus::kExact);
 }
 
 TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on from nothing before") {
   Heard h;
-  REQUIRE(h.at(200).how == SampleStatus::kExact);
+  REQUIRE(h.at(200).status == SampleStatus::kExact);
   h.history.forget();
-  CHECK(h.at(200).how == SampleStatus::kNone);
+  CHECK(h.at(200).status == SampleStatus::kNone);
   h.history.push(head_at(404 * kMs), host_time(405 * kMs));
-  CHECK(h.at(404).how == SampleStatus::kExact);
+  CHECK(h.at(404).status == SampleStatus::kExact);
   const auto before = h.at(402);  // between two reports, had the first of them not been forgotten
-  CHECK(before.how == SampleStatus::kHeld);
+  CHECK(before.status == SampleStatus::kHeld);
   CHECK(error_m(before, 404) < 1e-9);
 }
 
@@ -115,6 +115,6 @@ TEST_CASE("A log that is replayed speaks of another time: it is read by arrival"
     history.push(m, host_time(t + 5'000 * kMs));
   }
   const auto s = history.at(host_time(5'101 * kMs));
-  CHECK(s.how == SampleStatus::kInterpolated);
+  CHECK(s.status == SampleStatus::kInterpolated);
   CHECK(error_m(s, 101) < 1e-4);
 }

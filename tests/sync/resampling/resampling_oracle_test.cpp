@@ -140,9 +140,9 @@ class Renderer {
   void check_state(SimTime t) {
     const auto state = stream_.state_at(t);
     const auto wanted = contacts_.state(to_ns(t));
-    const SampleStatus how = std::max({contacts_.how(0, to_ns(t)), contacts_.how(1, to_ns(t)), contacts_.how(2, to_ns(t))});
-    if (state.how != how)
-      said_ << "the state at " << to_ns(t) << " is " << to_string(state.how) << " instead of " << to_string(how)
+    const SampleStatus status = std::max({contacts_.status(0, to_ns(t)), contacts_.status(1, to_ns(t)), contacts_.status(2, to_ns(t))});
+    if (state.status != status)
+      said_ << "the state at " << to_ns(t) << " is " << to_string(state.status) << " instead of " << to_string(status)
             << "; ";
     if (state.value.size() != wanted.size())
       said_ << state.value.size() << " contacts at " << to_ns(t) << " instead of " << wanted.size() << "; ";
@@ -155,7 +155,7 @@ class Renderer {
               << " N; ";
     }
     ++tally_.states;
-    tally_.interpolated += how == SampleStatus::kInterpolated && !wanted.empty();
+    tally_.interpolated += status == SampleStatus::kInterpolated && !wanted.empty();
   }
 
   void check_integral(std::int64_t t0, std::int64_t t1) {
@@ -163,10 +163,10 @@ class Renderer {
     const auto wanted = contacts_.integral(t0, t1, kTool);
     const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-9 + 1e-5 * std::abs(b); };
     if (got.contact_time != wanted.contact_time || differ(got.force_N, wanted.force_N) ||
-        differ(got.area_m2 * 1e5, wanted.area_m2 * 1e5) || got.how != wanted.how)
+        differ(got.area_m2 * 1e5, wanted.area_m2 * 1e5) || got.status != wanted.status)
       said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns, " << got.force_N << " N, "
-            << got.area_m2 << " m2, " << to_string(got.how) << " instead of " << wanted.contact_time.count()
-            << ", " << wanted.force_N << ", " << wanted.area_m2 << ", " << to_string(wanted.how) << "; ";
+            << got.area_m2 << " m2, " << to_string(got.status) << " instead of " << wanted.contact_time.count()
+            << ", " << wanted.force_N << ", " << wanted.area_m2 << ", " << to_string(wanted.status) << "; ";
     double force_N = 0, area_m2 = 0;
     Nanoseconds longest{0}, together{0};
     for (const ContactPart& part : got.parts) {
@@ -195,20 +195,20 @@ class Renderer {
       const double s = static_cast<double>(to_ns(t)) * 1e-9;
       Eigen::Vector3d position = truth.position(s);
       double turned = truth.turn_rad_s * s;
-      SampleStatus how = SampleStatus::kInterpolated;
+      SampleStatus status = SampleStatus::kInterpolated;
       if (before_ns == to_ns(t)) {
-        how = SampleStatus::kExact;
+        status = SampleStatus::kExact;
       } else if (after == times.end()) {
         const std::int64_t past = std::min<std::int64_t>(to_ns(t) - before_ns, 50 * kMs);
         const double known_s = static_cast<double>(before_ns) * 1e-9, on_s = static_cast<double>(past) * 1e-9;
         position = truth.position(known_s) + on_s * truth.velocity(known_s);
         turned = truth.turn_rad_s * (known_s + on_s);
         const std::int64_t own_past = to_ns(t) - before_ns;
-        how = own_past <= 50 * kMs ? SampleStatus::kExtrapolated : own_past <= 200 * kMs ? SampleStatus::kHeld : SampleStatus::kStale;
+        status = own_past <= 50 * kMs ? SampleStatus::kExtrapolated : own_past <= 200 * kMs ? SampleStatus::kHeld : SampleStatus::kStale;
       }
       const Eigen::Quaterniond turn(Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()));
-      if (got.how != how)
-        said_ << "body " << body << " is " << to_string(got.how) << " instead of " << to_string(how) << "; ";
+      if (got.status != status)
+        said_ << "body " << body << " is " << to_string(got.status) << " instead of " << to_string(status) << "; ";
       // Single precision of velocity and orientation, over 50 ms and 10 rad/s.
       if ((got.value.position - position).norm() > 1e-6 || turn.angularDistance(got.value.orientation) > 1e-5)
         said_ << "body " << body << " is off by " << (got.value.position - position).norm() << " m, "

@@ -71,7 +71,7 @@ class Reference {
     return after == known_.complete[group].end() ? std::nullopt : std::optional(*after);
   }
 
-  SampleStatus how(int group, std::int64_t t) const {
+  SampleStatus status(int group, std::int64_t t) const {
     const auto before = snapshot_before(group, t);
     if (!before) return SampleStatus::kNone;
     if (*before == t) return SampleStatus::kExact;
@@ -160,7 +160,7 @@ inline sync::ContactIntegral Reference::integral(std::int64_t t0, std::int64_t t
   if (!complete.empty()) cut(*complete.rbegin() + kStale);
 
   sync::ContactIntegral sum;
-  sum.how = how(0, t1 - 1);
+  sum.status = status(0, t1 - 1);
   const auto length = static_cast<double>(t1 - t0);
   std::set<std::int64_t> touched_from;  // pieces in which there is any contact
   for (auto a = cuts.begin(); std::next(a) != cuts.end(); ++a) {

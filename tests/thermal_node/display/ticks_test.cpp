@@ -84,7 +84,7 @@ TEST_CASE("Before the first message a tick is empty") {
   World world;
   Ticks ticks;
   const Tick tick = world.tick(ticks);
-  CHECK(tick.contact.how == sync::SampleStatus::kNone);
+  CHECK(tick.contact.status == sync::SampleStatus::kNone);
   CHECK(tick.events.empty());
 }
 
@@ -135,11 +135,11 @@ TEST_CASE("A silent simulation turns stale after 50 ms") {
   Ticks ticks;
   world.contacts = {touch(4, 1)};
   world.run(60);
-  CHECK(world.tick(ticks).contact.how != sync::SampleStatus::kStale);
+  CHECK(world.tick(ticks).contact.status != sync::SampleStatus::kStale);
   world.host_ms += 40;
-  CHECK(ticks.next(world.stream, world.now(), world.now() - 40ms, 0, 9).contact.how == sync::SampleStatus::kHeld);
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 40ms, 0, 9).contact.status == sync::SampleStatus::kHeld);
   world.host_ms += 20;
-  CHECK(ticks.next(world.stream, world.now(), world.now() - 60ms, 0, 9).contact.how == sync::SampleStatus::kStale);
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 60ms, 0, 9).contact.status == sync::SampleStatus::kStale);
 }
 
 TEST_CASE("While the world is paused its contact is held, and it turns stale when the simulation dies") {
@@ -160,9 +160,9 @@ TEST_CASE("While the world is paused its contact is held, and it turns stale whe
   CHECK(paused.sim_begin == paused.sim_end);
   CHECK(paused.end - paused.begin == 20ms);
   CHECK(paused.contact.force_N == Approx(1));
-  CHECK(paused.contact.how != sync::SampleStatus::kStale);
+  CHECK(paused.contact.status != sync::SampleStatus::kStale);
   world.host_ms += 200;
-  CHECK(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.how == sync::SampleStatus::kStale);
+  CHECK(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.status == sync::SampleStatus::kStale);
 }
 
 TEST_CASE("A restarted simulation begins a new interval") {

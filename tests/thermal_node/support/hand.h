@@ -61,7 +61,7 @@ struct Hand {
     tick.sim_begin = sync::sim_time(sync::to_ns(tick.begin));
     tick.sim_end = sync::sim_time(sync::to_ns(tick.end));
     tick.contact_interval = length;
-    tick.contact.how = sync::SampleStatus::kExact;
+    tick.contact.status = sync::SampleStatus::kExact;
     return tick;
   }
   thermal_state_t rest(int ticks = 1) {

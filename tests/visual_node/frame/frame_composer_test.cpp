@@ -105,7 +105,7 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   for (int i = 0; i < 20; ++i, t += kFrame.count()) hear(t), f = frame(t);
   t -= kFrame.count();
   CHECK(f.state == node_health_t::RUNNING);
-  CHECK(f.how == sync::SampleStatus::kExtrapolated);
+  CHECK(f.status == sync::SampleStatus::kExtrapolated);
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t) + 0.004).margin(1e-6));  // 4 ms ahead at 1 m/s
 }
 

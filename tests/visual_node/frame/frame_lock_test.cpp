@@ -298,7 +298,7 @@ TEST_CASE("What is told of a frame is its number, when it is due, its instant an
   CHECK(m.due_ns == std::llround(static_cast<double>(frame.number) * 1e9 / 60));
   CHECK(m.header.sim_time_ns == sync::to_ns(frame.world));
   CHECK(m.head_ns == frame.head_ns);
-  CHECK(frame.head.how == sync::SampleStatus::kExtrapolated);
+  CHECK(frame.head.status == sync::SampleStatus::kExtrapolated);
   CHECK(m.stage == frame_shown_t::SHOWN);
 }
 

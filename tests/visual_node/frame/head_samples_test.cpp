@@ -37,15 +37,15 @@ TEST_CASE("A sample is carried on with its velocity and its spin, for a bounded 
   HeadSamples samples;
   samples.push(head(1, 2, 0.5, 1.5), kBegin);
   const HeadSample s = *samples.told_by(kBegin);
-  CHECK(carried(s, kBegin).how == sync::SampleStatus::kExact);
+  CHECK(carried(s, kBegin).status == sync::SampleStatus::kExact);
   const auto soon = carried(s, kBegin + milliseconds(20));
-  CHECK(soon.how == sync::SampleStatus::kExtrapolated);
+  CHECK(soon.status == sync::SampleStatus::kExtrapolated);
   CHECK(soon.value.position.x() == Approx(2.01).margin(1e-9));
   CHECK(soon.value.orientation.angularDistance(Eigen::Quaterniond::Identity()) == Approx(0.03).margin(1e-7));
   const auto later = carried(s, kBegin + milliseconds(150));
-  CHECK(later.how == sync::SampleStatus::kHeld);
+  CHECK(later.status == sync::SampleStatus::kHeld);
   CHECK(later.value.position.x() == Approx(2.025).margin(1e-9));
-  CHECK(carried(s, kBegin + milliseconds(201)).how == sync::SampleStatus::kStale);
+  CHECK(carried(s, kBegin + milliseconds(201)).status == sync::SampleStatus::kStale);
 }
 
 TEST_CASE("Another process that holds the head, or a clock put back, ends what was known. Memory is bounded") {
