@@ -12,7 +12,7 @@ to files or folders; default: the whole tree.
   --help         this text
 
 Checked text: comments and string literals of three words or more in C++, Python, shell, CMake, TypeScript and GLSL; comments of
-.lcm files; Markdown and HTML without code; the last column of settings.csv. Old names are searched in C++, Python, TypeScript and
+.lcm files; Markdown and HTML without code; the columns meaning and source of settings.csv. Old names are searched in C++, Python, TypeScript and
 .lcm code. docs/glossary.md describes the language; prose_exceptions.txt lists files that a rule does not apply to.
 """
 import argparse

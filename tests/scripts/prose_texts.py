@@ -1,5 +1,6 @@
 """The prose of a source file: comments, literals, paragraphs and cells, each with the line of each of its parts; and the code alone."""
 import bisect
+import csv
 import os
 import re
 
@@ -145,10 +146,11 @@ def texts_of_html(source):
 
 
 def texts_of_settings(source):
-    for number, line in enumerate(source.split("\n"), start=1):
-        for cell in re.findall(r'"([^"]*)"', line):
+    """The columns meaning and source; no cell holds a line break."""
+    for number, row in enumerate(csv.DictReader(source.splitlines()), start=2):
+        for column in ("meaning", "source"):
             text = Text()
-            text.add(cell, number)
+            text.add(row.get(column) or "", number)
             yield text
 
 

@@ -88,7 +88,7 @@ class CheckProse(unittest.TestCase):
                 ("sync/CMakeLists.txt", 'add_test(NAME "a clock starts anew")\n', 1), ("visual_node/a.glsl", "\n// starts anew\n", 2),
                 ("scripts/a.ts", "const s = 'starts the clock anew';\n", 1), ("scripts/a.html", "<p>\nStarts the clock anew.</p>\n", 2),
                 ("docs/a.md", "# Title\n\nIt starts\nanew.\n", 4), ("docs/a.md", "| a | starts anew |\n", 1),
-                ("sync/settings.csv", 'x,1,2,"starts anew"\n', 1)]:
+                ("sync/settings.csv", "name,meaning,source\nx,Starts anew,design\n", 2)]:
             with self.subTest(name=name, text=text):
                 found = self.found(name, text)
                 self.assertEqual([("anew", line)], [(o.rule, o.line) for o in found])
