@@ -22,7 +22,7 @@ import os
 import re
 import sys
 
-from prose_rules import FILES, FOLDERS, NAME_PATTERNS, NAMES, RULES
+from prose_rules import FILES, FOLDERS, NAME_PATTERNS, NAMES, NEEDS, RULES
 from prose_texts import C_LIKE, code, line_counter, texts
 
 SKIPPED = {"build", "out", ".git", "__pycache__", "shared", "node_modules", "dist", "seeds"}
@@ -49,7 +49,7 @@ def make_rules():
     for name, pattern, wrong, write, *options in RULES:
         option = options[0] if options else {}
         before = option.get("unless_before")
-        yield Rule(name, compiled(pattern), wrong, write, re.compile(before, re.I) if before else None, option.get("needs", ""))
+        yield Rule(name, compiled(pattern), wrong, write, re.compile(before, re.I) if before else None, NEEDS.get(name, "").split())
 
 
 COMPILED = list(make_rules())
@@ -66,7 +66,7 @@ def prose_offences(path, source):
         content = text.text()
         lowered = content.lower()
         for rule in COMPILED:
-            if rule.needs not in lowered:
+            if rule.needs and not any(need in lowered for need in rule.needs):
                 continue
             for match in rule.pattern.finditer(content):
                 if rule.unless_before and rule.unless_before.search(sentence_before(content, match.start())):
