@@ -1,0 +1,170 @@
+#include "haptic_node/node_renderer.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+#include "haptic_node/rendering/tagged.h"
+#include "lcmtypes/pointing.h"
+#include "sync/time/phases.h"
+#include "sync/node/realtime.h"
+#include "sync/assets/scene_pictures.h"
+
+namespace tactus::haptic {
+
+void Options::add_to(CLI::App& app) {
+  app.add_option("--tool", tool, "tool that the hand holds; default: the scene's first");
+  app.add_option("--device", device,
+                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+                 "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  log.add_to(app);
+  app.get_option("--trace")->excludes("--device");
+}
+
+void Options::parse_device() {
+  if (!device.empty()) device_spec = std::make_shared<DeviceSpec>(parse_device_spec(device));
+}
+
+NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      tool_name_(options.tool),
+      device_given_(options.device_spec),
+      log_(log),
+      device_states_(host.bus().queue<device_state_t>(channels::kDeviceState, 64)),
+      device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
+      touch_(host.sense().held_snapshots<touch_model_t>(channels::kTouchModel, 1024)),
+      events_(host.sense().events()),
+      safety_(safety_limits(settings())),
+      quality_(settings()) {
+  tag(host.node().tags(), published_);
+  host.node().set_state(node_health_t::WAITING, "waits for the scene");
+}
+
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  scene_ = scenes.scene();
+  choice_ = choose(*scene_, settings, tool_name_);
+  if (session_) session_->let_go();
+  begin_to_open(scenes);
+  if (log_) log_->follow(choice_.tool);
+  host().say(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
+  const auto points = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
+  points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
+  no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
+  quality_ = Quality(settings);
+  return {.tool = choice_.tool,
+          .rate_Hz = settings.rate_Hz,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz),
+          .status = {.state = node_health_t::WAITING,
+                     .note = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
+}
+
+void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
+  opening_device_.reset();
+  maps_.reset();
+  opening_maps_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
+    sync::leave_realtime();
+    return std::make_unique<SurfaceMaps>(read_maps(scene, pictures));
+  });
+  if (choice_.tool < 0) return;
+  opening_device_.emplace([scene = *scene_, choice = choice_, given = device_given_, log = log_] {
+    sync::leave_realtime();
+    return log ? log->device() : device_of(scene, choice, given.get());
+  });
+}
+
+void NodeRenderer::finish_opening() {
+  // A log waits for both; the live loop waits for nothing.
+  while (log_ && ((opening_maps_ && !opening_maps_->done()) || (opening_device_ && !opening_device_->done())))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (opening_maps_ && opening_maps_->done()) {
+    maps_ = opening_maps_->take();
+    opening_maps_.reset();
+    if (!maps_->trouble.empty()) host().say(maps_->trouble);
+    if (session_ && !session_->over()) session_->set_maps(maps_);
+  }
+  if (opening_device_ && opening_device_->done()) take_device();
+}
+
+void NodeRenderer::take_device() {
+  try {
+    session_.emplace(*scene_, choice_, opening_device_->take(), host().bus().clocks(), safety_);
+    if (maps_) session_->set_maps(maps_);
+    host().node().set_state(node_health_t::READY, "waits for a touch model");
+  } catch (const std::exception& e) {
+    host().say(e.what());
+    host().node().set_state(node_health_t::WAITING, e.what());
+  }
+  opening_device_.reset();
+}
+
+void NodeRenderer::change(const Settings& settings, const std::string&) {
+  if (!session_) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
+  choice_.settings = settings;
+  session_->change(settings);
+}
+
+void NodeRenderer::receive() {
+  while (const auto m = touch_.pop())
+    if (session_) session_->push(m->message, m->arrival);
+  while (const auto m = events_.pop())
+    if (session_) session_->push(m->message, m->arrival);
+  while (const auto m = device_states_.pop())
+    if (session_) session_->push(m->message, m->arrival);
+  // What others of this run command; a replayed log commands nothing.
+  const sync::Identity& me = host().bus().identity();
+  while (const auto m = device_forces_.pop())
+    if (session_ && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
+      session_->push(m->message, m->arrival);
+}
+
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  const bool in_tick = !log_ || log_->begin_tick(now);
+  finish_opening();
+  receive();
+  if (!session_ || !in_tick) return std::nullopt;
+  TickOutput& out = render(now);
+  if (session_->over()) return std::nullopt;
+  publish(out);
+  for (const presentation_t& report : out.reports) host().report(report);
+  if (host().live()) quality_.add(host().clock() - now);
+  return status();
+}
+
+TickOutput& NodeRenderer::render(sync::HostTime now) {
+  const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
+  const sync::ModalityEndpoint& sense = host().sense();
+  return session_->step(now,
+                        {.delay = sense.delay(),
+                         .touch_delay = sense.profile_delay(),
+                         .force_step_N = sense.output().force_step_N,
+                         .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
+                        quality_.planes());
+}
+
+void NodeRenderer::publish(TickOutput& out) {
+  if (log_) log_->add(out.state);
+  host().bus().publish(channels::kToolState, out.state);
+  if (host().node().tags().wanted()) published_ = out.state;
+  if (device_force_t* force = session_->tell()) host().bus().publish(channels::kDeviceForce, *force);
+}
+
+sync::Status NodeRenderer::status() const {
+  sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
+  if (session_->device_lost()) {
+    s.state = node_health_t::OUTPUT_LOST;
+    s.note = "the device does not answer, or two hold it: the force is zero";
+  } else if (points_) {
+    s.note = "points, and does not touch";
+  } else if (session_->heard() && session_->lost()) {
+    s.state = node_health_t::INPUT_LOST;
+    s.note = "no touch model: the force is zero";
+  } else if (session_->heard()) {
+    s.note = maps_ ? maps_->trouble : "reads the maps of its surfaces";
+  } else {
+    s.state = node_health_t::READY;
+    s.note = "waits for a touch model";
+  }
+  return s;
+}
+
+}  // namespace tactus::haptic

@@ -1,0 +1,112 @@
+#include "thermal_node/node_renderer.h"
+
+#include <utility>
+
+#include "sync/time/phases.h"
+#include "thermal_node/devices/external.h"
+#include "thermal_node/devices/make_device.h"
+#include "thermal_node/skin/thickness.h"
+
+namespace tactus::thermal {
+
+NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      tool_name_(std::move(tool_name)),
+      log_(log),
+      events_(host.sense().events()),
+      frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
+      answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
+      stream_(host.bus().clocks()),
+      quality_(Settings{}) {
+  add_tags();
+  host.node().set_state(node_health_t::WAITING, "waits for the scene");
+}
+
+void NodeRenderer::add_tags() {
+  sync::Tags& tags = host().node().tags();
+  tags.add("skin", "degC", &published_.skin_degC);
+  tags.add("command", "degC", &published_.commanded_degC);
+  tags.add("plate", "degC", [this] { return plate_degC_.value_or(published_.commanded_degC); });
+  tags.add("flux", "W/m2", &published_.heat_flux_W_m2);
+  tags.add("force", "N", &published_.force_N);
+}
+
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  const scene_t& scene = *scenes.scene();
+  choice_ = choose(scene, settings, tool_name_);
+  if (log_) log_->run().expect_rate(settings.rate_Hz);
+  quality_ = Quality(settings);
+  if (renderer_) dwell_ = renderer_->dwell();
+  renderer_.reset();
+  device_ = make_device(settings, choice_.tool, plate_degC_.value_or(settings.skin_rest_degC));
+  if (choice_.tool >= 0) {
+    renderer_.emplace(settings, scene.materials, choice_.tool, choice_.tool_body, element_degC_,
+                      thickness_of_bodies(scene));
+    renderer_->resume(dwell_);
+  }
+  return {.tool = choice_.tool,
+          .rate_Hz = settings.rate_Hz,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
+          .status = {.state = node_health_t::WAITING, .note = choice_.problem}};
+}
+
+void NodeRenderer::change(const Settings& settings, const std::string&) {
+  choice_.settings = settings;
+  if (renderer_) renderer_->change(settings);
+}
+
+void NodeRenderer::receive() {
+  stream_.keep(host().sense().delay());
+  while (const auto m = events_.pop()) stream_.push(m->message, m->arrival);
+  while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
+  while (const auto m = answers_.pop())
+    // Not that of a log which is played meanwhile: its plate is not under this finger.
+    if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
+}
+
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  receive();
+  if (!renderer_) return std::nullopt;
+  render(now);
+  for (const presentation_t& report : renderer_->reports()) host().report(report);
+  if (host().live()) quality_.add(host().clock() - now);
+  return status();
+}
+
+void NodeRenderer::render(sync::HostTime now) {
+  const sync::ModalityEndpoint& sense = host().sense();
+  const Tick tick = ticks_.next(stream_, now, sense.newest_arrival(), choice_.tool, choice_.tool_body, sense.delay());
+  std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
+  const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
+  const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
+  thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().response_s,
+                                                 .longest_substep_s = quality_.longest_substep_s(),
+                                                 .plate = plate});
+  rendering.reset();
+  published_ = state;
+  element_degC_ = state.commanded_degC;
+  device_silent_ = device_ && !plate;
+  if (log_) log_->add(state);
+  host().bus().publish(channels::kThermalState, state);
+  if (plate) plate_degC_ = plate->plate_degC;
+  if (plate && device_->simulated() && !log_) {
+    thermal_device_t answer = to_message(*plate, choice_.tool);
+    host().bus().publish(channels::kThermalDevice, answer);
+  }
+}
+
+sync::Status NodeRenderer::status() const {
+  sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
+  if (host().sense().newest_arrival() == sync::HostTime{}) {
+    s.state = node_health_t::READY;
+    s.note = "waits for contacts";
+  } else if (renderer_->input_lost()) {
+    s.state = node_health_t::INPUT_LOST;
+    s.note = "no contacts: the command returns to resting skin";
+  } else if (device_silent_) {
+    s.note = "the display is silent: taken to be as commanded";
+  }
+  return s;
+}
+
+}  // namespace tactus::thermal

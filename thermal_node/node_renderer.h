@@ -1,0 +1,54 @@
+// The modality of warmth on the renderer host: from the contacts of one tool to the command of its display.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tactus/contact_frame_t.hpp>
+
+#include "sync/resampling/contact_stream.h"
+#include "sync/node/renderer.h"
+#include "thermal_node/devices/node_config.h"
+#include "thermal_node/devices/device.h"
+#include "thermal_node/offline.h"
+#include "thermal_node/display/quality.h"
+#include "thermal_node/renderer.h"
+#include "thermal_node/display/ticks.h"
+
+namespace tactus::thermal {
+
+class NodeRenderer : public sync::SettingsRenderer<Settings> {
+ public:
+  // tool_name: from the command line; empty: the setting's, else the scene's first. log: null: it renders the bus.
+  NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log);
+
+  std::optional<sync::Status> step(sync::HostTime now) override;
+  std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
+
+ private:
+  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void change(const Settings& settings, const std::string& name) override;
+  void receive();
+  void render(sync::HostTime now);
+  sync::Status status() const;
+  void add_tags();
+
+  std::string tool_name_;
+  Offline* log_;
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
+  sync::Queue<thermal_device_t>& answers_;
+  sync::ContactStream stream_;
+  NodeConfig choice_;
+  Ticks ticks_;
+  Quality quality_;
+  std::optional<thermal::Renderer> renderer_;
+  Dwell dwell_{DwellLimits{}};  // of the skin, whatever the scene
+  std::unique_ptr<Device> device_;
+  std::optional<double> element_degC_;  // as commanded last, whatever the scene
+  std::optional<double> plate_degC_;    // as measured last
+  bool device_silent_ = false;
+  thermal_state_t published_{};  // the newest, for the tags
+};
+
+}  // namespace tactus::thermal
