@@ -13,7 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "audio_node/node_renderer.h"
+#include "audio_node/renderer.h"
 #include "sync/node/run_renderer.h"
 
 using namespace tactus;

@@ -18,7 +18,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "haptic_node/node_renderer.h"
+#include "haptic_node/renderer.h"
 #include "sync/node/run_renderer.h"
 
 using namespace tactus;

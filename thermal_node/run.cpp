@@ -15,7 +15,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sync/node/run_renderer.h"
-#include "thermal_node/node_renderer.h"
+#include "thermal_node/renderer.h"
 
 using namespace tactus;
 

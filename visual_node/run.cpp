@@ -15,7 +15,7 @@
 #include <iostream>
 
 #include "sync/node/run_renderer.h"
-#include "visual_node/node_renderer.h"
+#include "visual_node/renderer.h"
 
 using namespace tactus;
 

@@ -1,4 +1,4 @@
-#include "audio_node/node_renderer.h"
+#include "audio_node/renderer.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "visual_node/node_renderer.h"
+#include "visual_node/renderer.h"
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
