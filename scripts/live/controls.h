@@ -1,4 +1,4 @@
-// What pages do to the cluster, as scripts/simulation, degrade and set do it, but without waiting: each order is repeated until
+// What pages do to the cluster, as tactus simulation, degrade and set do it, but without waiting: each order is repeated until
 // it is answered or has been sent for long enough. Bounded: a new order of a kind takes the place of the one before.
 #pragma once
 

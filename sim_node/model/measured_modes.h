@@ -1,4 +1,4 @@
-// The modes of a struck object, as measured: the table that scripts/analyse_modes writes.
+// The modes of a struck object, as measured: the table that tactus analyse-modes writes.
 #pragma once
 
 #include <string_view>

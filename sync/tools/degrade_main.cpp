@@ -69,7 +69,7 @@ int main(int argc, char** argv) try {
   }
   if (modalities.empty())
     throw std::runtime_error(
-        "no sense is heard on this bus, nothing was changed; run it inside the cluster: scripts/degrade");
+        "no sense is heard on this bus, nothing was changed; run it inside the cluster: tactus degrade");
   for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
     if (!modalities.contains(rule.modality))
       throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +

@@ -98,8 +98,8 @@ int main(int argc, char** argv) try {
   if (!answer)
     throw std::runtime_error(asks ? "no sync_node answers on this bus yet; the request may still take effect when "
                                     "one goes on. Where there is "
-                                    "none, run it inside the cluster: scripts/playout"
-                                  : "no sync_node speaks on this bus; run it inside the cluster: scripts/playout");
+                                    "none, run it inside the cluster: tactus playout"
+                                  : "no sync_node speaks on this bus; run it inside the cluster: tactus playout");
   print(*answer);
   return 0;
 } catch (const std::exception& e) {

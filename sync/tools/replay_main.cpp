@@ -56,7 +56,7 @@ std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Ass
   return std::find_if(assets.begin(), assets.end(), [](const sync::Asset& a) { return a.kind == asset_ref_t::SCENE; });
 }
 
-// What scripts/replay must know of a log before it starts anything.
+// What tactus replay must know of a log before it starts anything.
 void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& assets, double length_s) {
   nlohmann::json j;
   j["scene"] = sync::printable(origin.info.scene);

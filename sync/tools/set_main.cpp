@@ -54,7 +54,7 @@ int main(int argc, char** argv) try {
       throw std::runtime_error(
           "no \"" + sync::printable(node) +
           "\" that changes settings while it runs answers; docs/settings.md says which settings are live, "
-          "scripts/attach watch which nodes there are");
+          "tactus attach watch which nodes there are");
     if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
     std::cout << sync::printable(reply->text) << std::endl;
   }

@@ -104,7 +104,7 @@ int main(int argc, char** argv) try {
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
   const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kPatience);
   if (!reply)
-    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
+    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulation");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
   std::cout << sync::printable(reply->text) << std::endl;
   return 0;

@@ -22,10 +22,10 @@ bool time_namespaces(RunScript& run) {
   return run.processes.wait_for_exit("probe", 20) == 0;
 }
 
-// One scenario of scripts/measure_clocks.
+// One scenario of tests/measure/measure_clocks.
 json measured(RunScript& run, const std::string& scenario) {
   const std::filesystem::path file = run.folder.path() / (scenario + ".json");
-  run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/measure_clocks").string(),
+  run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "tests/measure/measure_clocks").string(),
                                   "--seconds", "16", "--only", scenario, "--json", file});
   const int status = run.processes.wait_for_exit("measure", 90);
   UNSCOPED_INFO(run.processes.said("measure"));

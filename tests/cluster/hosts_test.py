@@ -13,11 +13,11 @@ import time
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(REPOSITORY / "scripts" / "spread"), str(REPOSITORY / "scripts" / "supervise")]
-import rehearsal
-from cluster import BIN
-from reach import Failed
-from refusal import Refusal
+sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
+from tactus.cluster import rehearsal
+from tactus.cluster.reach import Failed
+from tactus.launch.cluster import BIN
+from tactus.refusal import Refusal
 
 PATIENCE_S = 60
 FILE = """<cluster name="{name}">
@@ -156,7 +156,7 @@ class Hosts(unittest.TestCase):
         self.expect_whole()
 
     def doctor(self):
-        import checkup
+        from tactus.cluster import checkup
         said, checkup.tell = checkup.tell, lambda *_: None
         try:
             return checkup.run(self.r.operator, 2)
@@ -261,8 +261,8 @@ class Hosts(unittest.TestCase):
         self.expect_whole()
 
     def test_50_another_cluster_on_the_same_port_is_refused_and_on_another_hears_nothing(self):
-        from cluster_file import read
-        from orders import Operator
+        from tactus.cluster.cluster_file import read
+        from tactus.cluster.orders import Operator
         config = str(self.r.lab.folder / "ssh_config")
         same = Operator(read(str(write_file(self.folder, "second", 7667)), self.folder / "x"), config, quiet=True)
         with self.assertRaisesRegex(Refusal, "another cluster speaks already"):
@@ -283,8 +283,8 @@ class Hosts(unittest.TestCase):
         self.assertEqual(before, self.incarnations())
 
     def test_51_a_build_that_speaks_otherwise_is_refused_with_what_differs(self):
-        from cluster_file import read
-        from orders import Operator
+        from tactus.cluster.cluster_file import read
+        from tactus.cluster.orders import Operator
         own = self.r.lab.hosts["picture"].home / "own" / "bin"
         own.mkdir(parents=True)
         said = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout

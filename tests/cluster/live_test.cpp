@@ -286,7 +286,7 @@ TEST_CASE(
 
   const std::filesystem::path recorded = run.out() / "run.lcmlog";
   run.processes.spawn("open", {"env", "TACTUS_BIN=" + programs().string(),
-                               (repository() / "scripts/live/open").string(), recorded});
+                               (repository() / "scripts/tactus").string(), "live", "open", recorded});
   const std::string shown_at = address_of(run.processes, "open");
   INFO(run.processes.said("open"));
   REQUIRE_FALSE(shown_at.empty());

@@ -9,11 +9,9 @@ import time
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(REPOSITORY / "scripts" / "spread"), str(REPOSITORY / "scripts" / "supervise")]
-import cluster_file
-import rehearsal
-import status
-from orders import Operator
+sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
+from tactus.cluster import cluster_file, rehearsal, status
+from tactus.cluster.orders import Operator
 
 PATIENCE_S = 60
 FILE = """<cluster name="beside">

@@ -17,10 +17,10 @@ import time
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(REPOSITORY / "scripts" / "spread"), str(REPOSITORY / "scripts" / "supervise")]
-import rehearsal
-from cluster import BIN
-from refusal import Refusal
+sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
+from tactus.cluster import rehearsal
+from tactus.launch.cluster import BIN
+from tactus.refusal import Refusal
 
 PATIENCE_S = 60
 LINE = 7700

@@ -11,8 +11,8 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("sweep", "supervise", "experiment")]
-import trial_table
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus.study import trial_table
 
 SKIPPED = 77
 NODE, ADDRESS = "one", "10.88.0.1"  # of an interface that nobody else has
@@ -87,7 +87,7 @@ class SweepOnSlurm(unittest.TestCase):
             time.sleep(0.1)
 
     def words(self, *words):
-        return [str(ROOT / "scripts" / "study"), "sweep", *map(str, words)]
+        return [str(ROOT / "scripts" / "tactus"), "study", "sweep", *map(str, words)]
 
     def sweep(self, *words):
         done = asked(*self.words(*words))

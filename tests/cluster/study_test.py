@@ -11,9 +11,9 @@ import time
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path[:0] = [str(SCRIPTS / d) for d in ("experiment", "supervise", "psychophysics")]
-import journal
-from refusal import Refusal
+sys.path.insert(0, str(SCRIPTS / "python"))
+from tactus.refusal import Refusal
+from tactus.study import journal
 
 SOON_S = 90  # a cluster starts within seconds; beside other work it takes longer
 
@@ -28,7 +28,7 @@ class AStudyOnALiveCluster(unittest.TestCase):
     def start(self, study, *words):
         said = open(self.said, "ab")
         self.addCleanup(said.close)
-        return subprocess.Popen([str(SCRIPTS / "study"), "run", study, "--participant", "P01", "--simulated", "--out", str(self.out), *words], stdout=said, stderr=said)
+        return subprocess.Popen([str(SCRIPTS / "tactus"), "study", "run", study, "--participant", "P01", "--simulated", "--out", str(self.out), *words], stdout=said, stderr=said)
 
     def trials(self, study):
         try:

@@ -114,7 +114,7 @@ struct Story {
     again = c.watch();
     // By the script that people use.
     const std::string answer =
-        c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/set", "--in", c.out(),
+        c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/tactus", "set", "--in", c.out(),
                      "haptic_node", "force_limit=1N"});
     CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
     gentle = c.watch();

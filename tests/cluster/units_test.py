@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The units of scripts/units under a systemd of their own: it boots in namespaces, on a copy of this system that is thrown away, and
+"""The units of tactus units under a systemd of their own: it boots in namespaces, on a copy of this system that is thrown away, and
 starts them; every sense presents, each is as shut in as its unit says, and what is killed comes back. Exits 77 where that cannot be."""
 import json
 import os
@@ -62,8 +62,8 @@ class System:
         self.folder = folder
         for name in ("disk", "merged", "root"):
             (folder / name).mkdir()
-        run(ROOT / "scripts" / "units", "install", "--root", folder / "root", "--only", ",".join(k for k in KINDS if "@" not in k))
-        run(ROOT / "scripts" / "private_path", "make", "--hosts", "one,two", "--server", "192.0.2.1", "--out", folder / "keys")
+        run(ROOT / "scripts" / "tactus", "units", "install", "--root", folder / "root", "--only", ",".join(k for k in KINDS if "@" not in k))
+        run(ROOT / "scripts" / "tactus", "private-path", "make", "--hosts", "one,two", "--server", "192.0.2.1", "--out", folder / "keys")
         shutil.copytree(folder / "keys" / "one", folder / "root/etc/tactus/path")
         (folder / "boot").write_text(BOOT, encoding="ascii")
         self.cgroup = cgroups / f"tactus-units-{os.getpid()}"

@@ -1,5 +1,5 @@
 // Cells at the lower left edge of a frame that name the frame and the contact events that flash in it, so that
-// what was shown when can be read from the frames themselves. visual_node/marker.py reads them back. Pure.
+// what was shown when can be read from the frames themselves. scripts/python/tactus/log/marker.py reads them back. Pure.
 //
 // A cell is 4 x 4 pixels, black or white, so that it survives video compression; a row is 68 cells. Row 0 lies on
 // the lowest 4 pixels, row k above it. From the left, most significant bit first:

@@ -1,5 +1,5 @@
 // Cells above those of frame/marker.h that name the newest pose sample of each tool that the frame shows, so that
-// the way from motion to pixel can be read from the frames themselves. visual_node/marker.py reads them back.
+// the way from motion to pixel can be read from the frames themselves. scripts/python/tactus/log/marker.py reads them back.
 // Pure.
 //
 // A row as there, which begins with 0 1 1 0 and goes on with

@@ -1,5 +1,5 @@
 // convert_geometry: makes a glTF 2.0 file of a geometry file, with what our senses know of the object in it.
-// scripts/convert_geometry calls it.
+// tactus convert-geometry calls it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -33,7 +33,7 @@ std::vector<Word> words() {
           {"--friction-map", "friction_map", false, true, "picture of how rough it is where, a grey PNG"},
           {"--friction-size", "friction_size", false, false, "extent of one repetition"},
           {"--friction-factors", "friction_factors", false, false, "of black and of white, for example \"0.2 1.5\""},
-          {"--modes", "modes", false, true, "table of the modes it was measured to have (scripts/analyse_modes)"},
+          {"--modes", "modes", false, true, "table of the modes it was measured to have (tactus analyse-modes)"},
           {"--shader", "shader", true, false, "by which it is drawn, for example reflecting"},
           {"--colour-map", "colour_map", true, true, "picture of its colours, instead of those that IN names"},
           {"--normal-map", "normal_map", true, true, "picture of its normals, instead of those that IN names"},

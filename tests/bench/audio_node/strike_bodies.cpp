@@ -1,5 +1,5 @@
 // Strikes bodies one after the other, each alone, through the card's callback and the virtual card, and says into which WAV file.
-// scripts/measure_modes holds what is in them against closed forms.
+// tests/measure/measure_modes holds what is in them against closed forms.
 #include <chrono>
 #include <fstream>
 #include <iostream>

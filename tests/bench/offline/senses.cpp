@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kFrames = 128;  // of a block
 constexpr double kRate_Hz = 48000;
-constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as scripts/measure_onsets
+constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as tests/measure/measure_onsets
 
 double seconds(std::int64_t host_ns) { return static_cast<double>(host_ns - kWorldBegins_ns) * 1e-9; }
 

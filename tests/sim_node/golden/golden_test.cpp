@@ -36,7 +36,7 @@ std::map<std::string, std::string> table() {
 }  // namespace
 
 TEST_CASE(
-    "Every scene comes to the state of the table (scripts/golden_hashes --write when it is meant to change)") {
+    "Every scene comes to the state of the table (tests/measure/golden_hashes --write when it is meant to change)") {
   const auto golden = table();
   std::size_t scenes = 0;
   for (const auto& scene : scenes_in(kScenes)) {

@@ -8,7 +8,7 @@ using namespace tactus::sim;
 
 namespace {
 
-// As scripts/analyse_modes writes it; an empty cell where one of its two ways found nothing.
+// As tactus analyse-modes writes it; an empty cell where one of its two ways found nothing.
 const std::string kTable =
     "frequency_Hz,damping_1_s,amplitude,decay_frequency_Hz,decay_damping_1_s,agrees\n"
     "900.25,5,0.4,,,0\r\n440.5,3.5,0.2,440.4,3.4,1\n";
