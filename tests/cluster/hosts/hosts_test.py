@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
 from tactus.cluster import rehearsal
 from tactus.cluster.reach import Failed

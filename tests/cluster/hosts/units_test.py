@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or ROOT / "build" / "dev" / "bin").absolute()
 SYSTEMD = "/lib/systemd/systemd"
 KINDS = ("sync", "recorder", "haptic", "haptic@lamp", "audio", "visual", "thermal", "sim", "path")

@@ -8,7 +8,7 @@ import tempfile
 import time
 import unittest
 
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
 from tactus.cluster import cluster_file, rehearsal, status
 from tactus.cluster.orders import Operator

@@ -16,7 +16,7 @@ import threading
 import time
 import unittest
 
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
 from tactus.cluster import rehearsal
 from tactus.launch.cluster import BIN
