@@ -1,4 +1,7 @@
 // Of a study: what the participant is asked, and what he answers.
+#include <tactus/answer_t.hpp>
+#include <tactus/question_t.hpp>
+
 #include "lcmtypes/plausible.h"
 #include "lcmtypes/valid.h"
 

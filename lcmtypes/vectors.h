@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <tactus/pose_t.hpp>
+#include <tactus/quat_t.hpp>
 #include <tactus/quatf_t.hpp>
+#include <tactus/vec3_t.hpp>
 #include <tactus/vec3f_t.hpp>
 
 namespace tactus {

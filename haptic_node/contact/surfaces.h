@@ -11,6 +11,7 @@
 #include <span>
 #include <tactus/touch_model_t.hpp>
 #include <vector>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/closest_point.h"
 #include "haptic_node/contact/mapped_place.h"

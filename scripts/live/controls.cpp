@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <tactus/header_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "scripts/live/sliders.h"

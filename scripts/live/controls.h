@@ -8,8 +8,10 @@
 #include <string>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <tactus/setting_change_t.hpp>
 #include <tactus/setting_reply_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/tag_request_t.hpp>

@@ -1,5 +1,8 @@
 #include "sim_node/behaviour/single_group.h"
 
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+
 #include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {

@@ -1,6 +1,8 @@
 // All bodies in one world, at the rate of the ticks.
 #pragma once
 
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/behaviour/mechanics.h"

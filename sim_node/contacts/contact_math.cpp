@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
 
 namespace tactus::sim {
 

@@ -1,6 +1,7 @@
 #include "sim_node/contacts/friction_maps.h"
 
 #include <map>
+#include <tactus/material_def_t.hpp>
 
 #include "sync/bus/identity.h"
 

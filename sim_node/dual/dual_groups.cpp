@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/dual/group_bodies.h"

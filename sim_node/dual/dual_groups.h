@@ -10,6 +10,8 @@
 
 #include <memory>
 #include <optional>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/behaviour/mechanics.h"

@@ -1,5 +1,6 @@
 // Bodies go from group to group.
 #include <algorithm>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/dual_groups.h"
 

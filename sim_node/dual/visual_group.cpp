@@ -1,6 +1,7 @@
 #include "sim_node/dual/visual_group.h"
 
 #include <algorithm>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/group_bodies.h"
 

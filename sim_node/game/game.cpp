@@ -1,6 +1,7 @@
 #include "sim_node/game/game.h"
 
 #include <algorithm>
+#include <tactus/hole_state_t.hpp>
 
 namespace tactus::sim {
 

@@ -1,5 +1,8 @@
 #include "sim_node/model/fingerprint.h"
 
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+
 #include "sim_node/model/state_archive.h"
 #include "sync/bus/identity.h"
 

@@ -1,6 +1,8 @@
 // The shape of a tool, as shapes of bodies are. Pure.
 #pragma once
 
+#include <tactus/tool_def_t.hpp>
+
 #include "sim_node/model/world_def.h"
 
 namespace tactus::sim {

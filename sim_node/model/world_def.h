@@ -7,6 +7,14 @@
 #include <string>
 #include <tactus/scene_t.hpp>
 #include <vector>
+#include <tactus/light_def_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/map_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/setting_t.hpp>
+#include <tactus/shader_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "sync/assets/asset.h"
 

@@ -1,6 +1,11 @@
 #include "sim_node/publish/publisher.h"
 
 #include <algorithm>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/sim_clock_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sim_node/publish/paging.h"
 #include "sim_node/publish/touch_pages.h"

@@ -4,6 +4,7 @@
 
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <vector>
 

@@ -1,6 +1,8 @@
 #include "sim_node/publish/snapshots.h"
 
 #include <algorithm>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/vectors.h"

@@ -9,7 +9,9 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <tactus/body_state_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <tactus/world_state_t.hpp>
 #include <utility>
 #include <vector>

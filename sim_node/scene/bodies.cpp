@@ -5,6 +5,7 @@
 #include <sdf/Collision.hh>
 #include <sdf/Link.hh>
 #include <sdf/Sensor.hh>
+#include <tactus/material_def_t.hpp>
 
 #include "sim_node/scene/inertial.h"
 #include "sim_node/scene/joints.h"

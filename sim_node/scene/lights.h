@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdf/Light.hh>
+#include <tactus/light_def_t.hpp>
 
 #include "sim_node/scene/sdf/load_context.h"
 

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/waypoint_t.hpp>
 
 #include "lcmtypes/tool_device.h"
 #include "lcmtypes/vectors.h"

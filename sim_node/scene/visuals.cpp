@@ -4,6 +4,7 @@
 #include <sdf/Material.hh>
 #include <sdf/Visual.hh>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/sdf/attributes.h"

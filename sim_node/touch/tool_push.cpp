@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/header_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

@@ -10,6 +10,8 @@
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_applied_t.hpp>
 #include <vector>
+#include <tactus/header_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
 
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/ids.h"

@@ -1,3 +1,5 @@
+#include <tactus/tool_state_t.hpp>
+
 #include "sim_node/touch/tool_push.h"
 
 namespace tactus::sim {

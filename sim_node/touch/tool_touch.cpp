@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/pointing.h"

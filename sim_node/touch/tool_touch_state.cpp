@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/model/archive_motion.h"

@@ -1,4 +1,8 @@
 // The state of the whole simulation as bytes, and back.
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/touch_model_t.hpp>
+
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/archive_motion.h"
 #include "sim_node/model/envelope.h"

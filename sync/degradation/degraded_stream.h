@@ -12,7 +12,9 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <utility>
 #include <vector>
 

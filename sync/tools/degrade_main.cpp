@@ -5,6 +5,8 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"

@@ -6,6 +6,10 @@
 #include <iostream>
 #include <optional>
 #include <set>
+#include <tactus/node_health_t.hpp>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"

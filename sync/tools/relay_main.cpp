@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/node/node.h"
 #include "sync/relay/relay.h"

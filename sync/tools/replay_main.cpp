@@ -14,6 +14,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
 
 #include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"

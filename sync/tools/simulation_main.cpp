@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 
 #include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"

@@ -15,6 +15,9 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/decode.h"

@@ -11,6 +11,8 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <iostream>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/node/node.h"

@@ -1,5 +1,9 @@
 // Two hosts whose clocks differ: they agree on time, and what one presents is known on the other.
 #include <nlohmann/json.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "tests/cluster/support/run_script.h"
 #include "tests/cluster/support/running.h"

@@ -1,4 +1,8 @@
 // Commands to the simulation of a running cluster, by the program that people use.
+#include <tactus/body_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
+
 #include "tests/cluster/support/profiles.h"
 
 using namespace tactus;

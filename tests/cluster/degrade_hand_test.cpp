@@ -1,7 +1,9 @@
 // Touch and warmth made worse on purpose, one way at a time: the hand feels it, and no other sense notices.
 #include <cmath>
 #include <set>
+#include <tactus/header_t.hpp>
 #include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
 #include "tests/cluster/support/profiles.h"

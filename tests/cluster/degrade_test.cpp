@@ -1,4 +1,7 @@
 #include <signal.h>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
 
 #include "tests/cluster/support/running.h"
 

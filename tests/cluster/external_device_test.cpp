@@ -2,6 +2,8 @@
 #include <signal.h>
 
 #include <cstdlib>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "tests/cluster/support/running.h"
 

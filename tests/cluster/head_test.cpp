@@ -4,6 +4,7 @@
 #include <fstream>
 #include <numbers>
 #include <tactus/device_state_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/cluster/support/running.h"

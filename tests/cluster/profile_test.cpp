@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/cluster/support/profiles.h"
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 #include <tactus/game_state_t.hpp>
+#include <tactus/node_health_t.hpp>
 #include <thread>
 
 #include "sync/log/log_header.h"

@@ -2,6 +2,10 @@
 #include <signal.h>
 
 #include <nlohmann/json.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "tests/cluster/support/profiles.h"
 #include "tests/cluster/support/run_script.h"

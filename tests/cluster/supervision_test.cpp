@@ -1,5 +1,6 @@
 // The real supervision: what scripts/run does when nodes die.
 #include <nlohmann/json.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/cluster/support/ear.h"
 #include "tests/cluster/support/run_script.h"

@@ -2,6 +2,10 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/node/tag_table.h"
 #include "tests/cluster/support/running.h"

@@ -1,4 +1,9 @@
 // The promises of isolation, with the senses on two machines; and with a log in the place of the world.
+#include <tactus/input_health_t.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+
 #include "tests/cluster/support/two_machines.h"
 
 using namespace tactus;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/tool_state_t.hpp>
 

@@ -1,6 +1,7 @@
 // Two walls of one room on two hosts whose clocks differ: each frame shows the same instant and the same head on
 // both, however slow one of them is, and neither waits for the other.
 #include <tactus/frame_shown_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/cluster/support/two_machines.h"
 

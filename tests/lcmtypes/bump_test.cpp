@@ -1,6 +1,8 @@
 #include "lcmtypes/bump.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/lcmtypes/samples.h"
 

@@ -1,6 +1,7 @@
 #include "lcmtypes/friction_map.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/material_def_t.hpp>
 
 using namespace tactus;
 using Eigen::Vector3d;

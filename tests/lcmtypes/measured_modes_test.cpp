@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <tactus/material_def_t.hpp>
+#include <tactus/measured_mode_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/lcmtypes/samples.h"

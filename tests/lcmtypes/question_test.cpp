@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/valid.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 using namespace tactus;
 using Eigen::Vector2d;

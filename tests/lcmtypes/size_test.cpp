@@ -1,5 +1,24 @@
 // Every message at its documented maximum fits one datagram.
 #include <catch2/catch.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"

@@ -10,7 +10,12 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/degradation_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/identity.h"

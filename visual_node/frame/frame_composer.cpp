@@ -1,6 +1,10 @@
 #include "visual_node/frame/frame_composer.h"
 
 #include <algorithm>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"

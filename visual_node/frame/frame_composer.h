@@ -7,8 +7,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "sync/resampling/body_history.h"

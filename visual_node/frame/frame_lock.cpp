@@ -1,6 +1,8 @@
 #include "visual_node/frame/frame_lock.h"
 
 #include <algorithm>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "sync/playout/lockstep.h"

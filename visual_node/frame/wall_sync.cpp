@@ -1,6 +1,10 @@
 #include "visual_node/frame/wall_sync.h"
 
 #include <algorithm>
+#include <tactus/header_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 namespace tactus::visual {
 namespace {

@@ -4,6 +4,9 @@
 
 #include <functional>
 #include <tactus/frame_shown_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/node/node.h"
 #include "visual_node/frame/frame_lock.h"

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tactus/uniform_t.hpp>
 
 namespace tactus::visual {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <tactus/uniform_t.hpp>
 #include <utility>
 
 #include "visual_node/gl/uniforms.h"

@@ -1,6 +1,7 @@
 #include "visual_node/overlay/groups.h"
 
 #include <algorithm>
+#include <tactus/body_state_t.hpp>
 
 namespace tactus::visual {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "visual_node/frame/marker.h"

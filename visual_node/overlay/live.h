@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "sync/bus/bus.h"

@@ -1,6 +1,7 @@
 #include "visual_node/overlay/live_questions.h"
 
 #include <algorithm>
+#include <tactus/question_t.hpp>
 
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/overlay/question_panel.h"

@@ -2,6 +2,8 @@
 // has a window.
 #pragma once
 
+#include <tactus/question_t.hpp>
+
 #include "sync/bus/bus.h"
 #include "visual_node/frame/frame_composer.h"
 #include "visual_node/overlay/question_desk.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tactus/histogram_t.hpp>
 
 #include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"

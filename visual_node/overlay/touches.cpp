@@ -1,6 +1,7 @@
 #include "visual_node/overlay/touches.h"
 
 #include <algorithm>
+#include <tactus/contact_point_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

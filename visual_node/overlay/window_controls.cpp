@@ -1,5 +1,7 @@
 #include "visual_node/overlay/window_controls.h"
 
+#include <tactus/sim_reply_t.hpp>
+
 #include "sync/bus/request_reply.h"
 
 namespace tactus::visual {

@@ -4,6 +4,8 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "visual_node/overlay/desk.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

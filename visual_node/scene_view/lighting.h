@@ -1,6 +1,7 @@
 // The lamps of a scene as the shaders want them.
 #pragma once
 
+#include <tactus/light_def_t.hpp>
 #include <tactus/scene_t.hpp>
 
 #include "visual_node/scene_view/draw_list.h"

@@ -1,6 +1,7 @@
 #include "visual_node/scene_view/look.h"
 
 #include <stdexcept>
+#include <tactus/shader_t.hpp>
 
 namespace tactus::visual {
 namespace {

@@ -5,7 +5,9 @@
 #include <map>
 #include <string>
 #include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
 #include <vector>
 
 #include "sync/assets/scene_exchange.h"

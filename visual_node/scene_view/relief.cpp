@@ -2,6 +2,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <tactus/material_def_t.hpp>
 
 namespace tactus::visual {
 

@@ -4,6 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
+#include <tactus/visual_def_t.hpp>
 #include <tuple>
 #include <utility>
 

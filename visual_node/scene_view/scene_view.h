@@ -5,8 +5,12 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <tactus/light_def_t.hpp>
 #include <tactus/mesh_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 #include <vector>
 
 #include "visual_node/lens/lens.h"

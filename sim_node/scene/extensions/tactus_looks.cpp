@@ -4,6 +4,11 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/shader_t.hpp>
+#include <tactus/uniform_t.hpp>
 
 #include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/materials/pictures.h"

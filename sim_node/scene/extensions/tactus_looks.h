@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <tactus/uniform_t.hpp>
 
 #include "sim_node/scene/sdf/load_context.h"
 

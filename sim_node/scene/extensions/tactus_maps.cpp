@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <tactus/map_def_t.hpp>
 
 #include "sim_node/all_settings.gen.h"
 #include "sim_node/scene/sdf/attributes.h"

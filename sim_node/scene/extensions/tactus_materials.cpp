@@ -1,6 +1,8 @@
 #include "sim_node/scene/extensions/tactus_materials.h"
 
 #include <algorithm>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/height_map.h"

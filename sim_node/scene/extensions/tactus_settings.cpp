@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tactus/setting_t.hpp>
 
 #include "sim_node/all_settings.gen.h"
 

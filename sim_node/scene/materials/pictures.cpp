@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
 
 #include "sim_node/scene/materials/height_image.h"
 #include "sync/bus/identity.h"

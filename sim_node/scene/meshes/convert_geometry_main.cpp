@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <tactus/material_def_t.hpp>
 
 #include "sim_node/scene/meshes/convert_geometry.h"
 #include "sim_node/scene/materials/materials.h"

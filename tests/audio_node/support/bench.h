@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <tactus/presentation_t.hpp>
 #include <vector>
 
 #include "audio_node/mixer/renderer.h"

@@ -6,6 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/modal/body_sound.h"
 #include "audio_node/excitation/contact_patch.h"

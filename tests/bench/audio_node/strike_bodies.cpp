@@ -4,6 +4,13 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/vec3_t.hpp>
+#include <tactus/vec3f_t.hpp>
 #include <thread>
 
 #include <CLI/CLI.hpp>

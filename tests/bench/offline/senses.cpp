@@ -4,6 +4,10 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/mixer/renderer.h"

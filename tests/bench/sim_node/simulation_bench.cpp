@@ -10,6 +10,9 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "sim_node/model/behaviour_model.h"
 #include "sim_node/scene/load_sdf.h"

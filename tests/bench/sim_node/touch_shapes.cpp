@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/pose_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/touch/tool_touch.h"
 #include "sim_node/scene/meshes/mesh_file.h"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/solver.h"

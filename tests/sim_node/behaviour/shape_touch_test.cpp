@@ -2,6 +2,11 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/tool_shape.h"

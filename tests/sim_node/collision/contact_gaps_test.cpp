@@ -1,5 +1,6 @@
 // The tracker where contacts have gaps and the solver says how surfaces met.
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/contacts/contact_tracker.h"

@@ -6,6 +6,9 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 #include <thread>
 
 #include "lcmtypes/vectors.h"

@@ -4,6 +4,8 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "sim_node/behaviour/solver.h"
 #include "tests/sim_node/support/small_worlds.h"

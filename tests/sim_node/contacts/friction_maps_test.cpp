@@ -1,6 +1,8 @@
 #include "sim_node/contacts/friction_maps.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sync/bus/identity.h"

@@ -1,6 +1,7 @@
 // Both groups at work, against a tool that does its worst and a thread that is never given time.
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
 
 #include "tests/sim_node/support/dual_bench.h"
 

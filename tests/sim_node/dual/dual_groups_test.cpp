@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "tests/sim_node/support/dual_bench.h"

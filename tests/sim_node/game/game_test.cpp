@@ -1,6 +1,7 @@
 #include "sim_node/game/game.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/game_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sim;

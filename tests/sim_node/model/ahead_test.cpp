@@ -4,6 +4,12 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sim_node/publish/publisher.h"
 #include "sync/resampling/body_history.h"

@@ -1,4 +1,6 @@
 // Measured modes: the attribute of <tactus:material> that names them, and their way into the scene.
+#include <tactus/material_def_t.hpp>
+
 #include "sim_node/model/measured_modes.h"
 
 #include "tests/sim_node/support/scene_file.h"

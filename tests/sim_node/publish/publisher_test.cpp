@@ -4,6 +4,13 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <unordered_map>
 
 #include "sync/resampling/contact_stream.h"

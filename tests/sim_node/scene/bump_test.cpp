@@ -1,5 +1,8 @@
 // Bump: the attributes of <tactus:material> that give a material a relief, and its way to the renderers.
 #include <map>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"

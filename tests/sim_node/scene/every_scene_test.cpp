@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/world/simulation.h"

@@ -1,4 +1,7 @@
 // The attributes of <tactus:material> that give a material a friction map.
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sync/bus/decode.h"

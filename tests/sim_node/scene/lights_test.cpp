@@ -1,3 +1,5 @@
+#include <tactus/light_def_t.hpp>
+
 #include "sim_node/scene/lights.h"
 
 #include "lcmtypes/vectors.h"

@@ -1,6 +1,10 @@
 #include "sim_node/scene/scene_assets.h"
 
 #include <set>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/sim_node/support/scene_file.h"

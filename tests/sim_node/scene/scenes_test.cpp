@@ -2,6 +2,7 @@
 #include <iostream>
 #include <random>
 #include <sstream>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"

@@ -1,4 +1,7 @@
 // Our own elements: materials, tools, settings.
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/materials/materials.h"
 #include "sync/degradation/profile.h"

@@ -1,6 +1,7 @@
 // A world in two groups, one tick at a time, with one tool; the same way every time.
 #pragma once
 
+#include <tactus/contact_event_t.hpp>
 #include <vector>
 
 #include "sim_node/dual/dual_groups.h"

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/sim_node/support/small_worlds.h"

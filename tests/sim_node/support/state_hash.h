@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/world/simulation.h"

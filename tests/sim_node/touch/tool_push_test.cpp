@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_applied_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/behaviour/solver.h"

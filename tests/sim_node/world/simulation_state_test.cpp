@@ -9,6 +9,12 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/scene/load_sdf.h"

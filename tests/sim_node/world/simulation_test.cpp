@@ -3,6 +3,11 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/bus/identity.h"

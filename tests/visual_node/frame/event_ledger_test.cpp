@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "visual_node/frame/render_time.h"
 

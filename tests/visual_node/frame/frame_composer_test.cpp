@@ -4,6 +4,16 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/sim_clock_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 

@@ -5,6 +5,13 @@
 #include <memory>
 #include <queue>
 #include <random>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 

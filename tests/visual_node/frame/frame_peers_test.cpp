@@ -1,6 +1,7 @@
 #include "visual_node/frame/frame_peers.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/frame_shown_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -1,6 +1,7 @@
 #include "visual_node/frame/head_samples.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

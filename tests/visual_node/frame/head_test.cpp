@@ -1,5 +1,8 @@
 // The view follows a tool named "head".
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "tests/visual_node/support/test_scene.h"

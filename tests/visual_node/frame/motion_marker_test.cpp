@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/media_clock_t.hpp>
 
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/marker.h"

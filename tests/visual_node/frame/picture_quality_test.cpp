@@ -1,5 +1,8 @@
 // The steps of the quality ladder and a commanded resolution, in pictures.
 #include <catch2/catch.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 #include "visual_node/frame/marker.h"

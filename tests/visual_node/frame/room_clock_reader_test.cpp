@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -1,6 +1,12 @@
 // Lamps and materials, pixel by pixel, against the formulas that they are said to follow.
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/body_def_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/support/reference.h"
 

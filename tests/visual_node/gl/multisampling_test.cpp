@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 #include <set>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 

@@ -3,6 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 #include "visual_node/frame/marker.h"

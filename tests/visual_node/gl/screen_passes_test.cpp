@@ -1,5 +1,10 @@
 // Passes over the whole picture against what they say they compute, from the picture without them.
 #include <catch2/catch.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/uniform_t.hpp>
 
 #include "tests/visual_node/support/reference.h"
 

@@ -3,6 +3,9 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <tactus/look_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
 #include <thread>
 
 #include "tests/visual_node/support/offscreen.h"

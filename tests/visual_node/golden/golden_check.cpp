@@ -8,6 +8,12 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <tactus/body_def_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/golden/colour_difference.h"
 #include "tests/visual_node/golden/shipped_scene.h"

@@ -5,6 +5,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tactus/body_def_t.hpp>
+#include <tactus/pose_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "visual_node/lens/lens.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/lens/off_axis.h"

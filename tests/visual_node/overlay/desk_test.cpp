@@ -1,6 +1,11 @@
 #include "visual_node/overlay/desk.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/test_scene.h"

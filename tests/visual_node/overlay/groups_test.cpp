@@ -1,6 +1,8 @@
 #include "visual_node/overlay/groups.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/body_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -2,6 +2,7 @@
 #include "visual_node/overlay/live.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "visual_node/frame/marker.h"
 

@@ -1,6 +1,7 @@
 #include "visual_node/overlay/panel.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"

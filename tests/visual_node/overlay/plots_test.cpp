@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"

@@ -1,6 +1,8 @@
 #include "visual_node/overlay/question_desk.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/answer_t.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/question_messages.h"

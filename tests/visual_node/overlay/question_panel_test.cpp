@@ -1,6 +1,7 @@
 #include "visual_node/overlay/question_panel.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/question_messages.h"

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 

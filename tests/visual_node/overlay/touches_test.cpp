@@ -1,6 +1,9 @@
 #include "visual_node/overlay/touches.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;

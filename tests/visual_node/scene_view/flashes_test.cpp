@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -1,6 +1,11 @@
 #include "visual_node/scene_view/look.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shader_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/scene_view.h"

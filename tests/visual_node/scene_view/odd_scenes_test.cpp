@@ -2,6 +2,11 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/offscreen.h"

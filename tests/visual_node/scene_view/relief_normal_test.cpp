@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/relief.h"
 #include "tests/visual_node/support/offscreen.h"

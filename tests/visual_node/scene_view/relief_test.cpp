@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "tests/grey_png.h"

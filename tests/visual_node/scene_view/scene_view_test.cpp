@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <tactus/light_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/lighting.h"

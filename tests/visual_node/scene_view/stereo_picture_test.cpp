@@ -1,5 +1,7 @@
 // What the device draws for two eyes.
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 

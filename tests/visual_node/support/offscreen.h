@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <vector>
 
 #include "tests/visual_node/support/test_scene.h"

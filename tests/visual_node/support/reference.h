@@ -7,7 +7,9 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <tactus/light_def_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/visual_node/support/offscreen.h"

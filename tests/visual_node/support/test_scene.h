@@ -4,7 +4,14 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tactus/body_def_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/pose_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "lcmtypes/height_map.h"
 #include "lcmtypes/vectors.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <tactus/picture_chunk_t.hpp>
 #include <thread>
 
 extern "C" {

@@ -2,6 +2,10 @@
 #include "sim_node/scene/extensions/tactus_looks.h"
 
 #include <cstring>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/materials/pictures.h"

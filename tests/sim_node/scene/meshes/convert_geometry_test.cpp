@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/meshes/gltf_writer.h"

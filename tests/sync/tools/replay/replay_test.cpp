@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/node_health_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 
