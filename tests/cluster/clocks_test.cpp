@@ -42,7 +42,7 @@ json measured(RunScript& run, const std::string& scenario) {
 
 }  // namespace
 
-TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced") {
+TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced", "[exclusive]") {
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
   const json row = measured(run, scenario);
@@ -56,7 +56,7 @@ TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle,
   CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
 }
 
-TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly") {
+TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly", "[exclusive]") {
   RunScript run;
   if (!time_namespaces(run)) return;
   Running r;

@@ -24,7 +24,7 @@ json changed_of(const json& result, const std::string& sense) {
 
 }  // namespace
 
-TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone") {
+TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);

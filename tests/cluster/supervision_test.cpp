@@ -29,7 +29,7 @@ std::int64_t run_id_of(RunScript& run) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
+TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
   RunScript run;
   // The network of this test, so that it can listen.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
@@ -66,7 +66,7 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
   CHECK(nothing_lives(5));
 }
 
-TEST_CASE("A node that keeps dying is left lost and named, and the others go on") {
+TEST_CASE("A node that keeps dying is left lost and named, and the others go on", "[exclusive]") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});

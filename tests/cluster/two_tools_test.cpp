@@ -127,7 +127,7 @@ struct Story {
 
 }  // namespace
 
-TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices") {
+TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices", "[exclusive]") {
   // A machine that is kept from its work before anything is changed has nothing to compare with: once more then.
   auto story = std::make_unique<Story>();
   for (int tries = 1; tries < 3 && figures(RunLog(story->c.out()), story->two).sim_Hz < 990; ++tries) {

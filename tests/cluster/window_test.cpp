@@ -240,7 +240,7 @@ TEST_CASE("The mouse in the window is a device that points at what is seen under
   CHECK(c.goes_on("visual_node"));
 }
 
-TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go") {
+TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go", "[exclusive]") {
   Desktop c;
   c.start_server();
   const std::string run = std::to_string(Running::kRunId);
