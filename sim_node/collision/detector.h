@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim_node/collision/layers/mesh_contact.h"
 #include "sim_node/model/point_pair.h"
 #include "sim_node/model/world_def.h"
 
