@@ -8,7 +8,7 @@ void ToolPush::archive(StateArchive& a, std::size_t bodies) {
     auto& [id, book] = entry;
     a(id);
     a.index(book.body, bodies);
-    a.require(book.body >= 0, "the state holds a contact of nothing");
+    a.require(book.body >= 0, "the state holds a contact of no body");
     a(book.point), a(book.told), a(book.felt), a(book.owed), a(book.mean_N), a(book.applied), a(book.velocity);
     a(book.energy_J), a(book.used);
   });

@@ -20,7 +20,7 @@ void ToolTouch::archive(StateArchive& a) {
     auto surface = static_cast<std::int64_t>(n.surface);
     a(surface);
     a.require(surface >= 0 && surface < static_cast<std::int64_t>(surfaces_.size()),
-              "the state is one of another scene");
+              "the state belongs to another scene");
     n.surface = static_cast<std::size_t>(surface);
     a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.seen), a(n.gap_m);
     a(n.touching), a(n.apart), a(n.apart_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);

@@ -28,7 +28,7 @@ void Simulation::archive(StateArchive& a) {
   a.fixed(models_, [&](touch_model_t& m) { a.message(m); });
   a.list(wrenches_, kMaxWrenches, [&](Wrench& w) {
     a.index(w.body, bodies);
-    a.require(w.body >= 0, "the state holds a push of nothing");
+    a.require(w.body >= 0, "the state holds a force on no body");
     a(w.force_N), a(w.torque_N_m), a(w.steps);
     a.require(w.steps >= 0 && w.steps <= kMaxSteps, "the state holds a number out of range");
   });
