@@ -21,7 +21,7 @@
 namespace tactus::sim {
 namespace {
 
-// What stands in for the two models that every Gazebo brings and that are not beside the file.
+// Built-in versions of the two models of every Gazebo installation, when the scene does not bring them.
 void add_stand_ins(LoadContext& context) {
   for (const auto& skipped : context.files.skipped()) {
     if (skipped.uri == "model://sun") context.world.lights.push_back(sun());

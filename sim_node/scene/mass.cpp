@@ -45,7 +45,7 @@ MassProperties capsule(double r, double length, double density) {
   return m;
 }
 
-// In the shape's frame. A mesh that is not closed counts as its bounding box.
+// In the shape's frame. An open mesh counts as its bounding box.
 MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double density) {
   const Eigen::Vector3d& size = shape.size_m;
   switch (shape.kind) {

@@ -24,7 +24,7 @@ int add(LoadContext& context, const std::string& key, const NamedMesh& named, co
   return at->second;
 }
 
-// Of a part beside others that have them: pictures show their corner there.
+// Fills missing texture coordinates when other parts have them: the corner of the picture is used.
 void complete(MeshPart& part) {
   if (part.texcoords.empty()) part.texcoords.assign(part.positions_m.size(), Eigen::Vector2f(0, 0));
   make_tangents(part);

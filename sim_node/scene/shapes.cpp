@@ -35,7 +35,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
 }
 
 void require_positive(const LoadContext& context, const sdf::Element& owner, const ShapeDef& shape) {
-  // Sizes that the kind does not use are 1.
+  // Unused sizes of a kind are 1.
   if (!shape.size_m.allFinite() || (shape.size_m.array() <= 0).any() || shape.size_m.maxCoeff() > 1e6)
     context.refuse(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
 }

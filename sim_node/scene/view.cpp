@@ -50,7 +50,7 @@ bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
   if (!pose) return false;
   context.world.camera = to_eigen(pose->Get<ignition::math::Pose3d>());
   if (!context.world.camera.matrix().allFinite()) context.refuse(*pose, "is not finite");
-  context.world.camera_fov_rad = 60 * kDeg;  // that of Gazebo's window
+  context.world.camera_fov_rad = 60 * kDeg;  // as in Gazebo's window
   return true;
 }
 
@@ -63,7 +63,7 @@ bool read_camera_sensor(LoadContext& context) {
   return true;
 }
 
-// From the front, the right and above, as far as the sphere around all bodies asks for.
+// From the front, right and above, at the distance that shows the bounding sphere of all bodies.
 void look_at_all(LoadContext& context) {
   Eigen::AlignedBox3d around;
   for (const ShapeDef& shape : context.world.shapes) {

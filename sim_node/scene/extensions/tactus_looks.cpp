@@ -15,12 +15,12 @@
 namespace tactus::sim {
 namespace {
 
-// What comes with visual_node (visual_node/README.md): for surfaces, and for passes.
+// Built-in shaders of visual_node (visual_node/README.md): for surfaces, and for passes.
 const std::vector<std::string> kSurfaceShaders{"gouraud", "phong", "normal_mapped", "reflecting", "textured"};
 const std::vector<std::string> kPassShaders{"greyscale", "blur", "edges"};
 
-// Design: a thousand lines; more uniforms than shaders that people write have; as many passes as 60 Hz can hope
-// for.
+// Design: a shader of a thousand lines; more uniforms than usual shaders have; the number of passes that 60 Hz
+// allows.
 constexpr std::uintmax_t kMaxShaderBytes = 64 << 10;
 constexpr std::size_t kMaxUniforms = 32, kMaxShaders = 64, kMaxPasses = 16;
 constexpr std::size_t kMaxName = 64;  // as in uniform_t.lcm
@@ -51,7 +51,7 @@ void check_shader(const LoadContext& context, const sdf::Element& element, const
   for (const shader_t& each : own) names += ", " + each.name;
   context.warn(element, "names shader \"" + name +
                             "\", which is neither the scene's nor visual_node's: there are " + names +
-                            "; a renderer of one's own may have it");
+                            "; another renderer may have it");
 }
 
 // "scale 2; tint 1 0.5 0"
@@ -67,7 +67,7 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       context.refuse(element,
                      "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
     };
-    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is no name of a uniform");
+    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is not a valid uniform name");
     for (std::string word; words >> word; ++uniform.count) {
       if (uniform.count == 4) refuse(uniform.name + " has more than 4 numbers");
       try {
@@ -75,18 +75,18 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       } catch (const std::invalid_argument& e) {
         refuse(uniform.name + ": " + e.what());
       }
-      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " is beyond 1e6");
+      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " exceeds 1e6");
     }
     if (uniform.count == 0) refuse(uniform.name + " has no number");
     for (const uniform_t& other : uniforms)
-      if (other.name == uniform.name) refuse(uniform.name + " stands there twice");
+      if (other.name == uniform.name) refuse(uniform.name + " is given twice");
     if (uniforms.size() == kMaxUniforms) refuse("more than " + std::to_string(kMaxUniforms) + " are given");
     uniforms.push_back(uniform);
   }
   return uniforms;
 }
 
-// All but the name.
+// Reads all attributes except the name.
 LookWords read_words(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
   LookWords words;
   words.shader = attributes.text("shader");
@@ -118,7 +118,7 @@ void read_look(LoadContext& context, const sdf::Element& element) {
   const std::string name = attributes.required_text("name");
   const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
   if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
-    context.refuse(element, "has a name that is longer than 64 letters, or no printable ASCII");
+    context.refuse(element, "has a name that is longer than 64 characters or not printable ASCII");
   const auto base = attributes.text("base");
   auto words = std::make_shared<LookWords>(read_words(context, element, attributes));
   attributes.done();
@@ -136,9 +136,9 @@ std::int64_t read_text(LoadContext& context, const sdf::Element& element, const 
     if (text.bytes.empty()) throw std::runtime_error("it is empty");
     int line = 1;
     for (const std::uint8_t c : text.bytes) {
-      // The characters of GLSL 3.30, 3.1, and all that is printable in ASCII for comments.
+      // The characters of GLSL 3.30, 3.1, and printable ASCII for comments.
       if ((c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c > 0x7e)
-        throw std::runtime_error("line " + std::to_string(line) + " holds a character that is no printable ASCII");
+        throw std::runtime_error("line " + std::to_string(line) + " holds a character that is not printable ASCII");
       line += c == '\n';
     }
     const std::int64_t hash = sync::fnv1a_64(text.bytes.data(), text.bytes.size());
@@ -191,7 +191,7 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
   const std::string uri = attributes.required_text("picture");
   attributes.done();
   if (context.world.environment_asset != 0)
-    context.refuse(element, "stands there twice: one picture lies around a scene");
+    context.refuse(element, "appears twice: a scene has one environment");
   context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
 }
 
@@ -211,7 +211,7 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
     for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
       if (element->GetName() == name) read(context, *element);
   };
-  each("tactus:shader", read_shader);  // before those who name them
+  each("tactus:shader", read_shader);  // before the elements that name shaders
   each("tactus:look", read_look);
   each("tactus:pass", read_pass);
   each("tactus:environment", read_environment);
@@ -233,7 +233,7 @@ int look_index(WorldDef& world, const LookWords& words) {
   look.reflectance = static_cast<float>(words.reflectance.value_or(0));
   look.uniforms = words.uniforms.value_or(std::vector<uniform_t>{});
   look.uniform_count = static_cast<std::int32_t>(look.uniforms.size());
-  // Nobody named a shader: the one that shows all that was said.
+  // Without a shader name, use the one that shows all given attributes.
   look.shader = words.shader.value_or(look.reflectance > 0 ? "reflecting"
                                       : look.normal_map    ? "normal_mapped"
                                       : look.colour_map    ? "textured"

@@ -13,22 +13,22 @@
 namespace tactus::sim {
 namespace {
 
-// While it lives, nothing that libsdformat says reaches a terminal or a log file in somebody's home.
+// While an instance exists, libsdformat writes nothing to the terminal or to a log file in the home folder.
 class Silence {
  public:
   Silence() : console_(std::cerr.rdbuf(heard_.rdbuf())) {
     static const bool made = [] {
       const char* home = std::getenv("HOME");
       const std::string before = home ? home : "";
-      setenv("HOME", "/dev/null", 1);  // the console opens $HOME/.sdformat/sdformat.log when it is made
+      setenv("HOME", "/dev/null", 1);  // the console opens $HOME/.sdformat/sdformat.log when it is created
       sdf::Console::Instance();
       home ? setenv("HOME", before.c_str(), 1) : unsetenv("HOME");
       return true;
     }();
     (void)made;
   }
-  // The first error that was said, without colours and source line: "Error [Param.cc:1] message" in escape sequences.
-  // libsdformat says more there than it returns, for instance which value it could not read.
+  // The first printed error, without colours and source line: "Error [Param.cc:1] message" in escape sequences.
+  // libsdformat prints more than it returns, for example the value that it could not read.
   std::string first_error() const {
     std::istringstream lines(heard_.str());
     for (std::string line; std::getline(lines, line);) {
@@ -53,7 +53,7 @@ class Silence {
 
 void configure(const SdfFiles& files) {
   sdf::ParserConfig config;
-  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);  // unsupported.h says it better, and with a line
+  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);  // unsupported.h reports these with a line
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetFindCallback([](const std::string&) { return std::string(); });
@@ -63,7 +63,7 @@ void configure(const SdfFiles& files) {
 }
 
 bool tolerated(const sdf::Error& error, const SdfFiles& files) {
-  // bodies.h checks inertia itself and names the line.
+  // bodies.h checks the inertia itself and names the line.
   if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) return true;
   if (error.Code() == sdf::ErrorCode::URI_LOOKUP)
     for (const auto& skipped : files.skipped())
@@ -71,7 +71,7 @@ bool tolerated(const sdf::Error& error, const SdfFiles& files) {
   return error.Message().starts_with("Failed to load a world");
 }
 
-// The line of the element that an error without a line speaks of: the first whose name the message quotes.
+// The element that an error without a line refers to: the first one whose name the message quotes.
 const sdf::Element* spoken_of(const sdf::ElementPtr& element, const std::string& message) {
   if (!element) return nullptr;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement())
@@ -119,7 +119,7 @@ std::unique_ptr<sdf::Root> read_sdf(const SdfFiles& files) {
   } catch (const std::runtime_error&) {
     throw;
   } catch (const std::exception& e) {
-    throw std::runtime_error(files.where(files.main_file().string(), 0) + ": libsdformat gave up: " + e.what());
+    throw std::runtime_error(files.where(files.main_file().string(), 0) + ": libsdformat failed: " + e.what());
   }
   return root;
 }
