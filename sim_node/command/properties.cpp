@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 using impulse::SceneChange;
 
-// Ranges are design values: what a person may meet in a room. 20 m/s is the speed up to which bodies are proven not
+// Ranges are design values for objects and motions in a room. 20 m/s is the speed up to which bodies are proven not
 // to pass through each other; 200 rad/s is twice the speed of a fan at 16 Hz.
 constexpr std::array kProperties{
     PropertyRow{Owner::kWorld, "gravity", "m/s^2", 3, -100, 100, "its direction and size"},

@@ -109,7 +109,7 @@ class DualGroups : public Mechanics {
   VisualTask task_;  // of the next step
   sync::SimTime begins_{}, ends_{}, held_until_{};
   sync::Nanoseconds clock_offset_{};  // clock of the simulation minus clock of the visual group
-  Handover departed_;           // units that left the haptic group when the step began
+  UnitTransfer departed_;           // units that left the haptic group when the step began
   std::size_t published_events_ = 0;  // number of the step's events already published
   std::int64_t number_ = 0, late_steps_ = 0, held_ticks_ = 0;
   bool began_ = false, holding_ = false, stale_ = true;

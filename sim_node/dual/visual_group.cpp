@@ -111,7 +111,7 @@ void VisualGroup::remove_leaving(const VisualTask& task) {
 // Entering units were in the haptic group at the beginning of the previous step. They catch up by themselves, since
 // they reach no other body in it.
 void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
-  const Handover& enters = task.enters;
+  const UnitTransfer& enters = task.enters;
   if (enters.units.empty()) return;
   for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
   world_->set_active(enters.units);

@@ -39,12 +39,12 @@ void shift(LiveContact& c, sync::Nanoseconds by) {
   for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.apart_since}) *t += by;
 }
 
-int Handover::find(int unit) const {
+int UnitTransfer::find(int unit) const {
   const auto at = std::lower_bound(units.begin(), units.end(), unit);
   return at != units.end() && *at == unit ? static_cast<int>(at - units.begin()) : -1;
 }
 
-void Handover::archive(StateArchive& a, int max_units, std::size_t bodies, ContactTracker& tracker) {
+void UnitTransfer::archive(StateArchive& a, int max_units, std::size_t bodies, ContactTracker& tracker) {
   const auto count = static_cast<std::size_t>(max_units);
   a.list(units, count, [&](int& unit) {
     a.index(unit, count);

@@ -19,7 +19,7 @@
 namespace tactus::sim {
 
 // Units that change groups, with their states and contacts.
-struct Handover {
+struct UnitTransfer {
   std::vector<int> units;  // ascending
   std::vector<impulse::UnitState> states;
   std::vector<LiveContact> contacts;
@@ -37,7 +37,7 @@ struct VisualTask {
   std::int64_t number = 0;     // of the step
   sync::Nanoseconds length{};  // of the step
   sync::Nanoseconds missed{};  // length of the previous step, at whose beginning the entering units left the haptic group
-  Handover enters;             // their state at that time
+  UnitTransfer enters;             // their state at that time
   std::vector<int> leaves;     // units that are now in the haptic group
   std::vector<impulse::SceneChange> changes;  // valid from the beginning of the step on
 

@@ -7,10 +7,10 @@ namespace tactus::sim {
 void EventRepeater::add(const std::vector<contact_event_t>& events, sync::SimTime now) {
   for (const contact_event_t& e : events) {
     if (events_.size() >= kMax) {
-      const auto most_sent = std::max_element(events_.begin(), events_.end(),
+      const auto max_sent = std::max_element(events_.begin(), events_.end(),
                                               [](const RepeatedEvent& a, const RepeatedEvent& b) { return a.sent < b.sent; });
-      if (most_sent->sent == 0) ++overflow_;
-      events_.erase(most_sent);
+      if (max_sent->sent == 0) ++overflow_;
+      events_.erase(max_sent);
     }
     events_.push_back({e, now, 0});
   }

@@ -11,7 +11,7 @@
 namespace tactus::sim {
 
 // Adds one sentence per unsupported or repaired element to `warnings`: "FILE:LINE: XML path ...". Throws
-// std::runtime_error with one sentence, "FILE:LINE: what is wrong and what to do", when the file is invalid.
+// std::runtime_error with one sentence, "FILE:LINE: problem: remedy", when the file is invalid.
 WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace tactus::sim

@@ -75,7 +75,7 @@ void SdfFiles::check_version(const tinyxml2::XMLElement& root, const std::string
   if (!major || !std::all_of(version.begin() + 2, version.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
     throw std::runtime_error(here + ": <sdf version=\"" + version + "\"> is not a supported version of SDF: use 1.4 to 1.9");
   if (version.size() > 3)
-    warnings_.push_back(here + ": <sdf version=\"" + version + "\"> is newer than 1.9: what is new in it is not supported");
+    warnings_.push_back(here + ": <sdf version=\"" + version + "\"> is newer than 1.9: its new elements are not supported");
 }
 
 void SdfFiles::scan(const fs::path& file, const std::string& from, std::vector<fs::path> chain) {

@@ -66,15 +66,15 @@ TEST_CASE("An event of a visual step is published in the tick in which it happen
   add_floor(w, 0.5, 0.8);
   for (int i = 0; i < 8; ++i) add_ball(w, 0.2, 0.05, {0.3 * i, 0, 0.5 - 0.004 * i}, 0.5, 0.8);
   Dual d(w);
-  std::size_t told = 0;
+  std::size_t seen = 0;
   for (int i = 0; i < 1500; ++i) {
     d.tick();
-    for (; told < d.events.size(); ++told) {
-      CHECK(d.events[told].time_ns <= d.ticks * 1'000'000);
-      CHECK(d.events[told].time_ns > (d.ticks - 1) * 1'000'000);
+    for (; seen < d.events.size(); ++seen) {
+      CHECK(d.events[seen].time_ns <= d.ticks * 1'000'000);
+      CHECK(d.events[seen].time_ns > (d.ticks - 1) * 1'000'000);
     }
   }
-  CHECK(told > 30);
+  CHECK(seen > 30);
 }
 
 TEST_CASE("Bodies at rest change groups without a begin or an end event") {
@@ -123,7 +123,7 @@ TEST_CASE("The same ticks give the same world to the bit, for any motion of the 
   CHECK(run() == run());
 }
 
-TEST_CASE("A restored state continues identically to the bit, whatever happened since") {
+TEST_CASE("A restored state continues identically to the bit, regardless of the steps since") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
   for (int i = 0; i < 12; ++i) add_ball(w, 0.2, 0.03, {0.08 * (i % 4), 0.08 * (i / 4), 0.1 + 0.03 * i}, 0.4, 0.5);

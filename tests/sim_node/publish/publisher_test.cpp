@@ -70,7 +70,7 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
   std::map<std::int64_t, std::unordered_map<int, int>> seen_bodies, seen_contacts;
   std::map<std::int64_t, int> world_of, contacts_of;
   float rate = 0;
-  int wrong = 0, largest = 0, most_slow = 0;
+  int wrong = 0, largest = 0, max_slow = 0;
   for (int i = 0; i < kTicks; ++i) {
     const sync::SimTime now = sync::sim_time(i * std::int64_t{1'000'000});
     publisher.publish({now, &models, &none, &tool, {bodies, contacts}}, {now, sync::host_time(5'000'000'000 + i * std::int64_t{1'000'000}), 1});
@@ -99,10 +99,10 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
       for (const contact_t& c : m->message.contacts) ++seen_contacts[m->message.header.sim_time_ns][static_cast<int>(c.contact_id)];
     }
     while (const auto m = wire.touch.pop()) count(m->message);
-    most_slow = std::max(most_slow, slow);
+    max_slow = std::max(max_slow, slow);
   }
   CHECK(wrong == 0);
-  CHECK(most_slow <= 2);
+  CHECK(max_slow <= 2);
   CHECK(largest <= static_cast<int>(channels::kMaxMessageBytes));
   CHECK(wire.bus.refused() == 0);
   for (const auto* inbox : {static_cast<sync::InboxBase*>(&wire.world), static_cast<sync::InboxBase*>(&wire.contacts)}) {

@@ -313,8 +313,8 @@ TEST_CASE("A map drives a number that can be changed, within its bounds, and doe
   CHECK_THAT(map("from='force' to='visual_node.exposure'"), Catch::Contains("NODE.NAME"));
   CHECK_THAT(map("from='a.b'"), Catch::Contains("to"));
   CHECK_THAT(map("from='a.b' to='nose_node.exposure'"), Catch::Contains("no such node"));
-  CHECK_THAT(map("from='a.b' to='visual_node.width'"), Catch::Contains("exposure"));  // what there is instead
-  CHECK_THAT(map("from='a.b' to='visual_node.overlay'"), Catch::Contains("no number"));
+  CHECK_THAT(map("from='a.b' to='visual_node.width'"), Catch::Contains("exposure"));  // a possible setting
+  CHECK_THAT(map("from='a.b' to='visual_node.overlay'"), Catch::Contains("not a number"));
   CHECK_THAT(map("from='a.b' to='haptic_node.force_limit' high='20N'"), Catch::Contains("high"));
   CHECK_THAT(map("from='a.b' to='visual_node.exposure' low='3' high='2'"), Catch::Contains("low"));
   CHECK_THAT(map("from='a.b' to='visual_node.exposure' gian='3'"), Catch::Contains("gian"));

@@ -62,12 +62,12 @@ using Path = std::function<Vector3d(double)>;
 std::uint64_t run(Simulation& s, Hand& hand, const Path& path, int steps) {
   Hash h;
   for (int i = 0; i < steps; ++i) {
-    std::vector<tool_state_t> news;
+    std::vector<tool_state_t> new_messages;
     if (!s.touch_models().empty()) {
       const std::int64_t now_ns = sync::to_ns(s.now());
-      news.push_back(hand.tick(s.touch_models()[0], path(now_ns * 1e-9), now_ns));
+      new_messages.push_back(hand.tick(s.touch_models()[0], path(now_ns * 1e-9), now_ns));
     }
-    s.step(news);
+    s.step(new_messages);
     add_step(h, s);
   }
   return h.value;

@@ -110,7 +110,7 @@ TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:loo
   const look_t look = w.looks.at(0);
   CHECK(look.colour_map == hash(picture(1)));
   CHECK(look.normal_map == hash(picture(3)));
-  CHECK(look.shader == "normal_mapped");  // nobody named one: the one that shows what there is
+  CHECK(look.shader == "normal_mapped");  // no name given: the one that shows all attributes
   const look_t own = look_of("", "<tactus:look colour_map='b.png' normal_map=''/>" + material);
   CHECK(own.colour_map == hash(picture(2)));
   CHECK(own.normal_map == 0);
