@@ -65,18 +65,18 @@ void add_collisions(LoadContext& context, const sdf::Link& link, int body, int m
 // A body with visuals but no collision gets the bounding box of its visuals, and every plane among them.
 void add_bounding_box(LoadContext& context, std::size_t first_visual, int body, int material) {
   ShapeDef box;
-  Eigen::AlignedBox3d around;
+  Eigen::AlignedBox3d bounding_box;
   for (std::size_t i = first_visual; i < context.world.visuals.size(); ++i) {
     const ShapeDef& shape = context.world.visuals[i].shape;
-    around.extend(bounds(context.world, shape));
+    bounding_box.extend(bounds(context.world, shape));
     if (shape.kind == ShapeKind::kPlane) box = shape;
     if (material < 0) material = shape.material;
   }
   box.name = "bounding_box", box.body = body;
-  if (!around.isEmpty()) {
+  if (!bounding_box.isEmpty()) {
     box.kind = ShapeKind::kBox;
-    box.pose = Eigen::Translation3d(around.center()) * Eigen::Isometry3d::Identity();
-    box.size_m = around.sizes().cwiseMax(1e-4);  // a flat mesh has no thickness
+    box.pose = Eigen::Translation3d(bounding_box.center()) * Eigen::Isometry3d::Identity();
+    box.size_m = bounding_box.sizes().cwiseMax(1e-4);  // a flat mesh has no thickness
   }
   read_surface(context, nullptr, material, box);
   context.world.shapes.push_back(box);

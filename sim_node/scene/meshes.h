@@ -22,11 +22,11 @@ struct NamedMesh {
 NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element);
 
 // The whole file as one mesh, for collision; returns its index in WorldDef::meshes.
-int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
+int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
 
 // The mesh for display: the parts with these materials, with tangents where a picture is mapped onto them, subdivided
 // `subdivide` times.
-int seen_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
+int display_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
               const sdf::Element& element);
 
 // Index of the material that the file names, else `otherwise`.

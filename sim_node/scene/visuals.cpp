@@ -37,13 +37,13 @@ Eigen::Vector3d colour(const LoadContext& context, const sdf::Element& element, 
 struct Appearance {
   VisualDef def;
   bool coloured = false;  // SDF defines the colours; those of the mesh file are ignored
-  LookWords look;
+  LookAttributes look;
 };
 
 
 // The maps of <pbr>, for both of its workflows.
-LookWords read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
-  LookWords words;
+LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
+  LookAttributes words;
   const sdf::ElementPtr pbr = written(material, "pbr");
   sdf::ElementPtr workflow = written(pbr, "metal");
   if (!workflow) workflow = written(pbr, "specular");
@@ -97,13 +97,13 @@ Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int bo
   Appearance a;
   a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
   a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look_words(context, *look);
+  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look(context, *look);
   read_material(context, from, a);
   return a;
 }
 
 // A colour map without a colour is shown unchanged.
-void finish(LoadContext& context, Appearance& a) {
+void complete_appearance(LoadContext& context, Appearance& a) {
   if (!a.coloured && a.look.colour_map.value_or(0) != 0) a.def.diffuse = a.def.ambient = Eigen::Vector3d::Ones();
   a.def.look = look_index(context.world, a.look);
 }
@@ -131,7 +131,7 @@ std::optional<std::int64_t> picture_of_file(LoadContext& context, const sdf::Ele
 }
 
 // Adds the values of the file that SDF does not define.
-Appearance with_file(LoadContext& context, const sdf::Element& element, const NamedMesh& named, const LookWords& file_look,
+Appearance with_file_appearance(LoadContext& context, const sdf::Element& element, const NamedMesh& named, const LookAttributes& file_look,
                      int material, Appearance a) {
   a.look.add(file_look);
   if (material >= 0 && static_cast<std::size_t>(material) < named.parts->materials.size()) {
@@ -146,7 +146,7 @@ Appearance with_file(LoadContext& context, const sdf::Element& element, const Na
     if (!a.look.colour_map) a.look.colour_map = picture_of_file(context, element, named, m.colour_map, PictureUse::kColour);
     if (!a.look.normal_map) a.look.normal_map = picture_of_file(context, element, named, m.normal_map, PictureUse::kDirections);
   }
-  finish(context, a);
+  complete_appearance(context, a);
   return a;
 }
 
@@ -173,24 +173,24 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
   ShapeDef& shape = appearance.def.shape;
   shape.kind = ShapeKind::kMesh;
   if (shape.material < 0) shape.material = material_of_file(context, named, -1);
-  LookWords file_look;
-  if (!named.parts->look.empty()) file_look = read_look_words(context, *element_of("tactus:look", named.parts->look, named.file));
+  LookAttributes file_look;
+  if (!named.parts->look.empty()) file_look = read_look(context, *element_of("tactus:look", named.parts->look, named.file));
 
   // Materials with equal appearance are merged.
-  std::set<int> met;
+  std::set<int> seen;
   std::vector<std::pair<VisualDef, std::set<int>>> kinds;
   for (const MeshPart& part : named.parts->parts) {
-    if (!is_chosen(part, named.choice) || part.indices.empty() || !met.insert(part.material).second) continue;
-    const VisualDef def = with_file(context, element, named, file_look, part.material, appearance).def;
+    if (!is_chosen(part, named.choice) || part.indices.empty() || !seen.insert(part.material).second) continue;
+    const VisualDef def = with_file_appearance(context, element, named, file_look, part.material, appearance).def;
     const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind.first, def); });
     if (known != kinds.end()) known->second.insert(part.material);
     else kinds.emplace_back(def, std::set<int>{part.material});
   }
-  if (kinds.empty()) whole_mesh(context, named, element);  // throws with the reason
+  if (kinds.empty()) collision_mesh(context, named, element);  // throws with the reason
   for (auto& [def, materials] : kinds) {
     // Without a look, texture coordinates are not needed, and the collision mesh is shared.
     const bool shared = kinds.size() == 1 && def.look < 0 && subdivide == 0;
-    def.shape.mesh = shared ? whole_mesh(context, named, element) : seen_mesh(context, named, materials, subdivide, element);
+    def.shape.mesh = shared ? collision_mesh(context, named, element) : display_mesh(context, named, materials, subdivide, element);
     context.world.visuals.push_back(def);
   }
 }
@@ -215,7 +215,7 @@ void add_visuals(LoadContext& context, const sdf::Link& link, int body, int mate
     const ShapeDef named = appearance.def.shape;
     appearance.def.shape = *shape;
     appearance.def.shape.name = named.name, appearance.def.shape.body = named.body, appearance.def.shape.material = named.material;
-    finish(context, appearance);
+    complete_appearance(context, appearance);
     context.world.visuals.push_back(appearance.def);
   }
 }

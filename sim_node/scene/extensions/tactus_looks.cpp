@@ -38,16 +38,16 @@ bool is_identifier(const std::string& name) {
 }
 
 void check_shader(const LoadContext& context, const sdf::Element& element, const std::string& name,
-                  const std::vector<std::string>& ours) {
+                  const std::vector<std::string>& known) {
   const auto& own = context.world.shaders;
   if (!is_identifier(name))
     context.refuse(element,
                    "names shader \"" + name + "\": it must be letters, digits and _, 64 at most, no digit first");
-  if (contains(ours, name) ||
+  if (contains(known, name) ||
       std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; }))
     return;
   std::string names;
-  for (const std::string& each : ours) names += (names.empty() ? "" : ", ") + each;
+  for (const std::string& each : known) names += (names.empty() ? "" : ", ") + each;
   for (const shader_t& each : own) names += ", " + each.name;
   context.warn(element, "names shader \"" + name +
                             "\", which is neither the scene's nor visual_node's: there are " + names +
@@ -87,8 +87,8 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
 }
 
 // Reads all attributes except the name.
-LookWords read_words(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
-  LookWords words;
+LookAttributes read_look_attributes(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
+  LookAttributes words;
   words.shader = attributes.text("shader");
   if (words.shader && !words.shader->empty()) check_shader(context, element, *words.shader, kSurfaceShaders);
   const auto picture = [&](const char* what, PictureUse use) -> std::optional<std::int64_t> {
@@ -104,7 +104,7 @@ LookWords read_words(LoadContext& context, const sdf::Element& element, Attribut
   return words;
 }
 
-const LookWords& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+const LookAttributes& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
   const auto known = context.look_of.find(name);
   if (known != context.look_of.end()) return *known->second;
   std::string names;
@@ -120,7 +120,7 @@ void read_look(LoadContext& context, const sdf::Element& element) {
   if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
     context.refuse(element, "has a name that is longer than 64 characters or not printable ASCII");
   const auto base = attributes.text("base");
-  auto words = std::make_shared<LookWords>(read_words(context, element, attributes));
+  auto words = std::make_shared<LookAttributes>(read_look_attributes(context, element, attributes));
   attributes.done();
   if (base) words->add(known_look(context, element, *base));
   words->name = name;
@@ -197,7 +197,7 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
 
 }  // namespace
 
-void LookWords::add(const LookWords& others) {
+void LookAttributes::add(const LookAttributes& others) {
   if (name.empty()) name = others.name;
   if (!shader) shader = others.shader;
   if (!colour_map) colour_map = others.colour_map;
@@ -217,16 +217,16 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
   each("tactus:environment", read_environment);
 }
 
-LookWords read_look_words(LoadContext& context, const sdf::Element& element) {
+LookAttributes read_look(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const auto name = attributes.text("name");
-  LookWords words = read_words(context, element, attributes);
+  LookAttributes words = read_look_attributes(context, element, attributes);
   attributes.done();
   if (name) words.add(known_look(context, element, *name));
   return words;
 }
 
-int look_index(WorldDef& world, const LookWords& words) {
+int look_index(WorldDef& world, const LookAttributes& words) {
   if (words.empty()) return -1;
   look_t look{};
   look.colour_map = words.colour_map.value_or(0), look.normal_map = words.normal_map.value_or(0);

@@ -8,7 +8,7 @@
 namespace tactus::sim {
 
 // A look from <tactus:look>, from <pbr> of SDF or from a mesh file; missing values come from the next source.
-struct LookWords {
+struct LookAttributes {
   std::string name;
   std::optional<std::string> shader;
   std::optional<std::int64_t> colour_map, normal_map;  // 0: explicitly none
@@ -17,7 +17,7 @@ struct LookWords {
 
   bool empty() const { return !shader && !colour_map && !normal_map && !reflectance && !uniforms; }
   // Fills in the values that are missing here.
-  void add(const LookWords& others);
+  void add(const LookAttributes& others);
 };
 
 // Reads the shaders, looks, passes and environment of <world>. Rejects invalid values, and warns of a shader that
@@ -25,9 +25,9 @@ struct LookWords {
 void read_looks(LoadContext& context, const sdf::ElementPtr& world);
 
 // Reads the <tactus:look> of a visual: its own attributes, and those of the named look of the world.
-LookWords read_look_words(LoadContext& context, const sdf::Element& element);
+LookAttributes read_look(LoadContext& context, const sdf::Element& element);
 
 // Index of that look in the world, without duplicates; -1: empty look.
-int look_index(WorldDef& world, const LookWords& words);
+int look_index(WorldDef& world, const LookAttributes& words);
 
 }  // namespace tactus::sim

@@ -29,8 +29,8 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
 // Height map: picture, size of one repetition, and height; all three or none.
 void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("bump")) {
-    for (const char* lonely : {"bump_size", "bump_height"})
-      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without bump: name the picture too");
+    for (const char* key : {"bump_size", "bump_height"})
+      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without bump: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("bump");
@@ -43,8 +43,8 @@ void read_bump(LoadContext& context, const sdf::Element& element, Attributes& at
 // Friction map: picture, size of one repetition, and the factors of black and white; all three or none.
 void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("friction_map")) {
-    for (const char* lonely : {"friction_size", "friction_factors"})
-      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without friction_map: name the picture too");
+    for (const char* key : {"friction_size", "friction_factors"})
+      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without friction_map: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("friction_map");

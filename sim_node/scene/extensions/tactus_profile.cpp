@@ -33,7 +33,7 @@ std::string tag(const std::string& name, const sdf::Element& element) {
 }
 
 // A hint when a model is named without its link; "": no such model.
-std::string body_meant(const WorldDef& world, const std::string& name) {
+std::string suggest_body(const WorldDef& world, const std::string& name) {
   for (const BodyDef& body : world.bodies)
     if (body.name.starts_with(name + "::")) return "; is \"" + body.name + "\" meant?";
   return "";
@@ -55,7 +55,7 @@ void check_names(const LoadContext& context, const sdf::Element& element, const 
                                         [&](const BodyDef& body) { return body.name == name; }))
         context.refuse(element, "is invalid: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
                                     "\": there is no body \"" + name + "\" in this scene" +
-                                    body_meant(world, name));
+                                    suggest_body(world, name));
   }
 }
 
@@ -64,7 +64,7 @@ void refuse_text(const LoadContext& context, const sdf::Element& element) {
     context.refuse(element, "has text in it, which has no meaning here: remove it");
 }
 
-sync::Profile checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
+sync::Profile parse_checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
   try {
     return sync::parse_profile(xml, "");
   } catch (const std::invalid_argument& e) {
@@ -101,7 +101,7 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     return;
   }
   refuse_text(context, *element);
-  checked(context, *element, tag("profile", *element) + "/>");
+  parse_checked(context, *element, tag("profile", *element) + "/>");
   std::string rules;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (child->GetName() != "tactus:degrade")
@@ -110,11 +110,11 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     refuse_text(context, *child);
     if (child->GetFirstElement())
       context.refuse(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
-    check_names(context, *child, checked(context, *child, "<profile>" + rule + "</profile>"), "");
+    check_names(context, *child, parse_checked(context, *child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
-  checked(context, *element, context.world.profile);
+  parse_checked(context, *element, context.world.profile);
   if (context.world.profile.size() > sync::kMaxProfileBytes)
     context.refuse(*element, "is longer than 64 kB: leave out what it does not need");
 }

@@ -141,7 +141,7 @@ MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
 }
 
 // Assimp adds a default material to a file without materials; ignore it.
-bool made_up(const MeshMaterial& m) {
+bool is_default_material(const MeshMaterial& m) {
   return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
 }
 
@@ -169,7 +169,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file) {
   std::vector<int> renamed;
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
     MeshMaterial material = read(*scene, *scene->mMaterials[m]);
-    renamed.push_back(made_up(material) ? -1 : static_cast<int>(mesh.materials.size()));
+    renamed.push_back(is_default_material(material) ? -1 : static_cast<int>(mesh.materials.size()));
     if (renamed.back() >= 0) mesh.materials.push_back(std::move(material));
   }
   for (MeshPart& part : mesh.parts)

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // An option, the attribute of docs/scene_format.md that it sets, and whether its value is a file name.
-struct Word {
+struct PropertyOption {
   const char* option;
   const char* attribute;
   bool of_look, is_file;
@@ -25,7 +25,7 @@ struct Word {
   std::string value = {};
 };
 
-std::vector<Word> words() {
+std::vector<PropertyOption> property_options() {
   return {{"--material", "base", false, false, "its material, for example steel"},
           {"--bump", "bump", false, true, "height map, a grey PNG"},
           {"--bump-size", "bump_size", false, false, "size of one repetition, for example \"0.16m 0.16m\""},
@@ -48,14 +48,14 @@ void refuse(const std::string& sentence) { throw std::runtime_error(sentence); }
 int main(int argc, char** argv) try {
   std::string in, out;
   bool force = false;
-  std::vector<Word> given = words();
+  std::vector<PropertyOption> given = property_options();
   CLI::App app{"Reads OBJ, STL, PLY, 3DS, DAE, glTF and other formats of assimp, and writes glTF 2.0: positions, normals,\n"
                "tangents, texture coordinates, triangles and links to pictures, and the given properties in \"extras\". A scene that\n"
                "loads OUT uses these properties where it defines none itself. The file is read back and must be identical to the bit."};
   app.add_option("IN", in, "geometry file")->required();
   app.add_option("OUT", out, ".glb, or .gltf with its buffer inside")->required();
   app.add_flag("--force", force, "overwrite OUT when it exists");
-  for (Word& word : given) app.add_option(word.option, word.value, word.meaning);
+  for (PropertyOption& word : given) app.add_option(word.option, word.value, word.meaning);
   sync::parse_or_exit(app, "convert_geometry", argc, argv);
 
   std::string extension = fs::path(out).extension().string();
@@ -69,7 +69,7 @@ int main(int argc, char** argv) try {
   } catch (const std::exception& e) {
     refuse("\"" + in + "\" cannot be read: " + e.what());
   }
-  for (const Word& word : given) {
+  for (const PropertyOption& word : given) {
     if (word.value.empty()) continue;
     std::string value = word.value;
     if (word.is_file && !fs::path(value).is_absolute())

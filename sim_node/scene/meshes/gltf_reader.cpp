@@ -54,17 +54,17 @@ MeshMaterial read_material(const GltfDocument& document, const json& from) {
   const double roughness = std::clamp(number_of(pbr, "roughnessFactor", 1), 0.1, 1.0);
   m.shininess = static_cast<float>(std::clamp(2 / std::pow(roughness, 4) - 2, 1.0, 1e4));
   m.specular.setConstant(0.04f);
-  const json& ours = member_of(member_of(from, "extras"), "tactus");
-  m.specular = colour(ours, "specular", m.specular);
-  m.shininess = std::clamp(static_cast<float>(number_of(ours, "shininess", m.shininess)), 1.0f, 1e4f);
+  const json& extras = member_of(member_of(from, "extras"), "tactus");
+  m.specular = colour(extras, "specular", m.specular);
+  m.shininess = std::clamp(static_cast<float>(number_of(extras, "shininess", m.shininess)), 1.0f, 1e4f);
   m.colour_map = picture(document, member_of(pbr, "baseColorTexture"));
   m.normal_map = picture(document, member_of(from, "normalTexture"));
   return m;
 }
 
-Properties read_properties(const json& ours, const char* member) {
+Properties read_properties(const json& extras, const char* member) {
   Properties properties;
-  const json& from = member_of(ours, member);
+  const json& from = member_of(extras, member);
   if (!from.is_object()) return properties;
   for (const auto& [name, value] : from.items())
     if (value.is_string() && value.get_ref<const std::string&>().size() <= kMaxPropertyBytes &&
@@ -123,7 +123,7 @@ void place(MeshPart& part, const Eigen::Affine3d& pose) {
 struct Reader {
   const GltfDocument& document;
   MeshParts mesh;
-  std::set<int> met;  // nodes visited: each node is used once
+  std::set<int> visited;  // nodes visited: each node is used once
   std::size_t corners = 0;
 
   MeshPart read_part(const json& primitive) {
@@ -164,14 +164,14 @@ struct Reader {
   }
 
   void add(int index, const Eigen::Affine3d& parent, int depth) {
-    if (depth > 256 || !met.insert(index).second)
+    if (depth > 256 || !visited.insert(index).second)
       throw std::runtime_error("its nodes are not a tree, or the tree is too deep");
     const json& node = document.entry("nodes", index);
     const Eigen::Affine3d pose = parent * pose_of(node);
-    read_ours(node);
+    read_tactus_extras(node);
     if (const int number = index_of(node, "mesh"); number >= 0) {
       const json& from = document.entry("meshes", number);
-      read_ours(from);
+      read_tactus_extras(from);
       for (const json& primitive : member_of(from, "primitives")) {
         const double mode = number_of(primitive, "mode", 4);
         if (mode != 4 && mode != 5 && mode != 6) continue;  // points and lines
@@ -185,10 +185,10 @@ struct Reader {
   }
 
   // Of several entries, the first applies to the whole file, because it is one object.
-  void read_ours(const json& of) {
-    const json& ours = member_of(member_of(of, "extras"), "tactus");
-    if (mesh.material.empty()) mesh.material = read_properties(ours, "material");
-    if (mesh.look.empty()) mesh.look = read_properties(ours, "look");
+  void read_tactus_extras(const json& of) {
+    const json& extras = member_of(member_of(of, "extras"), "tactus");
+    if (mesh.material.empty()) mesh.material = read_properties(extras, "material");
+    if (mesh.look.empty()) mesh.look = read_properties(extras, "look");
   }
 
   static Eigen::Affine3d pose_of(const json& node) {

@@ -108,7 +108,7 @@ struct Writer {
     document["materials"].push_back(material);
   }
 
-  void add_part(const MeshPart& part, const json& ours) {
+  void add_part(const MeshPart& part, const json& extras) {
     const std::vector<std::uint32_t> corners(part.indices.begin(), part.indices.end());
     json primitive;
     primitive["attributes"] = add_attributes(part);
@@ -119,7 +119,7 @@ struct Writer {
     if (!part.mesh.empty()) mesh["name"] = part.mesh;
     if (!part.node.empty()) node["name"] = part.node;
     node["mesh"] = document["meshes"].size();
-    if (!ours.is_null()) node["extras"]["tactus"] = ours;
+    if (!extras.is_null()) node["extras"]["tactus"] = extras;
     document["scenes"][0]["nodes"].push_back(document["nodes"].size());
     document["meshes"].push_back(mesh);
     document["nodes"].push_back(node);
@@ -143,11 +143,11 @@ void append_chunk(sync::Bytes& out, std::uint32_t kind, const std::uint8_t* data
 sync::Bytes write_gltf(const MeshParts& mesh, bool packed) {
   Writer writer;
   for (const MeshMaterial& material : mesh.materials) writer.add_material(material);
-  json ours;
-  if (!mesh.material.empty()) ours["material"] = mesh.material;
-  if (!mesh.look.empty()) ours["look"] = mesh.look;
+  json extras;
+  if (!mesh.material.empty()) extras["material"] = mesh.material;
+  if (!mesh.look.empty()) extras["look"] = mesh.look;
   for (const MeshPart& part : mesh.parts)
-    if (!part.positions_m.empty()) writer.add_part(part, ours);
+    if (!part.positions_m.empty()) writer.add_part(part, extras);
   json buffer = {{"byteLength", writer.buffer.size()}};
   if (!packed) buffer["uri"] = "data:application/octet-stream;base64," + encode_base64(writer.buffer);
   writer.document["buffers"].push_back(buffer);

@@ -37,10 +37,10 @@ bool is_chosen(const MeshPart& part, const MeshChoice& choice) {
 
 TriangleMesh join_parts(const MeshParts& parts, const MeshChoice& choice, const std::set<int>* only) {
   TriangleMesh mesh;
-  Eigen::AlignedBox3d around;
+  Eigen::AlignedBox3d bounding_box;
   for (const MeshPart& part : parts.parts) {
     if (!is_chosen(part, choice)) continue;
-    for (const auto& p : part.positions_m) around.extend(p.cast<double>());
+    for (const auto& p : part.positions_m) bounding_box.extend(p.cast<double>());
     if (!only || only->contains(part.material)) append(part, mesh);
   }
   if (mesh.indices.empty())
@@ -48,7 +48,7 @@ TriangleMesh join_parts(const MeshParts& parts, const MeshChoice& choice, const 
   if (mesh.texcoords.size() != mesh.vertices.size()) mesh.texcoords.clear();
   if (mesh.tangents.size() != mesh.vertices.size()) mesh.tangents.clear();
   if (choice.centre)
-    for (Eigen::Vector3d& v : mesh.vertices) v -= around.center();
+    for (Eigen::Vector3d& v : mesh.vertices) v -= bounding_box.center();
   scale_by(choice.scale, mesh);
   remove_degenerate(mesh);
   if (mesh.indices.empty()) throw std::runtime_error("all its triangles have zero area");

@@ -142,7 +142,7 @@ Surface refined(Surface s) {
 }
 
 // One vertex for each point, each side of its sharp edges and each texture coordinate.
-TriangleMesh finished(const Surface& s) {
+TriangleMesh to_mesh(const Surface& s) {
   std::vector<Index> leader(s.corners.size());
   std::iota(leader.begin(), leader.end(), Index{0});
   const auto find = [&](Index c) {
@@ -183,7 +183,7 @@ TriangleMesh subdivide(const TriangleMesh& mesh, int times) {
                              " triangles: subdivide it less often");
   Surface surface = weld(mesh);
   for (int i = 0; i < times; ++i) surface = refined(std::move(surface));
-  return finished(surface);
+  return to_mesh(surface);
 }
 
 }  // namespace tactus::sim

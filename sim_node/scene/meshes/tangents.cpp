@@ -9,7 +9,7 @@ namespace {
 using Index = std::size_t;
 
 // Any direction in the plane of the surface, where the texture coordinates give none.
-Eigen::Vector3d beside(const Eigen::Vector3d& n) {
+Eigen::Vector3d perpendicular(const Eigen::Vector3d& n) {
   const Eigen::Vector3d axis = std::abs(n.x()) < 0.8 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   return (axis - n * n.dot(axis)).stableNormalized();
 }
@@ -50,7 +50,7 @@ void make_tangents(MeshPart& part) {
   for (Index c = 0; c < mirrored.size() * 3; ++c) used[static_cast<Index>(mirrored[c / 3])][at(c)] = 1;
   const auto tangent = [&](Index v, int side) {
     const Eigen::Vector3d n = part.normals[v].cast<double>(), sum = sums[side][v];
-    const Eigen::Vector3f t = (sum.norm() > 1e-9 ? sum.normalized() : beside(n)).cast<float>();
+    const Eigen::Vector3f t = (sum.norm() > 1e-9 ? sum.normalized() : perpendicular(n)).cast<float>();
     return Eigen::Vector4f(t.x(), t.y(), t.z(), side ? -1.0f : 1.0f);
   };
   std::vector<int> twin(count, -1);

@@ -15,7 +15,7 @@
 namespace tactus::sim {
 
 struct MeshParts;
-struct LookWords;
+struct LookAttributes;
 
 struct LoadContext {
   const SdfFiles& files;
@@ -28,7 +28,7 @@ struct LoadContext {
   Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
   std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
   std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
-  std::map<std::string, std::shared_ptr<const LookWords>> look_of = {};     // name -> definition in <world>
+  std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
 
   // "FILE:LINE: sentence"
   [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;

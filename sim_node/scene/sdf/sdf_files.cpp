@@ -62,10 +62,10 @@ SdfFiles::SdfFiles(const fs::path& file, std::vector<std::string>& warnings)
 }
 
 std::string SdfFiles::where(const std::string& file, int line) const {
-  fs::path shown = file;
-  const fs::path inside = shown.lexically_relative(main_.parent_path());
-  if (!inside.empty()) shown = shown_folder_ / inside;
-  return shown.string() + (line > 0 ? ":" + std::to_string(line) : "");
+  fs::path display_path = file;
+  const fs::path inside = display_path.lexically_relative(main_.parent_path());
+  if (!inside.empty()) display_path = shown_folder_ / inside;
+  return display_path.string() + (line > 0 ? ":" + std::to_string(line) : "");
 }
 
 void SdfFiles::check_version(const tinyxml2::XMLElement& root, const std::string& here) {
@@ -79,19 +79,19 @@ void SdfFiles::check_version(const tinyxml2::XMLElement& root, const std::string
 }
 
 void SdfFiles::scan(const fs::path& file, const std::string& from, std::vector<fs::path> chain) {
-  const std::string whence = from.empty() ? "" : ", included by " + from;
+  const std::string included_by = from.empty() ? "" : ", included by " + from;
   if (std::find(chain.begin(), chain.end(), file) != chain.end())
     throw std::runtime_error(from + ": includes \"" + file.filename().string() +
                              "\", which includes this again: break the circle");
   if (documents_.contains(file)) return;
   auto& document = documents_[file] = std::make_unique<tinyxml2::XMLDocument>();
   if (document->LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)
-    throw std::runtime_error(where(file, document->ErrorLineNum()) + ": this is not well-formed XML" + whence + ": " +
+    throw std::runtime_error(where(file, document->ErrorLineNum()) + ": this is not well-formed XML" + included_by + ": " +
                              document->ErrorStr());
   const tinyxml2::XMLElement* root = document->RootElement();
   if (!root || std::string(root->Value()) != "sdf")
     throw std::runtime_error(where(file, root ? root->GetLineNum() : 1) +
-                             ": the outermost element must be <sdf version=\"1.9\">" + whence);
+                             ": the outermost element must be <sdf version=\"1.9\">" + included_by);
   check_version(*root, where(file, root->GetLineNum()));
 
   for (const fs::path& folder : {file.parent_path(), file.parent_path() / "models", file.parent_path().parent_path()})
