@@ -113,10 +113,10 @@ TEST_CASE("A file that is not a scene is refused in one sentence") {
 }
 
 TEST_CASE("libsdformat's own message comes with the line, and nothing is printed") {
-  std::ostringstream heard;
-  std::streambuf* before = std::cerr.rdbuf(heard.rdbuf());
+  std::ostringstream printed;
+  std::streambuf* before = std::cerr.rdbuf(printed.rdbuf());
   SceneFile file(world("<model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>"
-                       "<child>nobody</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
+                       "<child>no_such_link</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
   const std::string joint = file.refusal();
   file.write("scene.sdf", link("<inertial><mass>heavy</mass></inertial>"));
   const std::string mass = file.refusal();
@@ -125,11 +125,11 @@ TEST_CASE("libsdformat's own message comes with the line, and nothing is printed
   file.write("scene.sdf", world("<model>\n</model>"));
   const std::string nameless = file.refusal();
   std::cerr.rdbuf(before);
-  CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("nobody"));
+  CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no_such_link"));
   CHECK_THAT(mass, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("heavy"));
   CHECK_THAT(twice, Catch::StartsWith("scene.sdf:") && Catch::Contains("a"));
   CHECK_THAT(nameless, Catch::StartsWith("scene.sdf:3: "));
-  CHECK(heard.str() == "");
+  CHECK(printed.str() == "");
 }
 
 TEST_CASE("A file that contains only a model is a world of one model") {
