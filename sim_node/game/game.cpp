@@ -27,7 +27,7 @@ void Game::step(sync::SimTime now, std::span<const BodyMotion> bodies) {
       h.candidate = found;
       h.since = now;
     }
-    const int inside = found == h.inside || now - h.since >= kSettles || found < 0 ? found : -1;
+    const int inside = found == h.inside || now - h.since >= kSettlingTime || found < 0 ? found : -1;
     changed_ = changed_ || inside != h.inside;
     h.inside = inside;
     all = all && inside == h.def.ball;

@@ -15,7 +15,7 @@ namespace tactus::sim {
 class Game {
  public:
   // A body counts as in a hole after this time, so that a body that bounces out does not count.
-  static constexpr sync::Nanoseconds kSettles{100'000'000};
+  static constexpr sync::Nanoseconds kSettlingTime{100'000'000};
 
   explicit Game(std::vector<HoleDef> holes);
 
