@@ -13,8 +13,8 @@
 namespace tactus::sim {
 
 void Publisher::publish_events(const StepView& view, const sim_clock_t& clock) {
-  young_.add(*view.events, pace_);
-  const std::vector<contact_event_t>& due = young_.due(pace_);
+  repeater_.add(*view.events, pace_);
+  const std::vector<contact_event_t>& due = repeater_.due(pace_);
   if (due.empty()) return;
   const auto pages = paged(due, empty_size<contact_events_t>());
   for (std::size_t page = 0; page < pages.size(); ++page) {

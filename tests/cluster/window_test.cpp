@@ -150,7 +150,7 @@ TEST_CASE(
   c.x({"key", "space"});
   CHECK(c.hear_until([&] { return c.rate > 0; }));
   const std::string said = c.processes.said("visual_node");
-  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("as at its first instant"));
+  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
 
   c.x({"key", "F11"});
   c.ear.listen(1);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <tactus/contact_t.hpp>
+#include <tactus/material_def_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/contact_patch.h"

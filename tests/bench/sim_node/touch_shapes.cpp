@@ -185,7 +185,7 @@ class Bench {
     put();
     for (const Vector3d& way : scene_.ways)
       for (int k = 0; k < 60; ++k) {
-        probe.feel(sync::sim_time(m.header.sim_time_ns), bodies_, {&m, 1});
+        probe.update_at_rest(sync::sim_time(m.header.sim_time_ns), bodies_, {&m, 1});
         double gap = kMargin_m;
         for (const touch_plane_t& p : probe.model().planes) {
           const Vector3d n = to_eigen(p.normal);
