@@ -1,5 +1,5 @@
-// What becomes of the picture when the device that draws it is lost. The loss is injected: a display whose context
-// works, and which says that it does not.
+// Recovery from the loss of the graphics device. The loss is injected by a display that works and reports that it
+// is lost.
 #include "visual_node/gl/render_output.h"
 
 #include <catch2/catch.hpp>
@@ -55,7 +55,7 @@ struct Fragile {
 
 }  // namespace
 
-TEST_CASE("A device that was lost is opened again, and draws what was loaded as before") {
+TEST_CASE("A lost device is opened again and draws the loaded scene as before") {
   Fragile f;
   RenderOutput stage(f.settings, false, f.make());
   stage.load(f.view, f.list, f.settings);
@@ -65,13 +65,13 @@ TEST_CASE("A device that was lost is opened again, and draws what was loaded as 
   CHECK(f.opened == 1);
 
   f.trouble = "the graphics device was reset";
-  CHECK(stage.recover(at_s(2), &f.view, f.list) == "the graphics device was reset: draws on, with no window");
+  CHECK(stage.recover(at_s(2), &f.view, f.list) == "the graphics device was reset; drawing continues with no window");
   CHECK(f.opened == 2);
   CHECK(f.picture(stage) == before);
   CHECK(stage.recover(at_s(3), &f.view, f.list).empty());
 }
 
-TEST_CASE("A device that is lost before there is a scene is opened again too") {
+TEST_CASE("A device that is lost before the first scene is opened again too") {
   Fragile f;
   RenderOutput stage(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
@@ -79,7 +79,7 @@ TEST_CASE("A device that is lost before there is a scene is opened again too") {
   CHECK(stage.picture().width() == f.settings.width);
 }
 
-TEST_CASE("A window whose display server is gone is not opened again: its node draws on without it") {
+TEST_CASE("A window without a display server is not opened again, and drawing continues without it") {
   Fragile f;
   RenderOutput stage(f.settings, true, f.make());
   REQUIRE(stage.display().has_screen());
@@ -90,7 +90,7 @@ TEST_CASE("A window whose display server is gone is not opened again: its node d
 }
 
 TEST_CASE(
-    "A device that is lost again and again is given up in one sentence, one that is lost now and then is not") {
+    "A device that is lost repeatedly ends with one sentence, one that is lost rarely does not") {
   Fragile f;
   RenderOutput stage(f.settings, false, f.make());
   double now_s = 0;
@@ -107,7 +107,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(stage.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
 }
 
-TEST_CASE("A device that cannot be opened again ends the node with why, and with what was tried") {
+TEST_CASE("A device that cannot be opened again ends the node with the reason and the attempts") {
   Fragile f;
   f.may_open = 1;
   RenderOutput stage(f.settings, false, f.make());
@@ -117,7 +117,7 @@ TEST_CASE("A device that cannot be opened again ends the node with why, and with
                                                              Catch::Contains("tried nothing"));
 }
 
-TEST_CASE("A context that draws is not taken for lost, also after an error that is its own") {
+TEST_CASE("A working context does not count as lost, also after an OpenGL error of its own") {
   CHECK(display().lost().empty());
   Settings settings;
   Renderer renderer(64, 64, settings.shadow_size);
