@@ -77,8 +77,8 @@ using Counts = std::map<std::string_view, std::int64_t>;
 std::int64_t length(const Field& field, const Counts& counts, Walk& walk) {
   if (field.count.empty()) return 1;
   const auto fixed = whole(field.count);
-  const auto told = counts.find(field.count);
-  const std::int64_t n = fixed ? *fixed : told == counts.end() ? -1 : told->second;
+  const auto found = counts.find(field.count);
+  const std::int64_t n = fixed ? *fixed : found == counts.end() ? -1 : found->second;
   if (n < 0 || static_cast<std::uint64_t>(n) > walk.left()) return walk.fail(), 0;
   return n;
 }

@@ -29,14 +29,14 @@ TEST_CASE(
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
     AgreedDelay often, seldom;
-    int heard = 0;
+    int received = 0;
     std::vector<sync::Nanoseconds> asked;
     for (int i = 0; i < 40; ++i) asked.push_back(milliseconds(random() % 3 ? 20 : random() % 60));
     for (int frame = 0; frame < 230; ++frame) {
       const RoomTime due = kBegin + frame * sync::Nanoseconds(16'666'667), by = due - milliseconds(25);
       // PLAYOUT at 10 Hz; the first wall receives it some frames before the other.
-      for (; heard < 40 && kBegin + milliseconds(100) * heard <= due - milliseconds(5); ++heard)
-        often.request(kBegin + milliseconds(100) * heard, asked[static_cast<std::size_t>(heard)]);
+      for (; received < 40 && kBegin + milliseconds(100) * received <= due - milliseconds(5); ++received)
+        often.request(kBegin + milliseconds(100) * received, asked[static_cast<std::size_t>(received)]);
       const sync::Nanoseconds a = often.at(due, by);
       if (frame % 7) continue;
       for (int i = 0; i < 40 && kBegin + milliseconds(100) * i <= by; ++i)

@@ -71,7 +71,7 @@ struct Room {
       if (t % 1'000'000 == 0) {
         meanwhile(t);
         sim_ns += static_cast<std::int64_t>(1e6 * rate);
-        tell();
+        publish();
       }
       for (const auto& wall : walls) draw(*wall);
     }
@@ -91,7 +91,7 @@ struct Room {
     h.seq = seq;
     return h;
   }
-  void tell() {
+  void publish() {
     const std::int64_t ms = t / 1'000'000;
     if (ms % 17 == 0) {
       world_state_t w{};
@@ -270,7 +270,7 @@ TEST_CASE("A slow wall delays no other wall") {
 
 TEST_CASE("Without a room, with the lock off, and before the first message of sim_node, there is no lock") {
   sync::ClockMaps maps(kRun);
-  const auto locked = [&](const char* room, const char* mode, bool heard) {
+  const auto locked = [&](const char* room, const char* mode, bool received) {
     FrameLock lock({kRun, kSimClock, &maps}, "visual", 1);
     Settings s;
     s.room = room, s.frame_lock = mode;
@@ -279,7 +279,7 @@ TEST_CASE("Without a room, with the lock off, and before the first message of si
     w.header.run_id = kRun, w.header.clock = kSimClock, w.header.incarnation = 5,
     w.header.publish_time_ns = kBegin_ns;
     w.clock.host_ns = kBegin_ns, w.clock.rate = 1;
-    if (heard) lock.push(w, sync::host_time(kBegin_ns));
+    if (received) lock.push(w, sync::host_time(kBegin_ns));
     return lock.begin(sync::host_time(kBegin_ns + 50'000'000)).has_value();
   };
   CHECK(locked("cave4", "time", true));
