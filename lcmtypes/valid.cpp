@@ -79,17 +79,17 @@
 namespace tactus {
 namespace {
 
-using tactus::sane;  // of plausible.h, beside those of here
+using tactus::sane;  // from plausible.h, in addition to the overloads here
 
-// A minute: what is presented later than that is another event.
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
+// A minute: a later presentation cannot belong to the event.
 constexpr long kMaxDelay_ns = 60'000'000'000;
-constexpr double kMaxPush = 1e6;  // N or N m: beyond it nothing of a room withstands
-// No simulation runs faster: at this rate a second of it lies between two pictures.
+constexpr double kMaxPush = 1e6;  // N or N m: no object of a room withstands more
+// Limit of the real-time factor: at this rate 1.7 s of simulated time pass between two pictures.
 constexpr double kMaxSimRate = 100;
 
 bool sane_not_negative(double x) { return sane(x) && x >= 0; }
-bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // masses of fixed bodies are huge
+bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // the masses of fixed bodies are huge
 bool sane(const vec3_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
 bool sane(const vec3f_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
 
@@ -206,7 +206,7 @@ bool sane(const measured_mode_t& m) {
          m.damping_1_s < 2 * std::numbers::pi * m.frequency_Hz && finite_positive(m.amplitude);
 }
 bool sane(const material_def_t& m) {
-  // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
+  // Young's modulus of diamond is 1.2e12 Pa, above the general limit of magnitudes.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
          sane_not_negative(m.rayleigh_alpha_1_s) && sane_not_negative(m.rayleigh_beta_s) &&
          sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
@@ -257,7 +257,7 @@ bool all_sane(const List& list) {
     if (!sane(item)) return false;
   return true;
 }
-// Of a request and of its answer.
+// Common to a request and its answer.
 bool sane_policy(const auto& m) {
   return m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
          between(m.aligner, playout_t::FIXED, playout_t::VIRTUAL_TIME) && between(m.base_ns, 0, kMaxDelay_ns) &&
@@ -310,7 +310,7 @@ bool valid(const degradation_t& m) {
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
-  // A turn takes a minute at the most.
+  // A lock-step period is at most a minute.
   return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || (m.lockstep_Hz >= 1.0 / 60 && m.lockstep_Hz <= 1e4));
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }

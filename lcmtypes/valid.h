@@ -1,5 +1,5 @@
-// What a message must satisfy to be let in: finite numbers, counts and enumerations in range. A renderer behind this
-// border never meets a NaN. Sizes are checked before, by sync/bus/decode.h.
+// Validation of received messages: finite numbers, counts and enumerations in range. Code behind this border never
+// receives a NaN. sync/bus/decode.h checks the sizes first.
 #pragma once
 
 namespace tactus {

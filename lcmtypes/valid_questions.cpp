@@ -1,4 +1,4 @@
-// Of a study: what the participant is asked, and what he answers.
+// Validation of the questions and answers of a study.
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
 

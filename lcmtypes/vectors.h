@@ -1,4 +1,4 @@
-// Conversions between the wire's vectors and Eigen's.
+// Conversions between wire vectors and Eigen.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -11,7 +11,7 @@
 
 using namespace tactus;
 
-TEST_CASE("A scene whose measured modes cannot be is not let in") {
+TEST_CASE("A scene with invalid measured modes is rejected") {
   test::Samples samples(1);
   scene_t scene{};
   samples.fill(scene);

@@ -125,7 +125,7 @@ class Pictures {
   }
   void finish(Rendered& out) const {
     for (const contact_event_t& e : out.events) {
-      if (!visual::owed(e)) continue;
+      if (!visual::is_expected(e)) continue;
       ++out.visual.owed;
       if (const auto at = shown_.find(e.event_id); at != shown_.end())
         out.visual.error_s.push_back(at->second - 1e-9 * static_cast<double>(e.time_ns));

@@ -1,4 +1,4 @@
-"""Reads the cells at the lower left edge of a frame of visual_node; visual_node/frame/marker.h says how they are laid out.
+"""Reads the marker cells at the lower left edge of a frame of visual_node; frame/marker.h defines their layout.
 
   tactus --module tactus.log.marker video.mp4     one line per frame: index in the file, frame number, events that flash
 """
@@ -9,7 +9,7 @@ import numpy as np
 
 CELL, CELLS, ROWS = 4, 68, 12
 MOTION_ROWS = 4
-EVENT, MOTION = [1, 0, 1, 0], [0, 1, 1, 0]  # how a row begins
+EVENT, MOTION = [1, 0, 1, 0], [0, 1, 1, 0]  # first four cells of a row
 
 
 def _crc8(data):
@@ -23,12 +23,13 @@ def _crc8(data):
 
 
 def decode_row(frame, row, beginning=None):
-    """(frame number, low 32 bits of the event id, or of a row of another beginning what it holds) of one row of a luma picture (rows from the top), or None."""
+    """(frame number, payload) of one row of a luma picture (rows from the top), or None. Payload: low 32 bits of the event id, or as
+    the kind of row defines."""
     height, width = frame.shape
     y = height - CELL * (row + 1)
     if y < 0 or width < CELL * CELLS:
         return None
-    # The inner 2 x 2 pixels of each cell, which compression hurts least.
+    # The inner 2 x 2 pixels of each cell, which compression changes least.
     inner = frame[y + 1:y + 3, :CELL * CELLS].reshape(2, CELLS, CELL)[:, :, 1:3].astype(float)
     bits = (inner.mean(axis=(0, 2)) > 127).astype(np.uint8)
     if list(bits[:4]) != (beginning or EVENT):
@@ -61,7 +62,7 @@ def decode_frame(frame):
 
 
 def decode_motion(frame):
-    """{index of a tool: low 28 bits of the number of its newest report} of one frame; visual_node/frame/motion_marker.h says how it is laid out."""
+    """{index of a tool: low 28 bits of the sequence number of its newest TOOL_STATE} of one frame; frame/motion_marker.h defines the layout."""
     samples = {}
     for row in range(ROWS, ROWS + MOTION_ROWS):
         found = decode_row(frame, row, MOTION)
@@ -72,7 +73,7 @@ def decode_motion(frame):
 
 
 def frames_of(path):
-    """Its frames one after the other, luma (rows from the top), as ffmpeg decodes them."""
+    """Yields the frames of a video as luma (rows from the top), decoded by ffmpeg."""
     size = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v", "-show_entries", "stream=width,height",
                            "-of", "csv=p=0", path], check=True, capture_output=True, text=True).stdout
     width, height = (int(x) for x in size.strip().split(",")[:2])

@@ -1,4 +1,4 @@
-// How the poses of the bodies in the pictures were obtained, counted: a picture of what was received, or of what was foretold. Pure.
+// Counts how the poses of the drawn bodies were obtained: by reception, interpolation or prediction. Pure.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace tactus::visual {
 
-class HowCount {
+class SampleStatusCounts {
  public:
   void add(sync::SampleStatus status) { ++counts_[static_cast<std::size_t>(status)]; }
   std::int64_t of(sync::SampleStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
-  // One line, in percent of all; empty: there was none.
+  // One line, in percent of all; empty: no samples.
   std::string text() const {
     std::int64_t all = 0;
     for (const std::int64_t n : counts_) all += n;
@@ -26,7 +26,7 @@ class HowCount {
   }
 
  private:
-  std::array<std::int64_t, 6> counts_{};  // by sync::How
+  std::array<std::int64_t, 6> counts_{};  // by sync::SampleStatus
 };
 
 }  // namespace tactus::visual

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/desk.h"
+#include "visual_node/overlay/simulation_requests.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/body_def_t.hpp>
@@ -25,7 +25,7 @@ sim_reply_t reply(std::int64_t id, bool paused) {
   return m;
 }
 
-// A floor seen straight from above from 2 m; a box of 20 cm stands on it at (0, -0.5).
+// A floor seen from 2 m straight above; a box of 20 cm stands on it at (0, -0.5).
 struct SmallRoom {
   scene_t scene = empty_scene();
   SmallRoom() {
@@ -46,7 +46,7 @@ struct SmallRoom {
 
 }  // namespace
 
-TEST_CASE("The mouse points at what is seen under it") {
+TEST_CASE("The mouse points at the surface visible under it") {
   const SmallRoom room;
   const auto middle = room.hit(0.5f, 0.5f);
   REQUIRE(middle);
@@ -65,15 +65,15 @@ TEST_CASE("The mouse points at what is seen under it") {
   CHECK_FALSE(room.hit(std::nanf(""), 0.5f));
 }
 
-TEST_CASE("A ball of any size anywhere is hit up to its edge, and the floor beside it") {
+TEST_CASE("A ball of any size at any place is hit up to its edge, and the floor beside it") {
   for (const double radius_m : {0.01, 0.03, 0.08})
     for (const double y_m : {-0.6, 0.0, 0.3}) {
       CAPTURE(radius_m, y_m);
       SmallRoom room;
       const int kind = shape_def_t::SPHERE;
       add_visual(room.scene, add_body(room.scene, {0.5, y_m, radius_m}), kind, {radius_m, 0, 0});
-      // Straight above it, m from its middle along the picture's vertical: at distance d of the plane through its
-      // middle a pixel row is where the tangent of the field of view says; the picture is 640 x 480.
+      // Straight above it, m from its middle along the picture's vertical: at distance d of the plane through
+      // its middle the tangent of the field of view gives the pixel row; the picture is 640 x 480.
       const auto hit_beside = [&](double up_m) {
         const double depth_m = 2 - radius_m, scale = 1 / (2 * depth_m * std::tan(0.5));
         return room.hit(static_cast<float>(0.5 - y_m * scale),
@@ -89,7 +89,7 @@ TEST_CASE("A ball of any size anywhere is hit up to its edge, and the floor besi
     }
 }
 
-TEST_CASE("In a picture for two eyes it points within the half that it is in") {
+TEST_CASE("In a stereo picture the mouse points within the half under it") {
   const SmallRoom room;
   for (const float x : {0.25f, 0.75f}) {
     const auto hit = room.hit(x, 0.5f, "side_by_side");
@@ -100,7 +100,7 @@ TEST_CASE("In a picture for two eyes it points within the half that it is in") {
   }
 }
 
-TEST_CASE("The pointer follows without a leap and is a valid device") {
+TEST_CASE("The pointer moves without a jump and is a valid device") {
   MousePointer pointer;
   CHECK_FALSE(pointer.state(at_ms(0)));
   pointer.aim({1, 2, 0});
@@ -115,46 +115,46 @@ TEST_CASE("The pointer follows without a leap and is a valid device") {
     m->header.run_id = m->header.incarnation = 1;
     REQUIRE(valid(*m));
     const Eigen::Vector3d now = to_eigen(m->pose.position_m);
-    CHECK((now - before).norm() <= MousePointer::kFastest_m_s * 0.016 + 1e-9);
+    CHECK((now - before).norm() <= MousePointer::kMaxSpeed_m_s * 0.016 + 1e-9);
     before = now;
   }
   CHECK(ticks == 125);  // 10 m at 5 m/s, 16 ms each
 }
 
-TEST_CASE("A key asks the simulation once, again until it answers, and not for ever") {
-  SimulationWishes wishes;
-  CHECK_FALSE(wishes.step(at_ms(0)));
-  wishes.ask(Act::kPauseOrResume, 7);
-  auto c = wishes.step(at_ms(0));
+TEST_CASE("A key press sends a command once, again until it is answered, and not for ever") {
+  SimulationRequests requests;
+  CHECK_FALSE(requests.step(at_ms(0)));
+  requests.request(Act::kPauseOrResume, 7);
+  auto c = requests.step(at_ms(0));
   REQUIRE(c);
   CHECK(c->kind == sim_command_t::PAUSE);
   CHECK(c->id == 7);
   CHECK(valid(*c));
-  CHECK_FALSE(wishes.step(at_ms(50)));
-  CHECK(wishes.step(at_ms(100))->id == 7);
-  wishes.push(reply(6, true));  // of somebody else
-  CHECK(wishes.step(at_ms(200)));
-  wishes.push(reply(7, true));
-  CHECK(wishes.take_answer() == "done");
-  CHECK_FALSE(wishes.step(at_ms(300)));
-  wishes.ask(Act::kPauseOrResume, 8);  // it stands still: goes on
-  CHECK(wishes.step(at_ms(400))->kind == sim_command_t::RESUME);
-  wishes.ask(Act::kStep, 9);
-  CHECK(wishes.step(at_ms(3500)).has_value() == false);
-  CHECK(wishes.take_answer() == "no sim_node answers");
-  CHECK_FALSE(wishes.step(at_ms(3600)));
+  CHECK_FALSE(requests.step(at_ms(50)));
+  CHECK(requests.step(at_ms(100))->id == 7);
+  requests.push(reply(6, true));  // a reply to another program
+  CHECK(requests.step(at_ms(200)));
+  requests.push(reply(7, true));
+  CHECK(requests.take_answer() == "done");
+  CHECK_FALSE(requests.step(at_ms(300)));
+  requests.request(Act::kPauseOrResume, 8);  // the world is paused: resume
+  CHECK(requests.step(at_ms(400))->kind == sim_command_t::RESUME);
+  requests.request(Act::kStep, 9);
+  CHECK(requests.step(at_ms(3500)).has_value() == false);
+  CHECK(requests.take_answer() == "no sim_node answers");
+  CHECK_FALSE(requests.step(at_ms(3600)));
 }
 
-TEST_CASE("Keys that are held down fill no memory, and each asks for its own") {
-  SimulationWishes wishes;
-  for (int i = 0; i < 1000; ++i) wishes.ask(i % 2 ? Act::kStep : Act::kReset, i + 1);
+TEST_CASE("Held keys do not fill memory, and each press sends its own command") {
+  SimulationRequests requests;
+  for (int i = 0; i < 1000; ++i) requests.request(i % 2 ? Act::kStep : Act::kReset, i + 1);
   std::size_t answered = 0;
-  while (const auto c = wishes.step(at_ms(0))) {
+  while (const auto c = requests.step(at_ms(0))) {
     CHECK(valid(*c));
     CHECK(c->kind == (c->id % 2 ? sim_command_t::RESET : sim_command_t::STEP));
     CHECK(c->steps == (c->kind == sim_command_t::STEP ? 1 : 0));
-    wishes.push(reply(c->id, false));
+    requests.push(reply(c->id, false));
     ++answered;
   }
-  CHECK(answered == SimulationWishes::kMaxWaiting);
+  CHECK(answered == SimulationRequests::kMaxPending);
 }

@@ -1,55 +1,55 @@
-#include "visual_node/overlay/question_desk.h"
+#include "visual_node/overlay/question_dialog.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tactus::visual {
 
-void QuestionDesk::push(const question_t& m, sync::HostTime arrival) {
-  if (!asked_.push(m, arrival)) return;
+void QuestionDialog::push(const question_t& m, sync::HostTime arrival) {
+  if (!current_.push(m, arrival)) return;
   if (const answer_t* known = answered(m))
     to_send_ = *known;
-  else if (at_ != sync::key_of(m))
+  else if (key_ != sync::key_of(m))
     begin(m);
 }
 
-void QuestionDesk::begin(const question_t& m) {
-  at_ = sync::key_of(m);
-  seen_.reset();
+void QuestionDialog::begin(const question_t& m) {
+  key_ = sync::key_of(m);
+  presented_.reset();
   to_send_.reset();
   lowest_ = m.lowest, highest_ = m.highest, step_ = m.step;
   steps_ = mark_ = 0;
   if (m.kind != question_t::NUMBER) return;
-  // The last step may be a shorter one: both ends can be answered.
+  // The last step may be shorter, so that both ends can be selected.
   steps_ = std::ceil((m.highest - m.lowest) / m.step - 1e-9);
   if (!(steps_ <= kMaxSteps)) steps_ = kMaxSteps, step_ = (m.highest - m.lowest) / kMaxSteps;
   mark_ = std::floor(steps_ / 2);
 }
 
-const answer_t* QuestionDesk::answered(const question_t& m) const {
+const answer_t* QuestionDialog::answered(const question_t& m) const {
   const auto found = std::find_if(answered_.begin(), answered_.end(),
                                   [&](const Answered& a) { return a.key == sync::key_of(m); });
   return found == answered_.end() ? nullptr : &found->answer;
 }
 
-const question_t* QuestionDesk::on(sync::HostTime now) const {
-  const question_t* m = asked_.led(now);
+const question_t* QuestionDialog::current(sync::HostTime now) const {
+  const question_t* m = current_.led(now);
   return m && m->kind != question_t::NOTHING && !answered(*m) ? m : nullptr;
 }
 
-double QuestionDesk::number() const { return std::min(lowest_ + mark_ * step_, highest_); }
+double QuestionDialog::number() const { return std::min(lowest_ + mark_ * step_, highest_); }
 
-void QuestionDesk::seen(sync::HostTime at) {
-  if (at_ && !seen_) seen_ = at;
+void QuestionDialog::set_presented(sync::HostTime at) {
+  if (key_ && !presented_) presented_ = at;
 }
 
-bool QuestionDesk::press(const Press& press, const char* by, sync::HostTime now) {
-  if (!led(now)) return false;
-  const question_t* m = on(now);
-  if (!m || !seen_) return true;
+bool QuestionDialog::press(const Press& press, const char* by, sync::HostTime now) {
+  if (!study_running(now)) return false;
+  const question_t* m = current(now);
+  if (!m || !presented_) return true;
   switch (m->kind) {
     case question_t::READ:
-      if (press.goes_on) answer(*m, by, now, -1);
+      if (press.continues) answer(*m, by, now, -1);
       break;
     case question_t::CHOICE:
       if (press.choice >= 0 && press.choice < m->count) answer(*m, by, now, press.choice);
@@ -65,16 +65,16 @@ bool QuestionDesk::press(const Press& press, const char* by, sync::HostTime now)
   return true;
 }
 
-void QuestionDesk::answer(const question_t& m, const char* by, sync::HostTime now, int choice) {
+void QuestionDialog::answer(const question_t& m, const char* by, sync::HostTime now, int choice) {
   answer_t a{};
   a.header.sim_time_ns = -1;
   a.id = m.id;
   a.choice = choice;
   a.number = m.kind == question_t::NUMBER ? number() : 0;
-  a.after_ns = std::max(sync::Nanoseconds(0), now - *seen_).count();
+  a.after_ns = std::max(sync::Nanoseconds(0), now - *presented_).count();
   a.by = by;
   answered_.push_back({sync::key_of(m), a});
-  if (answered_.size() > kRemembered) answered_.pop_front();
+  if (answered_.size() > kMaxAnswers) answered_.pop_front();
   to_send_ = a;
 }
 
