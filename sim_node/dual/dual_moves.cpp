@@ -25,7 +25,7 @@ void DualGroups::release() {
   late_.states.resize(units_.size());
   for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], late_.states[i]);
   mark(late_.units, 1);
-  tracker_.take(mask_, late_.contacts);
+  tracker_.extract(mask_, late_.contacts);
   mark(late_.units, 0);
   activate();
 }
@@ -33,7 +33,7 @@ void DualGroups::release() {
 // From an instant of the past to the present, in steps no longer than a tick; the others stand still meanwhile.
 void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::SimTime to,
                           std::vector<contact_event_t>& events) {
-  catching_up_.put(moved_);
+  catching_up_.insert(moved_);
   world_->set_active(units);
   read_motions(world_->active_bodies());
   const sync::Nanoseconds tick = sync::from_seconds(settings_.step_s);
@@ -49,10 +49,10 @@ void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::
   }
   mark(units, 1);
   moved_.clear();
-  catching_up_.take(mask_, moved_);
+  catching_up_.extract(mask_, moved_);
   if (steps > 0) reconcile(from, to, events);
   mark(units, 0);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
 }
 
 // What has been told of these contacts up to now was the visual group's account of the last few ticks; where it
@@ -80,7 +80,7 @@ void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<con
       alike->known = true;
     } else {
       c.id = ids_.fresh();
-      tracker_.tell(c, contact_event_t::BEGIN, to, motions_, events);
+      tracker_.report(c, contact_event_t::BEGIN, to, motions_, events);
     }
   }
   for (const Told& t : open_) {

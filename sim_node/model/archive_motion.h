@@ -1,4 +1,4 @@
-// The parts that several states share.
+// Archive functions shared by several states.
 #pragma once
 
 #include "sim_node/model/body_motion.h"
@@ -12,7 +12,7 @@ inline void archive(StateArchive& a, BodyMotion& m) {
   a(m.inverse_mass_1_kg), a(m.inverse_inertia);
 }
 
-// bodies, shapes: how many the world has.
+// bodies, shapes: numbers of bodies and shapes in the world.
 inline void archive(StateArchive& a, Manifold& m, std::size_t bodies, std::size_t shapes) {
   a.index(m.shape_a, shapes), a.index(m.shape_b, shapes), a.index(m.body_a, bodies), a.index(m.body_b, bodies);
   a(m.count);

@@ -188,10 +188,10 @@ void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> pi
     };
     const double before = force(*old), now = force(out);
     Impact impact = old->impact;
-    if (impact.blows == 0) {
+    if (impact.count == 0) {
       impact = out.impact;
-    } else if (out.impact.blows > 0) {
-      impact.blows += out.impact.blows;
+    } else if (out.impact.count > 0) {
+      impact.count += out.impact.count;
       impact.last_s = out.impact.last_s;
     }
     if (before > now) out = *old;

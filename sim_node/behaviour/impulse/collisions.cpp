@@ -76,7 +76,7 @@ double Collisions::approach(const ContactGroup& g) const {
   if (g.restitution > 0 || overlaps) return fastest;
   // Joints cannot be set aside: ahead of them the contact solver lets the gap close and no further.
   const int twists = static_cast<int>(velocity_->twists.size());
-  return g.blows == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
+  return g.impacts == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
 }
 
 // Where the free motion leads a pair that took no blow, from a gap that is open.
@@ -111,7 +111,7 @@ void Collisions::rebound(ContactGroup& g) {
     }
   const double t = first.time_s;
   g.last_s = std::max(0.0, t);
-  if (g.blows++ == 0) {
+  if (g.impacts++ == 0) {
     g.met = struck;
     g.first_s = g.last_s;
     g.speed_m_s = first.speed_m_s;
@@ -182,7 +182,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
         approach_[i] = approach(rows.groups[i]);
   }
   for (ContactGroup& g : rows.groups)
-    if (g.blows == 0 && !g.stopped) foresee(g);
+    if (g.impacts == 0 && !g.stopped) foresee(g);
 }
 
 }  // namespace tactus::sim::impulse

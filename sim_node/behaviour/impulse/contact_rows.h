@@ -61,7 +61,7 @@ struct ContactGroup {
   double restitution = 0;
   // How the surfaces meet in the step: blows so far, at their first and last instants after its start, and the
   // point and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
-  int blows = 0, met = -1;
+  int impacts = 0, met = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
   bool shielded = false;  // takes no blow: springs press
   bool stopped = false;   // by these, before the surfaces meet

@@ -322,7 +322,7 @@ void World::tell(std::span<Manifold> contacts, double h) const {
     const ManifoldPoint& at = m.points[index(g.met)];
     const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
     const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
-    m.impact.blows = std::max(1, g.blows);
+    m.impact.count = std::max(1, g.impacts);
     m.impact.first_s = std::min(g.first_s, h);
     m.impact.last_s = std::min(g.last_s, h);
     m.impact.speed_m_s = g.speed_m_s;

@@ -103,7 +103,7 @@ Eigen::VectorXd joined(ArticulatedSystem& s, int link, const Vector3d& p, const 
 
 }  // namespace
 
-TEST_CASE("Accelerations need, by Newton and Euler, exactly the torques that act, in trees of every joint") {
+TEST_CASE("Inverse dynamics by Newton-Euler returns the applied torques, in trees of every joint type") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 200; ++n) {
@@ -125,7 +125,7 @@ TEST_CASE("Accelerations need, by Newton and Euler, exactly the torques that act
   }
 }
 
-TEST_CASE("Forces and moments on links do work at the rate that the energy grows") {
+TEST_CASE("The power of forces and moments on links equals the rate of energy") {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 30; ++n) {
@@ -144,7 +144,7 @@ TEST_CASE("Forces and moments on links do work at the rate that the energy grows
   }
 }
 
-TEST_CASE("Points move as their Jacobian and their joint rates say") {
+TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
   std::mt19937 random(3);
   for (int n = 0; n < 30; ++n) {
     ArticulatedSystem s(random_tree(6, n % 2 == 0, random));
@@ -173,7 +173,7 @@ TEST_CASE("Points move as their Jacobian and their joint rates say") {
   }
 }
 
-TEST_CASE("A blow moves another point as a blow there would move this one, and as the joints say") {
+TEST_CASE("The response of one point to an impulse at another is symmetric and matches the joint rates") {
   std::mt19937 random(4);
   for (int n = 0; n < 60; ++n) {
     ArticulatedSystem s(random_tree(2 + n % 7, n % 3 == 0, random));
@@ -204,7 +204,7 @@ TEST_CASE("A blow moves another point as a blow there would move this one, and a
   }
 }
 
-TEST_CASE("A blow along a joint is answered along another as that one's would be along it") {
+TEST_CASE("The response of one joint to an impulse along another is symmetric") {
   std::mt19937 random(5);
   ArticulatedSystem s(random_tree(7, true, random));
   stir(s, random);
@@ -215,7 +215,7 @@ TEST_CASE("A blow along a joint is answered along another as that one's would be
   CHECK(inverse.ldlt().isPositive());
 }
 
-TEST_CASE("A blow in the middle of a free rod leaves a joint at its centre of percussion at rest") {
+TEST_CASE("An impulse at the middle of a free rod leaves a joint at its centre of percussion at rest") {
   // A rod of length l struck at 2/3 l turns about its end without loading it: what the hinge there feels is
   // nothing, so the free rod and the hinged one move alike.
   std::vector<LinkDef> hinged = {rod_link(-1, JointKind::kBall, {0, 0, 0})};
@@ -230,7 +230,7 @@ TEST_CASE("A blow in the middle of a free rod leaves a joint at its centre of pe
   CHECK(ra[2] == Approx(blow.y() * struck.x() / (inertia + m * half * half)).epsilon(1e-12));
 }
 
-TEST_CASE("A tree that has no dynamics is refused with its link") {
+TEST_CASE("A tree without valid dynamics is rejected with the name of the link") {
   std::vector<LinkDef> links = horizontal_chain(2);
   links[1].mass_kg = 0;
   CHECK_THROWS_WITH(ArticulatedSystem(links), Catch::Contains("link 1"));

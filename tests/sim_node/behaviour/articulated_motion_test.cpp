@@ -79,7 +79,7 @@ TEST_CASE("The chain of eleven universal joints released from horizontal keeps i
   CHECK(worst < 0.01);
 }
 
-TEST_CASE("A planar chain moves as its Lagrangian says") {
+TEST_CASE("A planar chain follows its Lagrangian equations") {
   const int n = 4;
   ArticulatedSystem s(horizontal_chain(n, JointKind::kRevolute, {0, -1, 0}));
   const PlanarChain oracle(n);
@@ -99,7 +99,7 @@ TEST_CASE("A planar chain moves as its Lagrangian says") {
   CHECK(worst < 1e-5);
 }
 
-TEST_CASE("A chain that hardly swings does so in the modes of its stiffness and mass") {
+TEST_CASE("Small oscillations of a chain follow the modes of its stiffness and mass") {
   const int n = 5;
   std::vector<LinkDef> links;
   for (int i = 0; i < n; ++i) {
@@ -131,7 +131,7 @@ TEST_CASE("A chain that hardly swings does so in the modes of its stiffness and 
   }
 }
 
-TEST_CASE("A rod swings with the period of the elliptic integral, however wide") {
+TEST_CASE("A rod swings with the period of the elliptic integral at any amplitude") {
   const double amplitude = GENERATE(0.1, 1.0, 2.5, 3.1);
   std::vector<LinkDef> links = {rod_link(-1, JointKind::kRevolute, {0, 0, 0}, {0, 0, -1})};
   links[0].axes[0].axis = {0, 1, 0};
@@ -161,7 +161,7 @@ TEST_CASE("A rod swings with the period of the elliptic integral, however wide")
   CHECK((end - first) / 10 == Approx(period).epsilon(1e-6));
 }
 
-TEST_CASE("What flies keeps its momentum and energy") {
+TEST_CASE("A flying system keeps its momentum and energy") {
   std::mt19937 random(6);
   for (int n = 0; n < 10; ++n) {
     auto links = random_tree(4 + n % 3, true, random);
@@ -191,7 +191,7 @@ TEST_CASE("What flies keeps its momentum and energy") {
   }
 }
 
-TEST_CASE("An asymmetric top free of its mount nutates by Jacobi's elliptic functions' period") {
+TEST_CASE("A free asymmetric top nutates with the period of Jacobi's elliptic functions") {
   // Spun near its middle axis; the component along it returns after 4 K(k) / rate (Landau and Lifshitz 1976,
   // section 37).
   LinkDef top;
@@ -217,7 +217,7 @@ TEST_CASE("An asymmetric top free of its mount nutates by Jacobi's elliptic func
   CHECK((local - before).norm() < 1e-5);
 }
 
-TEST_CASE("A system continues from its state to the bit") {
+TEST_CASE("A system continues from its saved state to the bit") {
   ArticulatedSystem a(horizontal_chain(11)), b(horizontal_chain(11));
   for (int i = 0; i < 500; ++i) a.step(kH);
   b.set_state(a.state());

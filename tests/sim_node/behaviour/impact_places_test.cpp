@@ -63,28 +63,27 @@ double from_surface_m(const Vector3d& in_body) {
 
 }  // namespace
 
-TEST_CASE(
-    "Places of impacts lie on the shapes as the scene has them, of bodies with their weight aside and of links") {
+TEST_CASE("Impact positions lie on the shapes of the scene, for bodies with an offset centre of mass and for links") {
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.solver = GENERATE("impulse", "penalty");
   s.penalty_stiffness_N_m = 100;  // so soft that the blow is one
   Solver solver(blow.world, s);
-  int blows = 0;
+  int impacts = 0;
   for (int i = 0; i < 600; ++i) {
     solver.step();
     for (const Manifold& m : solver.solved()) {
-      if (m.impact.blows == 0) continue;
-      ++blows;
+      if (m.impact.count == 0) continue;
+      ++impacts;
       const bool first = m.body_a == blow.body;
       CHECK(from_surface_m(first ? m.impact.a_body_m : m.impact.b_body_m) == Approx(0).margin(1e-9));
       CHECK((first ? m.impact.b_body_m : m.impact.a_body_m).z() == Approx(0).margin(1e-9));
     }
   }
-  CHECK(blows > 0);
+  CHECK(impacts > 0);
 }
 
-TEST_CASE("What a body strikes that was put elsewhere and turned is told in the frame of that one") {
+TEST_CASE("An impact on a displaced and rotated body is reported in the frame of that body") {
   WorldDef w = empty_world();
   const Eigen::Isometry3d turned = at(0.3, -0.2, 0.5) * Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized());
   const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), turned);
@@ -93,20 +92,20 @@ TEST_CASE("What a body strikes that was put elsewhere and turned is told in the 
   w.bodies[static_cast<std::size_t>(ball)].velocity_m_s = turned.linear() * Vector3d(0, 0, -1);
   w.gravity_m_s2.setZero();
   Solver solver(w, Settings{});
-  int blows = 0;
+  int impacts = 0;
   for (int i = 0; i < 300; ++i) {
     solver.step();
     for (const Manifold& m : solver.solved()) {
-      if (m.impact.blows == 0) continue;
-      ++blows;
+      if (m.impact.count == 0) continue;
+      ++impacts;
       CHECK((m.impact.a_body_m - Vector3d(0.05, 0.03, 0.05)).norm() < 1e-6);
       CHECK((m.impact.b_body_m + turned.linear() * Vector3d(0, 0, 0.02)).norm() < 1e-6);
     }
   }
-  CHECK(blows == 1);
+  CHECK(impacts == 1);
 }
 
-TEST_CASE("A blow is told with the curvature of the place that struck") {
+TEST_CASE("An impact is reported with the curvature at its position") {
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.groups = GENERATE("single", "dual");

@@ -14,7 +14,7 @@ Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Ei
 
 }  // namespace
 
-TEST_CASE("Newton's cradle: as many balls leave as arrive, with touching balls and with balls apart") {
+TEST_CASE("Newton's cradle: the same number of balls leave as arrive, with touching and with separated balls") {
   const double apart = GENERATE(0.0, 1e-4);
   const int arriving = GENERATE(1, 2, 3);
   Toys toys;
@@ -37,7 +37,7 @@ TEST_CASE("Newton's cradle: as many balls leave as arrive, with touching balls a
   CHECK(energy == Approx(arriving).margin(1e-12));
 }
 
-TEST_CASE("A ball bounces to e^2n of its height and at the instants that follow, at 1 kHz and at 60 Hz") {
+TEST_CASE("A ball bounces to e^2n of its height and at the matching times, at 1 kHz and at 60 Hz") {
   const double e = GENERATE(0.5, 0.8, 1.0), h = GENERATE(0.001, 1.0 / 60);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
@@ -79,7 +79,7 @@ TEST_CASE("A box that falls flat rebounds flat") {
   CHECK(toys.motion(box).spin_rad_s.norm() < 1e-9);
 }
 
-TEST_CASE("Two bodies that meet keep their momentum and spin momentum, with friction and spin") {
+TEST_CASE("A collision with friction and spin keeps linear and angular momentum") {
   Toys toys;
   toys.gravity_m_s2.setZero();
   const int a = toys.ball(0.3, 0.05, {-0.2, 0, 0}, 0.4, 0.6),
@@ -105,7 +105,7 @@ TEST_CASE("Two bodies that meet keep their momentum and spin momentum, with fric
   CHECK((momenta().second - l).norm() < 0.001 * 1.5 * 1.6 * 0.21 * 1.5);
 }
 
-TEST_CASE("A ball that strikes a hanging rod: both leave as the compound pendulum's blow says") {
+TEST_CASE("A ball that strikes a hanging rod follows the impact formula of the compound pendulum") {
   const double e = GENERATE(0.0, 0.5, 1.0), where = GENERATE(0.02, 0.05, 0.0667, 0.09);
   Toys toys;
   toys.gravity_m_s2.setZero();
@@ -170,7 +170,7 @@ TEST_CASE("A ball that strikes a chain in free space shares its momentum with al
   CHECK((momentum() - before).norm() < 1e-7 * before.norm());
 }
 
-TEST_CASE("What comes fast stops at the surface and not behind it, on thin walls too") {
+TEST_CASE("A fast body stops at the surface, also of thin walls") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(1.0, 5.0, 20.0), e = GENERATE(0.0, 0.4);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);

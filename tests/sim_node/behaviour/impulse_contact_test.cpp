@@ -48,7 +48,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), the sam
   }
 }
 
-TEST_CASE("A sliding box is braked by mu g whatever its heading, and keeps to it") {
+TEST_CASE("A sliding box is braked by mu g in any direction and keeps its direction") {
   for (double heading = 0; heading < std::numbers::pi / 2; heading += std::numbers::pi / 16) {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.4);
@@ -64,7 +64,7 @@ TEST_CASE("A sliding box is braked by mu g whatever its heading, and keeps to it
   }
 }
 
-TEST_CASE("A ball that slides ends up rolling at 5/7 of its speed, when and whatever the friction") {
+TEST_CASE("A sliding ball ends up rolling at 5/7 of its speed with any friction, at the predicted time") {
   const double mu = GENERATE(0.1, 0.4, 0.9);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
@@ -102,7 +102,7 @@ TEST_CASE("A block tips where friction holds it beyond width over height, and sl
   CHECK_FALSE(topples(2 * edge, 0.5 * edge));
 }
 
-TEST_CASE("Contacts carry the weight of what rests on them") {
+TEST_CASE("Contacts carry the weight of resting bodies") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
   double weight = 0;
@@ -115,7 +115,7 @@ TEST_CASE("Contacts carry the weight of what rests on them") {
   for (int i = 1; i <= 4; ++i) CHECK(toys.motion(i).centre_m.z() == Approx(0.05).margin(1e-9));
 }
 
-TEST_CASE("What rests weighs the same in steps of 16 and 17 ms by turns, and its answer is known at once") {
+TEST_CASE("A resting body has constant weight in alternating steps of 16 and 17 ms and warm start converges at once") {
   const double mass = 0.5;
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
@@ -144,7 +144,7 @@ TEST_CASE("Stacks of five and of ten boxes stand") {
   CHECK(toys.motion(n).velocity_m_s.norm() < 1e-4);
 }
 
-TEST_CASE("Painleve's rod finds an impulse: with mu beyond 4/3 it jams, and gains no energy") {
+TEST_CASE("Painleve's rod has an impulse solution: with mu above 4/3 it jams and gains no energy") {
   const double mu = GENERATE(1.0, 1.4, 2.0, 5.0), angle = GENERATE(0.4, 0.8, 1.0, 1.2);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
@@ -187,8 +187,7 @@ TEST_CASE("A ball rests in a corner of three planes, pushed into it") {
   CHECK(toys.motion(ball).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE(
-    "A free body lies on the parabola. An asymmetric one keeps its spin momentum exactly and its energy well") {
+TEST_CASE("A free body follows the parabola, and an asymmetric one keeps its angular momentum exactly and its energy closely") {
   Toys toys;
   const int box = toys.box(2, {0.1, 0.2, 0.4}, at(0, 0, 50));
   auto& b = toys.world.free_body(box);
@@ -212,7 +211,7 @@ TEST_CASE(
   CHECK(l.dot(b.spin_rad_s) == Approx(energy).epsilon(1e-9));
 }
 
-TEST_CASE("Two runs are the same to the bit") {
+TEST_CASE("Two runs with the impulse world are the same to the bit") {
   const auto digest = [] {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.3);

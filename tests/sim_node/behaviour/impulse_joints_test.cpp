@@ -36,8 +36,7 @@ struct Wheel {
 
 }  // namespace
 
-TEST_CASE(
-    "A fan under constant torque approaches the speed at which drag and dry friction balance it, exponentially") {
+TEST_CASE("A fan under constant torque approaches its equilibrium speed with drag and dry friction exponentially") {
   Wheel fan;
   fan.inertia = 1e-3;
   fan.axis.damping = 4e-3;
@@ -72,7 +71,7 @@ TEST_CASE("A motor reaches its speed with its torque, against friction, and keep
   CHECK(w.rate() == Approx(3).epsilon(1e-9));
 }
 
-TEST_CASE("A stop holds what is driven against it, from both sides") {
+TEST_CASE("A joint stop holds a driven joint on both sides") {
   Wheel w;
   w.axis.lower = -0.5;
   w.axis.upper = 0.7;
@@ -83,7 +82,7 @@ TEST_CASE("A stop holds what is driven against it, from both sides") {
   CHECK(w.angle() == Approx(-0.5).margin(1e-6));
 }
 
-TEST_CASE("Springs and dampers settle where they should, however stiff, and soft ones swing in their time") {
+TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft ones oscillate with their period") {
   Wheel w;
   SECTION("stiff ones gain no energy") {
     w.axis.stiffness = GENERATE(1e3, 1e5, 1e9);

@@ -30,7 +30,7 @@ void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 
-TEST_CASE("A step of free bodies, links and blows takes no memory once its lists have grown") {
+TEST_CASE("A step of free bodies, links and impacts allocates no memory once its lists have grown") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.8);
   // A lever over which balls bounce, and a stack beside it.

@@ -101,7 +101,7 @@ TEST_CASE("Solved by impulses, friction and restitution may be set") {
   CHECK(top == Approx(0.64 * 0.5).epsilon(1e-3));
 }
 
-TEST_CASE("Solved by impulses, a link starts as a blow of its momentum would send it, and so when it is set") {
+TEST_CASE("Solved by impulses, setting the velocity of a link acts like an impulse of its momentum") {
   const bool at_start = GENERATE(true, false);
   WorldDef w = hanging_rod(JointKind::kRevolute);
   if (at_start) w.bodies[0].velocity_m_s = {-2, 0.7, 0.3};
@@ -135,7 +135,7 @@ TEST_CASE("Solved by impulses, motors and dry friction of joints may be set") {
   CHECK_FALSE(s.set_motor("no such", 0, 1, 1));
 }
 
-TEST_CASE("Solved by impulses, a ball joint's dry friction brakes every turning alike, along it") {
+TEST_CASE("Solved by impulses, dry friction of a ball joint opposes rotation equally about every axis") {
   // Held in its centre, alike about all axes.
   WorldDef w = empty_world(0);
   const double inertia = 0.01;
@@ -153,7 +153,7 @@ TEST_CASE("Solved by impulses, a ball joint's dry friction brakes every turning 
   CHECK(body(s, 0).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE("Solved by impulses, the tip of a hanging rod is as heavy as its lever makes it") {
+TEST_CASE("Solved by impulses, the effective mass at the tip of a hanging rod follows from its lever arm") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   Solver s(w, by_impulse());
   CHECK(s.mobility(0, {0, 0, -kLength}, {1, 0, 0}) == Approx(kLength * kLength / kAtPivot));
@@ -161,7 +161,7 @@ TEST_CASE("Solved by impulses, the tip of a hanging rod is as heavy as its lever
   CHECK(s.mobility(0, {0, 0, -kLength}, {0, 0, 1}) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("Solved by impulses, what was set comes back with a state") {
+TEST_CASE("Solved by impulses, properties that were set are restored with a state") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 1});
   add_floor(w);

@@ -59,7 +59,7 @@ TEST_CASE("Solved by impulses, angles and limits count as in SDF, from whichever
   }
 }
 
-TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and comes not apart") {
+TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and stays connected") {
   WorldDef w = chain_world(11);
   // Horizontal: turned about the hook.
   const Eigen::Isometry3d lie = at(0, 0, 2) * Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitY()) * at(0, 0, -2);
@@ -88,7 +88,7 @@ TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and 
   CHECK(std::abs(last - start) < 0.03 * 2.968);
 }
 
-TEST_CASE("Solved by impulses, a box rests, a ball bounces, a stack stands, and complaints there are none") {
+TEST_CASE("Solved by impulses, a box rests, a ball bounces and a stack stands, without solver failures") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 0.53}, 0.5, 0.8);
@@ -117,7 +117,7 @@ TEST_CASE("Solved by impulses, a box rests, a ball bounces, a stack stands, and 
   CHECK(s.complaints() == 0);
 }
 
-TEST_CASE("Solved by impulses, joints that close a loop are refused with their name") {
+TEST_CASE("Solved by impulses, joints that close a loop are rejected by name") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0}).name = "bite";
   CHECK_THROWS_WITH(Solver(w, by_impulse()), Catch::Contains("bite") && Catch::Contains("loop"));

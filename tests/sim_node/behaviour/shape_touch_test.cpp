@@ -45,7 +45,7 @@ double height(const touch_plane_t& p, const Vector3d& place, const Eigen::Quater
 
 }  // namespace
 
-TEST_CASE("A box over a floor may meet it with its lower corners, under the same names as it goes and tips") {
+TEST_CASE("A box over a floor has contacts at its lower corners, with stable ids as it moves and tips") {
   WorldDef w = empty_world();
   add_floor(w);
   const Vector3d size(0.04, 0.06, 0.02);
@@ -73,7 +73,7 @@ TEST_CASE("A box over a floor may meet it with its lower corners, under the same
   CHECK(ids.size() == 4);
 }
 
-TEST_CASE("A capsule and a box meet what is near them on every side, and no plane cuts into where they are") {
+TEST_CASE("A capsule and a box get planes of near surfaces on every side, and no plane cuts into them") {
   WorldDef w = empty_world();
   add_floor(w);
   for (int i = 0; i < 10; ++i)
@@ -94,7 +94,7 @@ TEST_CASE("A capsule and a box meet what is near them on every side, and no plan
   }
 }
 
-TEST_CASE("The contact of a corner begins when it meets the floor and ends when it leaves") {
+TEST_CASE("The contact of a corner begins when it touches the floor and ends when it leaves") {
   WorldDef w = empty_world();
   add_floor(w);
   Simulation s(with_tool(w, tool_def_t::BOX, {0.04, 0.04, 0.02}, {0, 0, 0.03}), {});
@@ -121,7 +121,7 @@ TEST_CASE("The contact of a corner begins when it meets the floor and ends when 
   CHECK(ends == 2);
 }
 
-TEST_CASE("A tool on more places than a touch model holds has the nearest 49, in order, and the same ones every time") {
+TEST_CASE("A tool with more contacts than a touch model holds keeps the nearest 49, in order and repeatably") {
   // Eighty balls under a box, each less than the gap of a touch away from it, the nearest ones anywhere among them.
   constexpr int kBalls = 80;
   const auto gap_m = [](int ball) { return 1e-6 * (1 + ball * 37 % kBalls); };

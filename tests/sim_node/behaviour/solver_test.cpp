@@ -27,7 +27,7 @@ const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<s
 
 }  // namespace
 
-TEST_CASE("A free body lies on the parabola at every step") {
+TEST_CASE("A free body follows the parabola at every step") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
@@ -67,7 +67,7 @@ TEST_CASE("A body whose centre of mass is not its origin turns about its centre 
   CHECK(((body(solver, b).position_m - body(solver, b).centre_m).norm()) == Approx(0.3));
 }
 
-TEST_CASE("A box on an incline sticks above and slides below tan(theta), whatever way it faces") {
+TEST_CASE("A box on an incline sticks above and slides below tan(theta), for any yaw") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   const double theta = 0.3;
@@ -99,7 +99,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), whateve
   }
 }
 
-TEST_CASE("A ball rebounds with the restitution of the pair, the smaller one") {
+TEST_CASE("A ball rebounds with the smaller restitution of the pair") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   for (const double e : {0.0, 0.5, 0.8, 1.0}) {
@@ -122,7 +122,7 @@ TEST_CASE("A ball rebounds with the restitution of the pair, the smaller one") {
   }
 }
 
-TEST_CASE("A resting body is carried with its weight") {
+TEST_CASE("The contact force on a resting body equals its weight") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
@@ -202,7 +202,7 @@ TEST_CASE("A chain of eleven universal joints stays connected") {
   CHECK(body(solver, 10).position_m.z() < 2);
 }
 
-TEST_CASE("Joints keep to limits, friction and dampers") {
+TEST_CASE("Joints obey limits, friction and dampers") {
   WorldDef w = empty_world(0);
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
@@ -294,7 +294,7 @@ TEST_CASE("Two runs of one world are the same to the bit") {
   CHECK(first == digest());
 }
 
-TEST_CASE("Two bodies that meet in free space keep their momentum") {
+TEST_CASE("Two bodies that collide in free space keep their momentum") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world(0);
@@ -309,7 +309,7 @@ TEST_CASE("Two bodies that meet in free space keep their momentum") {
   CHECK(body(solver, a).velocity_m_s.x() < 0);
 }
 
-TEST_CASE("A body with an impossible mass is refused in one sentence that names it") {
+TEST_CASE("A body with an invalid mass is rejected in one sentence that names it") {
   WorldDef w = empty_world();
   add_body(w, "ghost", 1, -Eigen::Matrix3d::Identity(), at(0, 0, 0));
   CHECK_THROWS_WITH(Solver(w, {}), Catch::Contains("ghost"));

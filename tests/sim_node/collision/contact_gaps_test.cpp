@@ -1,4 +1,4 @@
-// The tracker where contacts have gaps and the solver says how surfaces met.
+// The contact tracker with contacts that have gaps and with impacts reported by the solver.
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
@@ -48,7 +48,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("A bounce within one step begins, hits and ends at its instant inside the step, at 1 kHz and at 60 Hz") {
+TEST_CASE("A bounce within one step begins, hits and ends at its time inside the step, at 1 kHz and at 60 Hz") {
   const double h = GENERATE(0.001, 1.0 / 60), e = GENERATE(0.5, 0.9);
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
@@ -74,7 +74,7 @@ TEST_CASE("A bounce within one step begins, hits and ends at its instant inside 
   CHECK(t.tracker.live().empty());
 }
 
-TEST_CASE("What does not bounce hits once with the speed from before, and stays") {
+TEST_CASE("A body without restitution hits once, with its approach speed, and stays in contact") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(0.5, 20.0);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -93,7 +93,7 @@ TEST_CASE("What does not bounce hits once with the speed from before, and stays"
   CHECK(t.tracker.live()[0].touching);
 }
 
-TEST_CASE("What is only near is no contact") {
+TEST_CASE("A body that is only near has no contact") {
   const double h = GENERATE(0.001, 1.0 / 60);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -107,7 +107,7 @@ TEST_CASE("What is only near is no contact") {
   CHECK(t.tracker.live().empty());
 }
 
-TEST_CASE("What rests, rolls or slides for ten seconds begins once") {
+TEST_CASE("A body that rests, rolls or slides for ten seconds begins its contact once") {
   const double h = GENERATE(0.001, 1.0 / 60);
   WorldDef w = empty_world();
   add_floor(w, 0.3);
@@ -125,7 +125,7 @@ TEST_CASE("What rests, rolls or slides for ten seconds begins once") {
   CHECK(t.tracker.live().size() == 4);
 }
 
-TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart it ends. A gap is none") {
+TEST_CASE("An impact reported within the step is a contact, whatever the gap at its end, and a gap alone is none") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});

@@ -60,7 +60,7 @@ contact_t described(const Tracked& t, std::size_t i) {
 
 }  // namespace
 
-TEST_CASE("A falling ball begins and hits once, at the instant of the parabola inside the step") {
+TEST_CASE("A falling ball begins and hits once, at the time of the parabola inside the step") {
   const auto solver = GENERATE("impulse", "quick");
   for (const double height : {0.05, 0.3, 1.0, 2.37}) {
     WorldDef w = empty_world();
@@ -90,7 +90,7 @@ TEST_CASE("A falling ball begins and hits once, at the instant of the parabola i
   }
 }
 
-TEST_CASE("A bouncing ball hits in the series of its restitution") {
+TEST_CASE("The hits of a bouncing ball follow its restitution") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   const double r = 0.02, height = 0.4, e = 0.7;
@@ -120,7 +120,7 @@ TEST_CASE("A bouncing ball hits in the series of its restitution") {
   CHECK(t.of_kind(contact_event_t::BEGIN).size() == t.of_kind(contact_event_t::END).size() + 1);
 }
 
-TEST_CASE("A stack that rests begins once and never hits") {
+TEST_CASE("The contacts of a resting stack begin once and never hit") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w);
@@ -139,7 +139,7 @@ TEST_CASE("A stack that rests begins once and never hits") {
   CHECK(lowest.impulse_N_s == Approx(4 * 0.5 * kG * 3).epsilon(0.02));
 }
 
-TEST_CASE("A box that rocks onto its other edge hits anew within the same contact") {
+TEST_CASE("A box that rocks onto its other edge hits again within the same contact") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w, 1);
@@ -160,7 +160,7 @@ TEST_CASE("A box that rocks onto its other edge hits anew within the same contac
   CHECK(hit.approach_speed_m_s == Approx(energy_speed).epsilon(0.05));
 }
 
-TEST_CASE("Sliding and rolling are told apart") {
+TEST_CASE("Sliding and rolling are distinguished") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w, 0.3);
@@ -181,7 +181,7 @@ TEST_CASE("Sliding and rolling are told apart") {
   CHECK(c.kind == contact_t::POINT);
 }
 
-TEST_CASE("Whatever tumbles, every contact begins once, hits in between and ends once") {
+TEST_CASE("Every contact of tumbling bodies begins once, hits in between and ends once") {
   const auto solver = GENERATE("impulse", "quick");
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -237,7 +237,7 @@ TEST_CASE("Whatever tumbles, every contact begins once, hits in between and ends
   }
 }
 
-TEST_CASE("Surfaces that chatter within the hysteresis stay one contact") {
+TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});

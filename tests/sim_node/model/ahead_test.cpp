@@ -134,9 +134,7 @@ void stamp(Message& m, std::int64_t now, std::int64_t& seq) {
 
 }  // namespace
 
-TEST_CASE(
-    "Pictures of bodies that are computed ahead are where the bodies are, also of those that are taken back, in "
-    "any order of pages") {
+TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after revisions, for any order of pages") {
   const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: of more the snapshots are fewer
   const unsigned seed = GENERATE(1, 2, 3);
   Dual world(bodies, seed);
@@ -197,7 +195,7 @@ TEST_CASE(
   CHECK(pages < 1400 + 60);
 }
 
-TEST_CASE("A late visual step holds its bodies at rest, and they go on from there") {
+TEST_CASE("A late visual step holds its bodies at rest, and their motion continues from there") {
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
@@ -246,7 +244,7 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
     CHECK(x(t) == Approx(0.017 + 1e-3 * static_cast<double>(t - 30)).margin(1e-6));
 }
 
-TEST_CASE("A contact that moves between the groups is there once, whenever it is looked for") {
+TEST_CASE("A contact that moves between the groups exists exactly once at any time") {
   const unsigned seed = GENERATE(1, 2, 3, 4);
   Dual world(20, seed);
   world.touching = true;

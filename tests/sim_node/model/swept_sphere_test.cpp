@@ -33,7 +33,7 @@ constexpr double kHorizon_s = 0.017;
 
 }  // namespace
 
-TEST_CASE("The closest approach of two straight ways is that of a fine sampling of time") {
+TEST_CASE("The closest approach of two linear motions matches a fine sampling of time") {
   Chance c;
   for (int round = 0; round < 300; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
@@ -47,7 +47,7 @@ TEST_CASE("The closest approach of two straight ways is that of a fine sampling 
   }
 }
 
-TEST_CASE("Two ways first meet when a fine sampling of time says so, or never") {
+TEST_CASE("The first contact time of two linear motions matches a fine sampling of time, or there is none") {
   Chance c;
   int met = 0;
   for (int round = 0; round < 1000; ++round) {
@@ -67,7 +67,7 @@ TEST_CASE("Two ways first meet when a fine sampling of time says so, or never") 
 }
 
 TEST_CASE(
-    "The axes of two capsules are as close as a fine sampling of both says, never further than the ways in time") {
+    "The distance of the axes of two capsules matches a fine sampling and is at most the distance of their motions in time") {
   Chance c;
   for (int round = 0; round < 100; ++round) {
     SweptSphere a = c.sphere(), b = c.sphere();
@@ -85,7 +85,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A grid finds just those boxes that meet the query, whatever their sizes") {
+TEST_CASE("A grid finds exactly the boxes that overlap the query, for any sizes") {
   Chance c;
   const double spread = GENERATE(0.5, 50.0, 1e7);
   std::vector<Bounds> boxes;

@@ -50,7 +50,7 @@ double growth(double k, double d, bool is_explicit, double h, double g, int step
 
 }  // namespace
 
-TEST_CASE("A ball in the shell swings with the square root of k over m") {
+TEST_CASE("A ball in the shell oscillates at the square root of k over m") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1000, rest = kMass_kg * kToyG / k, first = 0.0003, omega = std::sqrt(k / kMass_kg);
   // Steps so short that backward Euler loses little: its decay is h omega^2 / 2 = 0.05/s.
@@ -66,7 +66,7 @@ TEST_CASE("A ball in the shell swings with the square root of k over m") {
   CHECK(worst < first * (0.012 + h * omega));
 }
 
-TEST_CASE("A ball rests where its weight bends the spring, a box four times less deep") {
+TEST_CASE("A ball rests where the spring carries its weight, and a box at a quarter of that depth") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 2000, d = 5;
   Toys toys(law(k, d, is_explicit));
@@ -79,7 +79,7 @@ TEST_CASE("A ball rests where its weight bends the spring, a box four times less
   CHECK(toys.force_N() == Approx((kMass_kg + 0.4) * kToyG).epsilon(1e-9));
 }
 
-TEST_CASE("The damper takes the energy that d says") {
+TEST_CASE("The damper dissipates the energy given by d") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1000, d = 2, rest = kMass_kg * kToyG / k, first = 0.0003, h = 1e-5;
   const double omega = std::sqrt(k / kMass_kg), decay = d / (2 * kMass_kg),
@@ -96,7 +96,7 @@ TEST_CASE("The damper takes the energy that d says") {
   }
 }
 
-TEST_CASE("Each form steps as its recurrence says, to rounding") {
+TEST_CASE("Each integration form follows its recurrence to rounding") {
   const double h = GENERATE(0.001, 0.004);
   const double k = 1000, d = 2, rest = kMass_kg * kToyG / k, m = kMass_kg, g = kToyG;
   Pressed by_force(k, d, true, 1.2 * rest, h), by_end(k, d, false, 1.2 * rest, h);
@@ -114,7 +114,7 @@ TEST_CASE("Each form steps as its recurrence says, to rounding") {
   CHECK(worst < 1e-12);
 }
 
-TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and not beyond") {
+TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and unstable beyond") {
   const double h = 1.0 / 60, g = 3 * kToyG;
   const double d = GENERATE(0.0, 1.0, 3.0);
   const double limit = impulse::stiffest_explicit(1 / kMass_kg, d, h);
@@ -124,14 +124,14 @@ TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and not beyond")
   CHECK(growth(1.01 * limit, d, true, h, g, 2000) > 20);
 }
 
-TEST_CASE("Implicit penalty never swings higher than it began, however stiff") {
+TEST_CASE("Implicit penalty never exceeds its initial amplitude at any stiffness") {
   const double times = GENERATE(1.0, 10.0, 1e3, 1e6);  // the stiffest explicit one
   const double h = GENERATE(0.001, 1.0 / 60);
   const double k = times * impulse::stiffest_explicit(1 / kMass_kg, 0, h);
   CHECK(growth(k, GENERATE(0.0, 5.0), false, h, kToyG, 500) <= 1.0 + 1e-6);
 }
 
-TEST_CASE("The force of an arrival grows from zero and never jumps") {
+TEST_CASE("The force of an arrival grows continuously from zero") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 4000, d = 5, speed = 0.25, h = 1e-4;
   Pressed p(k, d, is_explicit, -0.001, h);
@@ -153,7 +153,7 @@ TEST_CASE("The force of an arrival grows from zero and never jumps") {
   CHECK(most > 3);
 }
 
-TEST_CASE("What is too fast for the shell is stopped where the surfaces meet") {
+TEST_CASE("A body too fast for the shell is stopped where the surfaces meet") {
   const bool is_explicit = GENERATE(true, false);
   const double h = GENERATE(0.001, 1.0 / 60);
   const double speed = GENERATE(1.0, 5.0, 20.0);
@@ -231,8 +231,7 @@ TEST_CASE("A link on a hinge lies on the shell with all of its weight where that
   CHECK(-toys.motion(body).centre_m.z() == Approx(weight / k).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "What runs through the shell bounces with its restitution, what the spring stops comes back with its energy") {
+TEST_CASE("A body that crosses the shell bounces with its restitution, and one stopped by the spring returns with its energy") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1e4, e = 0.6;
   impulse::Law in_shell = law(k, 0, is_explicit);
@@ -264,7 +263,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("What begins inside of the shell is lifted out gently, and rests where its weight bends the spring") {
+TEST_CASE("A body that starts inside the shell is lifted out gently and rests where the spring carries its weight") {
   const bool is_explicit = GENERATE(true, false);
   const double rise = GENERATE(0.0, 0.02), k = 20000;
   impulse::Law in_shell = law(k, 5, is_explicit);
@@ -286,7 +285,7 @@ TEST_CASE("What begins inside of the shell is lifted out gently, and rests where
     CHECK(fastest > 0.08);
 }
 
-TEST_CASE("What arrives from outside meets the whole shell, whether it could begin inside of it or not") {
+TEST_CASE("A body that arrives from outside always meets the whole shell") {
   const bool is_explicit = GENERATE(true, false);
   double force[2];
   for (const bool gentle : {false, true}) {
