@@ -9,7 +9,7 @@
 namespace tactus::sim {
 namespace {
 
-// Points that may press on a body in one direction: a ball has one, a face four.
+// Number of points that may press on a body in one direction: one for a ball, four for a face.
 int points_of(const WorldDef& world, int body) {
   for (const ShapeDef& s : world.shapes)
     if (s.body == body && s.kind != ShapeKind::kSphere) return kMaxManifoldPoints;

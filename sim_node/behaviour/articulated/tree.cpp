@@ -34,7 +34,8 @@ Tree::Tree(const std::vector<LinkDef>& defs) {
     if ((i == 0) != (d.parent < 0))
       refuse("is a second root: a system hangs on the world, or flies, by its first link");
     if (d.is_free && i > 0) refuse("is free though it has a parent");
-    // Massless links are joints of more degrees of freedom; a tree whose leaf weighs nothing has no dynamics.
+    // Joints with several degrees of freedom have massless links in between. A tree with a massless leaf has no
+    // dynamics.
     const Eigen::LLT<Eigen::Matrix3d> positive(d.inertia_kg_m2);
     if (!(d.mass_kg > 0) || positive.info() != Eigen::Success)
       refuse("has a mass or inertia that is not positive");

@@ -6,7 +6,7 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Points that one step remembers: as many as a step of ODE may solve.
+// Maximum number of stored points: the number that a step of ODE may solve.
 constexpr std::size_t kMaxKept = 16384;
 
 void archive(StateArchive& a, FreeBody& b) {
@@ -42,7 +42,7 @@ void archive(StateArchive& a, articulated::ArticulatedSystem& system) {
 }  // namespace
 
 void WarmStart::archive(StateArchive& a, std::size_t shapes) {
-  a.list(kept_, kMaxKept, [&](Kept& k) {
+  a.list(stored_, kMaxKept, [&](StoredPoint& k) {
     a.index(k.shape_a, shapes), a.index(k.shape_b, shapes);
     a(k.place_m), a(k.force_N), a(k.shell_m);
   });

@@ -11,9 +11,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Inverse dynamics in the classical form (Newton and Euler for each link, in three dimensions), written apart from
-// the algorithm under test: the forces along the joints that these accelerations need, and for a free base the
-// force and moment about its centre that would have to hold it.
+// Inverse dynamics in the classical form (Newton and Euler for each link, in three dimensions), independent of the
+// algorithm under test: the joint forces that these accelerations require, and for a free base the force and moment
+// about its centre that would hold it.
 struct NewtonEuler {
   ArticulatedSystem& s;
   std::vector<double> needed;
@@ -117,7 +117,7 @@ TEST_CASE("Inverse dynamics by Newton-Euler returns the applied torques, in tree
     double largest = 1;
     for (const double a : s.accelerations()) largest = std::max(largest, std::abs(a));
     INFO("tree " << n << " fastest " << largest);
-    // Sums of some 50 terms as large as mass, length and acceleration (all below 1 here) allow.
+    // Tolerance of sums of about 50 terms of the size of mass, length and acceleration (all below 1 here).
     for (std::size_t j = 0; j < torque.size(); ++j)
       CHECK(oracle.needed[j] == Approx(torque[j]).margin(1e-12 * largest));
     CHECK(oracle.base_force.norm() < 1e-12 * largest);
@@ -138,8 +138,8 @@ TEST_CASE("The power of forces and moments on links equals the rate of energy") 
     s.add_force(4, force, point);
     s.add_moment(4, moment);
     s.step(h);
-    // One-sided difference: errs by h times the second derivative, some 1e3 W/s here; rounding 1e-15 J / h = 1e-9
-    // W.
+    // One-sided difference: the error is h times the second derivative, about 1e3 W/s here; rounding is 1e-15 J / h =
+    // 1e-9 W.
     CHECK((energy_J(s) - before) / h == Approx(power).margin(5e-3));
   }
 }
@@ -160,7 +160,7 @@ TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
     for (std::size_t j = 0; j < dofs; ++j)
       for (int k = 0; k < 3; ++k) sum[k] += rows[at(k) * dofs + j] * state.rates[j];
     CHECK((sum - s.dynamics().velocity_at(5, here)).norm() < 1e-12 * (1 + sum.norm()));
-    // And as the poses do: central difference, errs by h^2 v'' / 6 with v'' below 1e4 m/s^3.
+    // And with the poses. Central difference: the error is h^2 v'' / 6 with v'' below 1e4 m/s^3.
     const double h = 1e-5;
     std::vector<double> by(dofs);
     for (std::size_t j = 0; j < dofs; ++j) by[j] = h * state.rates[j];
@@ -185,14 +185,14 @@ TEST_CASE("The response of one point to an impulse at another is symmetric and m
     const Eigen::Matrix3d there = s.dynamics().response(a, pa, b, pb), back = s.dynamics().response(b, pb, a, pa);
     const double scale = 1e-11 * (1 + there.norm());
     CHECK((there - back.transpose()).norm() < scale);
-    // The same through the rates of the joints, J M^-1 J^T.
+    // The same with the joint rates, J M^-1 J^T.
     std::vector<double> rows(3 * s.tree().dofs.size());
     s.dynamics().jacobian(a, pa, rows);
     const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
         rows.data(), 3, static_cast<Eigen::Index>(s.tree().dofs.size()));
     for (int k = 0; k < 3; ++k)
       CHECK((jacobian * joined(s, b, pb, Vector3d::Unit(k)) - there.col(k)).norm() < scale);
-    // A blow's energy: what is struck gains half the impulse times the velocity that it takes.
+    // Energy of an impulse: the body gains half the impulse times its change of velocity.
     auto still = s.state();
     std::fill(still.rates.begin(), still.rates.end(), 0.0);
     s.set_state(still);
@@ -216,8 +216,8 @@ TEST_CASE("The response of one joint to an impulse along another is symmetric") 
 }
 
 TEST_CASE("An impulse at the middle of a free rod leaves a joint at its centre of percussion at rest") {
-  // A rod of length l struck at 2/3 l turns about its end without loading it: what the hinge there feels is
-  // nothing, so the free rod and the hinged one move alike.
+  // A rod of length l struck at 2/3 l rotates about its end without a load on it. A hinge there gets no force, so the
+  // free rod and the hinged one move equally.
   std::vector<LinkDef> hinged = {rod_link(-1, JointKind::kBall, {0, 0, 0})};
   const double m = hinged[0].mass_kg, inertia = hinged[0].inertia_kg_m2(2, 2), half = 0.05;
   std::vector<LinkDef> loose = hinged;

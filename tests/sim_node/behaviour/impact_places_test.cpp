@@ -1,4 +1,4 @@
-// Where surfaces met, as events tell it: in the frames of the bodies, whatever frames the law reckons in.
+// Impact positions in the events: in the body frames, for every contact law and its internal frames.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kRadius_m = 0.02, kLength_m = 0.2, kMass_kg = 0.3;
 const Eigen::Isometry3d kLying(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY()));
 
-// A capsule that lies in the air along x, 10 cm above the floor, with its weight somewhere along its axis.
+// A capsule in the air along x, 10 cm above the floor, with its centre of mass somewhere on its axis.
 int add_capsule(WorldDef& w, double centre_of_mass_m) {
   const double across = kMass_kg * kLength_m * kLength_m / 12;
   const int body = add_body(w, "capsule", kMass_kg, Vector3d(across, across, across / 50).asDiagonal(),
@@ -27,15 +27,15 @@ int add_capsule(WorldDef& w, double centre_of_mass_m) {
   return body;
 }
 
-// The scenes: what strikes, and how curved it truly is there.
+// A test scene: the body that strikes, and its true curvature there.
 struct Blow {
   WorldDef world = empty_world();
   int body = -1;
   double curvature_1_m = 0;
 };
 
-// It stands on its head and falls onto it. From the centre of mass, which is in the middle of its head, that is no
-// end of it.
+// It stands upright and falls onto its head. The centre of mass is in the middle of the head, which is thus no end of
+// the body as seen from it.
 Blow falling_head_first() {
   Blow b;
   add_floor(b.world);
@@ -45,7 +45,7 @@ Blow falling_head_first() {
   return b;
 }
 
-// It hangs on one end, is let go when it lies, and strikes with the other.
+// It hangs on one end, is released horizontally, and strikes with the other end.
 Blow swinging_on_a_hinge() {
   Blow b;
   add_floor(b.world);
@@ -67,7 +67,7 @@ TEST_CASE("Impact positions lie on the shapes of the scene, for bodies with an o
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.solver = GENERATE("impulse", "penalty");
-  s.penalty_stiffness_N_m = 100;  // so soft that the blow is one
+  s.penalty_stiffness_N_m = 100;  // so soft that the impact is a single one
   Solver solver(blow.world, s);
   int impacts = 0;
   for (int i = 0; i < 600; ++i) {

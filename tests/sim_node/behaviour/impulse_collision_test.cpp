@@ -43,7 +43,7 @@ TEST_CASE("A ball bounces to e^2n of its height and at the matching times, at 1 
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
   const double r = 0.03, height = 1.37;
   const int ball = toys.ball(0.2, r, {0, 0, r + height}, 0.5, e);
-  // Starts at rest; leapfrog's velocity belongs to half a step earlier.
+  // Starts at rest; the leapfrog velocity belongs to half a step earlier.
   toys.world.free_body(ball).velocity_m_s.z() = h / 2 * kToyG;
   const double fall = std::sqrt(2 * height / kToyG);
   double touch = fall, worst = 0, speed = kToyG * fall;
@@ -62,7 +62,7 @@ TEST_CASE("A ball bounces to e^2n of its height and at the matching times, at 1 
     worst = std::max(worst, std::abs(toys.motion(ball).centre_m.z() - r - expected));
   }
   INFO("e " << e << " h " << h << " worst " << worst);
-  // Impacts inside a step are placed exactly; the rest is rounding.
+  // Impacts inside a step have exact times; the rest is rounding.
   CHECK(worst < 1e-11);
 }
 
@@ -100,8 +100,8 @@ TEST_CASE("A collision with friction and spin keeps linear and angular momentum"
   for (int i = 0; i < 600; ++i) toys.step(0.001);
   CHECK(fa.velocity_m_s.x() < 0);
   CHECK((momenta().first - p).norm() < 1e-12);
-  // The blow is taken at the instant of impact and applied where the bodies were at the start of the step: off by
-  // the way between, h times the closing speed of 1.5 m/s, times the blow of at most (1 + e) 0.21 kg 1.5 m/s.
+  // The impulse is computed at the impact and applied at the poses of the start of the step. The error is the
+  // distance between, h times the closing speed of 1.5 m/s, times the impulse of at most (1 + e) 0.21 kg 1.5 m/s.
   CHECK((momenta().second - l).norm() < 0.001 * 1.5 * 1.6 * 0.21 * 1.5);
 }
 
@@ -114,17 +114,17 @@ TEST_CASE("A ball that strikes a hanging rod follows the impact formula of the c
   const int rod = toys.world.add_system(articulated::ArticulatedSystem({link}));
   toys.capsule(rod, 0.1, 0.01, {0, 0, 1}, 0, e);
   const double m = 0.03, v = 2;
-  // Without restitution a gap may close and no more in a step: so that one step has all of it, none.
+  // Without restitution a gap only closes within a step. This start puts the whole impact into one step.
   const int ball = toys.ball(m, 0.02, {e > 0 ? -0.0305 : -0.03, 0, -where}, 0, e);
   toys.world.free_body(ball).velocity_m_s = {v, 0, 0};
   // Angular momentum about the pivot and Newton's e: v' = v - J / m, w' = J where / I.
   const double inertia = link.inertia_kg_m2(1, 1) + link.mass_kg * 0.05 * 0.05;
   const double blow = (1 + e) * v / (1 / m + where * where / inertia);
-  // One step: the blow falls inside it. Half a millimetre of the way is what the rod turns by after it.
+  // One step with the impact inside. The rod rotates by half a millimetre after it.
   toys.step(0.001);
   const auto& rates = toys.world.system_of(rod).state().rates;
   CHECK(toys.world.free_body(ball).velocity_m_s.x() == Approx(v - blow / m).margin(1e-9));
-  // About +y, x at -z grows by -w... the point at depth d moves with -w d.
+  // About +y, x at -z grows by -w: the point at depth d moves with -w d.
   CHECK(rates[1] == Approx(-blow * where / inertia).epsilon(1e-9));
   CHECK(std::abs(rates[0]) < 1e-12);
 }
@@ -164,9 +164,9 @@ TEST_CASE("A ball that strikes a chain in free space shares its momentum with al
     CHECK(energy() <= had * (1 + 1e-6));
   }
   CHECK(struck);
-  // Held by the impulses exactly; by the integration of links that turn at up to 100 rad/s to the error allowed to
-  // a sub-step, 1e-4 of their rates, in practice a thousandth of that, which as it is not one-sided does not add
-  // up.
+  // The impulses conserve it exactly. The integration of links that rotate at up to 100 rad/s has the error allowed
+  // to a sub-step, 1e-4 of their rates, in practice a thousandth of that. The error has no fixed sign and does not
+  // accumulate.
   CHECK((momentum() - before).norm() < 1e-7 * before.norm());
 }
 
@@ -185,8 +185,8 @@ TEST_CASE("A fast body stops at the surface, also of thin walls") {
     least = std::min(least, toys.least_gap_m());
   }
   INFO("h " << h << " speed " << speed << " e " << e << " least gap " << least);
-  // The ball exactly. A corner of a turning box leaves the straight line by (spin h)^2 / 2 of its arm in a step,
-  // which is not the solver's to know: speculation is linear.
+  // Exact for the ball. A corner of a rotating box deviates from the linear path by (spin h)^2 / 2 of its arm per
+  // step, which speculative contacts ignore, since they are linear.
   CHECK(toys.motion(ball).centre_m.z() > 0.01 - 1e-5);
   const double spin = 2 * speed / 0.04;
   CHECK(least > -1e-5 - 0.5 * std::min(1.0, spin * h * spin * h) * 0.06);

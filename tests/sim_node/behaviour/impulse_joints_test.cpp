@@ -45,8 +45,8 @@ TEST_CASE("A fan under constant torque approaches its equilibrium speed with dra
   for (int i = 0; i < 4; ++i) {
     fan.run(0.25, 20e-3);
     const double t = 0.25 * (i + 1);
-    // Friction takes its share at the start of each step, the torque acts in all of it: the end of a step is half
-    // of friction's share, h * 5 mN m / 2 I = 2.5 mrad/s, above the mean.
+    // Friction acts at the start of each step, the torque during all of it. At the end of a step the rate is half of
+    // friction's share, h * 5 mN m / 2 I = 2.5 mrad/s, above the mean.
     CHECK(fan.rate() == Approx(3.75 * (1 - std::exp(-4 * t))).margin(3e-3));
   }
   SECTION("and what friction can hold stays put") {
@@ -124,7 +124,7 @@ TEST_CASE("A chain that falls on the floor comes to rest there with its weight s
     links.back().axes[1].axis = {0, 1, 0};
     for (JointAxis& a : links.back().axes) a.damping = 2e-3;
   }
-  // Folded up so that nothing is under the floor at the start.
+  // Folded, so that no link is below the floor at the start.
   articulated::ArticulatedSystem system(links, kH);
   auto state = system.state();
   state.positions[7] = 1.2;

@@ -1,4 +1,4 @@
-// What may be set while impulses move the world, against closed forms.
+// Changes of properties during an impulse simulation, against closed forms.
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
@@ -23,7 +23,7 @@ void run(Solver& s, double seconds) {
   for (int i = 0; i < std::lround(seconds / kStep); ++i) s.step();
 }
 
-// A rod of 0.4 m and 0.5 kg that hangs on its end, without weight.
+// A rod of 0.4 m and 0.5 kg that hangs on its end, without gravity.
 constexpr double kLength = 0.4, kMass = 0.5, kAcross = kMass * kLength * kLength / 12;
 constexpr double kAtPivot = kAcross + kMass * kLength * kLength / 4;
 WorldDef hanging_rod(JointKind kind) {
@@ -55,7 +55,7 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
       s.add_force(ball, {0.4, 0, 0}, body(s, ball).centre_m);
       s.step();
     }
-    // A force that sets in counts as if it had acted half a step before: one part in 100 steps.
+    // A new force counts as if it had acted half a step before: one part in 100 steps.
     CHECK(body(s, ball).centre_m.x() == Approx(0.5 * 0.5 * 0.01 * 1.01).epsilon(1e-9));
     CHECK(body(s, ball).inverse_mass_1_kg == Approx(1.25));
   }
@@ -108,7 +108,7 @@ TEST_CASE("Solved by impulses, setting the velocity of a link acts like an impul
   Solver s(w, by_impulse());
   if (!at_start) REQUIRE(s.set_velocity(0, {-2, 0.7, 0.3}));
   run(s, 0.05);
-  // Angular momentum about the pivot: m v L / 2, about y; the centre hangs below.
+  // Angular momentum about the pivot: m v L / 2, about y. The centre hangs below.
   CHECK(body(s, 0).spin_rad_s.y() == Approx(kMass * 2 * kLength / 2 / kAtPivot).epsilon(1e-6));
   CHECK(body(s, 0).spin_rad_s.head<1>().norm() < 1e-9);
   if (at_start) return;
@@ -136,7 +136,7 @@ TEST_CASE("Solved by impulses, motors and dry friction of joints may be set") {
 }
 
 TEST_CASE("Solved by impulses, dry friction of a ball joint opposes rotation equally about every axis") {
-  // Held in its centre, alike about all axes.
+  // Held at its centre, with equal inertia about all axes.
   WorldDef w = empty_world(0);
   const double inertia = 0.01;
   add_body(w, "knob", 1, inertia * Eigen::Matrix3d::Identity(), at(0, 0, 0));

@@ -21,7 +21,7 @@ FreeBody thrown() {
   return b;
 }
 
-// A pendulum and two bodies that fly; three units.
+// A pendulum and two flying bodies; three units.
 World three() {
   World w;
   w.add_free(thrown());
@@ -59,7 +59,7 @@ TEST_CASE("An inactive unit stands still and does not affect the active ones", "
 }
 
 TEST_CASE("A unit that moves to another world continues there unchanged", "[impulse]") {
-  // Alone, in 200 steps of 1 ms; and 100 of them in a world whose steps are others.
+  // Alone, in 200 steps of 1 ms; then 100 of them in a world with other steps.
   World whole = three(), first = three(), second = three();
   for (int i = 0; i < 7; ++i) second.step({}, 0.004);
   for (int i = 0; i < 200; ++i) whole.step({}, 0.001);

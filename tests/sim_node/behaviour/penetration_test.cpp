@@ -18,7 +18,7 @@ Settings by_impulse(double h) {
   return s;
 }
 
-// What is allowed between bodies, m.
+// Allowed penetration between bodies, m.
 constexpr double kAllowed_m = 1e-5;
 
 double deepest(const HardScene& scene, double h, double seconds) {

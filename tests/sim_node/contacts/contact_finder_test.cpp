@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// The motions of the bodies as a world begins, at rest unless told.
+// Initial motions of the bodies of a world, at rest unless set.
 std::vector<BodyMotion> motions(const WorldDef& w) {
   std::vector<BodyMotion> out;
   for (const BodyDef& b : w.bodies) {
@@ -134,7 +134,8 @@ TEST_CASE("Contacts include bodies that an impact reaches within the step throug
   CHECK(contacts(w).empty());
   w.bodies[0].velocity_m_s = {20, 0, 0};
   const auto found = contacts(w);
-  // 20 mm of way for 4 mm gaps: without loss the last is hit too, and with half of it lost at each.
+  // 20 mm of travel for 4 mm of gaps: without loss the last body is hit too; with half of the speed lost at each
+  // impact, two gaps close.
   CHECK(found.size() >= (e > 0 ? 4u : 2u));
   for (const Manifold& m : found)
     if (m.body_b == m.body_a + 1) CHECK(least_gap(m) == Approx(gap));
@@ -171,7 +172,7 @@ TEST_CASE("Motion along a floor causes no impact: a body that rolls past others 
   ContactFinder finder(w, Settings{});
   std::vector<Manifold> found;
   finder.find(rolling, moving(w), h, found);
-  // Whatever the way: what gravity may do to a gap, and the tolerance.
+  // In any direction: the effect of gravity on a gap, and the tolerance.
   CHECK(found.size() == (gap < kG * h * h + Settings{}.contact_tolerance_m ? 3u : 2u));
 }
 

@@ -48,7 +48,7 @@ TEST_CASE("Hertz: area grows with force to the power 2/3 at a point and 1/2 alon
         Approx(2 * 0.1 * std::sqrt(4 * 0.03 * 5e-9 / (std::numbers::pi * 0.1))));
   CHECK(hertz_point_area(0, 50, 5e-9) == 0);
   CHECK(hertz_point_area(1, 0, 5e-9) == 0);
-  // However soft, no wider than the ball.
+  // At any compliance, no wider than the ball.
   CHECK(hertz_point_area(1e6, 50, 1) == Approx(std::numbers::pi * 0.02 * 0.02));
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("The effective mass matches the textbook formula") {
   BodyMotion wall, ball, rod;
   ball.inverse_mass_1_kg = 1 / 0.5;
   ball.inverse_inertia = Eigen::Matrix3d::Identity() * 1e3;
-  // A central hit: the turn does not matter.
+  // Central impact: rotation has no effect.
   CHECK(effective_mass(wall, ball, {0, 0, -0.1}, Vector3d::UnitZ()) == Approx(0.5));
   CHECK(effective_mass(ball, ball, {0, 0, 0.1}, Vector3d::UnitZ()) == Approx(0.25));
   // A uniform rod struck at its end: a quarter of its mass.
@@ -90,7 +90,7 @@ TEST_CASE("Curvature follows from the shape and the contact position") {
 }
 
 TEST_CASE("The triangles of a ball give the curvature of the ball") {
-  // An octahedron whose faces are cut in four, three times, and blown up to the sphere.
+  // An octahedron whose faces are divided in four, three times, and projected to the sphere.
   TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};

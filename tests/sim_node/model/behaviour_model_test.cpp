@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius_m = 0.02, kMass_kg = 0.1;
 
-// A ball of triangles, by which the detector "layers" sees gaps, over a floor that is a box.
+// A ball of triangles, for which the detector "layers" reports gaps, over a box as floor.
 WorldDef ball_over_box(double gap_m) {
   WorldDef w = empty_world();
   const int floor = add_body(w, "floor", 0, Eigen::Matrix3d::Identity(), at(0, 0, -0.05));
@@ -84,7 +84,7 @@ TEST_CASE("Two groups reject the same pairings as one group, without fallback") 
 }
 
 TEST_CASE("Explicit penalty is rejected when it is unstable for step and mass, with the stable limit") {
-  // A mesh presses with up to four points: 4 m / (4 h^2) less the damper's 2 d / h.
+  // A mesh presses with up to four points: 4 m / (4 h^2) minus the damper's 2 d / h.
   Settings s = settings("penalty_explicit", "layers");
   const double most = kMass_kg / 1e-6 - 2 * s.penalty_damping_Ns_m / 1e-3;
   s.penalty_stiffness_N_m = 0.99 * most;
@@ -93,13 +93,13 @@ TEST_CASE("Explicit penalty is rejected when it is unstable for step and mass, w
   CHECK_THAT(refusal(ball_over_box(0.01), s),
              Contains("\"ball\"") && Contains("9e+04 N/m") && Contains("choose \"penalty\""));
   CHECK_THROWS(Solver(ball_over_box(0.01), s));
-  // A sphere with one point bears four times as much of the spring; a fixed body anything.
+  // A sphere with one point allows four times the stiffness; a static body allows any.
   WorldDef w = empty_world();
   add_ball(w, kMass_kg, kRadius_m, {0, 0, 1});
   add_floor(w);
   s.penalty_stiffness_N_m = 3 * most;
   CHECK(refusal(w, s).empty());
-  // The implicit one is stable with any.
+  // The implicit form is stable with any stiffness.
   s.solver = "penalty";
   s.penalty_stiffness_N_m = 1e9;
   CHECK(refusal(ball_over_box(0.01), s).empty());
@@ -131,8 +131,8 @@ TEST_CASE("A body of a scene rests in the shell where the spring carries its wei
     most = std::max(most, last);
   }
   CHECK(last == Approx(kMass_kg * kG).epsilon(1e-3));
-  // After the fall of 0.5 mm to the shell energy gives at most mg (1 + sqrt(1 + 2 k height /
-  // mg)), and the damper at most d v on top of it; a hard contact would strike with m v / h = 10 N.
+  // After the fall of 0.5 mm to the shell, energy gives at most mg (1 + sqrt(1 + 2 k height / mg)), plus at most d v
+  // by the damper. A hard contact would give m v / h = 10 N.
   const double weight = kMass_kg * kG, height = 0.0005, k = s.penalty_stiffness_N_m;
   CHECK(most < weight * (1 + std::sqrt(1 + 2 * k * height / weight)) +
                    s.penalty_damping_Ns_m * std::sqrt(2 * kG * height));

@@ -51,14 +51,14 @@ TEST_CASE("For points with gaps, the reduction keeps the near ones and one of ev
   };
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), aside = Eigen::Vector3d::UnitX();
   Manifold m;
-  // The four lower corners of a tilted box, and far ones high above.
+  // The four lower corners of a tilted box, and distant ones high above.
   std::vector<ManifoldPoint> found{point(0, 0, 0, up),        point(0.1, 0, 1e-3, up),   point(0, 0.1, 1e-3, up),
                                    point(0.1, 0.1, 2e-3, up), point(0.2, 0, 0.08, up),   point(0.2, 0.2, 0.09, up),
                                    point(0, 0.2, 0.1, up),    point(-0.2, -0.2, 0.2, up)};
   gaps::choose_points(found, m);
   REQUIRE(m.count == 4);
   for (const ManifoldPoint& p : m.used()) CHECK(-p.depth_m < 0.01);
-  // Its corners on a floor, two of them at a wall too.
+  // Its corners on a floor, two of them also at a wall.
   found = {point(0, 0, 0, up),   point(0.1, 0, 0, up),       point(0, 0.1, 0, up),
            point(0.1, 0.1, 0, up), point(0.1, 0, 1e-5, aside), point(0.1, 0.1, 1e-5, aside)};
   gaps::choose_points(found, m);

@@ -1,4 +1,4 @@
-// Measured modes: the attribute of <tactus:material> that names them, and their way into the scene.
+// Measured modes: the attribute of <tactus:material> that refers to them, and their transfer into the scene.
 #include "sim_node/model/measured_modes.h"
 
 #include "tests/sim_node/support/scene_file.h"
@@ -8,7 +8,7 @@ using namespace tactus::sim;
 
 namespace {
 
-// As scripts/analyse_modes writes it; an empty cell where one of its two ways found nothing.
+// Format of scripts/analyse_modes; a cell is empty where one of its two methods found no value.
 const std::string kTable =
     "frequency_Hz,damping_1_s,amplitude,decay_frequency_Hz,decay_damping_1_s,agrees\n"
     "900.25,5,0.4,,,0\r\n440.5,3.5,0.2,440.4,3.4,1\n";

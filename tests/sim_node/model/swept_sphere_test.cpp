@@ -21,7 +21,7 @@ struct Chance {
   }
 };
 
-// Smallest distance of the straight ways' centres at the same instant within the horizon.
+// Minimum distance of the centres in linear motion at equal times within the horizon.
 double closest_approach_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
   const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
   const double speed2 = closing.squaredNorm();
@@ -79,7 +79,7 @@ TEST_CASE(
                                  b.velocity_m_s * (kHorizon_s * l / 100))
                                     .norm());
     CHECK(closest_axes_m(a, b, kHorizon_s) <= least + 1e-12);
-    CHECK(closest_axes_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s a hundredth of the horizon each
+    CHECK(closest_axes_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s for a hundredth of the horizon each
     CHECK(closest_axes_m(a, b, kHorizon_s) <= closest_approach_m(a, b, kHorizon_s) + 1e-12);
     CHECK(closest_axes_m(a, b, kHorizon_s) == Approx(closest_axes_m(b, a, kHorizon_s)).margin(1e-9));
   }
