@@ -49,7 +49,7 @@ ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, st
   const DetectorAbilities can = chosen->abilities();
   if (!can.separation)
     throw std::runtime_error("sim_node: the detector \"" + settings.detector +
-                             "\" sees no gaps, which contacts that are found ahead need; choose auto, gaps, layers, ccd or fcl");
+                             "\" reports no gaps, which the contact search needs; choose auto, gaps, layers, ccd or fcl");
   if (can.name != "gaps") chosen_ = std::move(chosen);
   only_triangles_ = can.name == "layers";
   chosen_takes_.resize(kKinds * kKinds, false);

@@ -18,7 +18,7 @@ inline void archive(StateArchive& a, Manifold& m, std::size_t bodies, std::size_
   a(m.count);
   a.require(
       m.count >= 1 && m.count <= kMaxManifoldPoints && std::min({m.shape_a, m.shape_b, m.body_a, m.body_b}) >= 0,
-      "the state holds a contact of nothing");
+      "the state holds a contact without points or bodies");
   for (ManifoldPoint& p : m.used())
     a(p.point_m), a(p.normal), a(p.depth_m), a(p.triangle_a), a(p.triangle_b), a(p.normal_force_N), a(p.friction);
 }

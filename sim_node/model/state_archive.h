@@ -67,7 +67,7 @@ class StateArchive {
   void index(int& x, std::size_t size) {
     (*this)(x);
     require(x >= -1 && x < static_cast<std::int64_t>(size),
-            "the state names a body, shape or surface that is not there");
+            "the state refers to a body, shape or surface that does not exist");
   }
   void operator()(bool& x) {
     std::int64_t wide = x ? 1 : 0;
@@ -118,7 +118,7 @@ class StateArchive {
   void fixed(std::vector<Item>& items, Each each) {
     std::uint64_t size = items.size();
     (*this)(size);
-    require(size == items.size(), "the state is one of another scene");
+    require(size == items.size(), "the state belongs to another scene");
     for (Item& item : items) each(item);
   }
   // A message or a part of one.

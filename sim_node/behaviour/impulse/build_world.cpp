@@ -87,7 +87,7 @@ class Builder {
       throw std::runtime_error(
           "sim_node: joint \"" + joint->name +
           "\" closes a loop, which the solver \"" +
-          settings_.solver + "\" cannot do; remove it or choose quick or step");
+          settings_.solver + "\" does not support; remove it or choose quick or step");
     placed_[index(body)] = true;
     const BodyDef& b = def_.bodies[index(body)];
     LinkDef l;

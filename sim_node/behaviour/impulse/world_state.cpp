@@ -14,7 +14,7 @@ void archive(StateArchive& a, FreeBody& b) {
   const Eigen::LLT<Eigen::Matrix3d> positive(b.inertia_kg_m2);
   a.require(b.mass_kg > 0 && positive.info() == Eigen::Success, "the state holds a mass that is not positive");
   a(b.centre_m), a(b.orientation), a(b.velocity_m_s), a(b.step_s), a(b.spin_rad_s), a(b.force_N), a(b.moment_N_m);
-  a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
+  a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an invalid orientation");
 }
 
 void archive(StateArchive& a, articulated::ArticulatedSystem& system) {

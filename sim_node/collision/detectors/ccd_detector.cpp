@@ -106,7 +106,7 @@ class CcdDetector : public Detector {
       const std::string fault = convexity_fault(mesh);
       if (!fault.empty())
         throw std::runtime_error("sim_node: the detector \"" + std::string(abilities().name) +
-                                 "\" takes convex meshes only, and that of shape \"" + shape.name + "\" " + fault +
+                                 "\" supports convex meshes only, but the mesh of shape \"" + shape.name + "\" " + fault +
                                  "; choose \"layers\" or \"ode\"");
       c.vertices = mesh.vertices;
       for (const Vector3d& v : c.vertices) c.centre += v / static_cast<double>(c.vertices.size());

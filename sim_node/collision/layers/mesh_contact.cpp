@@ -35,7 +35,7 @@ void MeshContact::accept(const ContactMesh& a, const ContactMesh& b) const {
   for (const ContactMesh* m : {&a, &b})
     if (!m->check.well_constructed())
       throw std::runtime_error(
-          "sim_node: the duplicate remover by adjacency needs closed meshes with right neighbours, and in one " +
+          "sim_node: the duplicate remover by adjacency needs closed meshes with correct adjacency, but in one mesh " +
           m->check.fault + "; choose the hashed remover or repair the mesh");
 }
 

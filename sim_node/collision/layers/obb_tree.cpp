@@ -198,7 +198,7 @@ class Gatherer {
 ObbTree::ObbTree(std::span<const Vector3d> vertices, std::span<const int> indices) {
   if (indices.size() % 3 != 0)
     throw std::runtime_error("sim_node: a mesh has " + std::to_string(indices.size()) +
-                             " indices, which are no triangles; give three for each");
+                             " indices, not a multiple of three; give three per triangle");
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     const Vector3d* v[3];
     for (std::size_t k = 0; k < 3; ++k) {

@@ -64,7 +64,7 @@ TEST_CASE("A contact finder accepts only detectors that report gaps and never re
     if (make_detector(name)->abilities().separation)
       CHECK_NOTHROW(ContactFinder(w, s));
     else
-      CHECK_THROWS_WITH(ContactFinder(w, s), Catch::Contains(s.detector) && Catch::Contains("sees no gaps"));
+      CHECK_THROWS_WITH(ContactFinder(w, s), Catch::Contains(s.detector) && Catch::Contains("reports no gaps"));
   }
 }
 

@@ -62,19 +62,19 @@ TEST_CASE("Impulse and penalty models reject a detector that reports overlap onl
       const std::string why = refusal(m, abilities);
       CHECK(why.empty() == (abilities.separation || m.name == "quick" || m.name == "step"));
       if (!why.empty())
-        CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that sees gaps"));
+        CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that reports gaps"));
     }
   }
   for (const std::string solver : {"impulse", "penalty", "penalty_explicit"})
     for (const std::string detector : {"ode", "ccd_mpr"})
-      CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not see"));
+      CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not report"));
 }
 
 TEST_CASE("Two groups reject the same pairings as one group, without fallback") {
   Settings s = settings("impulse", GENERATE("ode", "ccd_mpr"));
   s.groups = "dual";
   s.visual_thread = "none";
-  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not see"));
+  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not report"));
   s.solver = GENERATE("quick", "step", "penalty");
   CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.solver) && Contains("groups = single"));
   s = settings("impulse", "gaps");
