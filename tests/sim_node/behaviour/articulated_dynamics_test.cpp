@@ -108,7 +108,7 @@ TEST_CASE("Inverse dynamics by Newton-Euler returns the applied torques, in tree
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 200; ++n) {
     ArticulatedSystem s(random_tree(1 + n % 9, n % 3 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     std::vector<double> torque(s.tree().dofs.size());
     for (std::size_t j = 0; j < torque.size(); ++j)
       if (!s.tree().links[at(s.tree().dofs[j].link)].def.is_free)
@@ -130,7 +130,7 @@ TEST_CASE("The power of forces and moments on links equals the rate of energy") 
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 30; ++n) {
     ArticulatedSystem s(random_tree(5, n % 2 == 0, random));
-    stir(s, random, 1);
+    randomize_state(s, random, 1);
     const Vector3d force(u(random), u(random), u(random)), moment(u(random), u(random), u(random));
     const Vector3d point = s.dynamics().centre_m(4) + Vector3d(0.1, 0.2, -0.1);
     const double power = force.dot(s.dynamics().velocity_at(4, point)) + moment.dot(s.dynamics().spin_rad_s(4));
@@ -148,7 +148,7 @@ TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
   std::mt19937 random(3);
   for (int n = 0; n < 30; ++n) {
     ArticulatedSystem s(random_tree(6, n % 2 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     const auto state = s.state();
     const std::size_t dofs = state.rates.size();
     const Vector3d local(0.1, -0.2, 0.3);
@@ -177,7 +177,7 @@ TEST_CASE("The response of one point to an impulse at another is symmetric and m
   std::mt19937 random(4);
   for (int n = 0; n < 60; ++n) {
     ArticulatedSystem s(random_tree(2 + n % 7, n % 3 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     const int links = static_cast<int>(s.tree().links.size());
     const int a = n % links, b = (3 * n + 1) % links;
     const Vector3d pa = s.dynamics().centre_m(a) + Vector3d(0.1, 0, 0.2),
@@ -207,7 +207,7 @@ TEST_CASE("The response of one point to an impulse at another is symmetric and m
 TEST_CASE("The response of one joint to an impulse along another is symmetric") {
   std::mt19937 random(5);
   ArticulatedSystem s(random_tree(7, true, random));
-  stir(s, random);
+  randomize_state(s, random);
   const std::size_t n = s.tree().dofs.size();
   Eigen::MatrixXd inverse(n, n);
   for (std::size_t j = 0; j < n; ++j) s.dynamics().strike_dof(static_cast<int>(j), {inverse.data() + j * n, n});

@@ -167,7 +167,7 @@ TEST_CASE("A flying system keeps its momentum and energy") {
     auto links = random_tree(4 + n % 3, true, random);
     for (LinkDef& l : links) l.gravity_m_s2.setZero();
     ArticulatedSystem s(links);
-    stir(s, random, 3);
+    randomize_state(s, random, 3);
     const auto momenta = [&] {
       Vector3d p = Vector3d::Zero(), l = Vector3d::Zero();
       for (std::size_t i = 0; i < links.size(); ++i) {

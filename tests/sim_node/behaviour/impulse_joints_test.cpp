@@ -49,7 +49,7 @@ TEST_CASE("A fan under constant torque approaches its equilibrium speed with dra
     // friction's share, h * 5 mN m / 2 I = 2.5 mrad/s, above the mean.
     CHECK(fan.rate() == Approx(3.75 * (1 - std::exp(-4 * t))).margin(3e-3));
   }
-  SECTION("and what friction can hold stays put") {
+  SECTION("a torque within friction does not move it") {
     fan.run(4, 0);
     CHECK(std::abs(fan.world.motions()[0].spin_rad_s.z()) < 1e-9);
     const double before = fan.angle();
@@ -105,7 +105,7 @@ TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft 
     w.run(1);
     CHECK(w.angle() == Approx(0.1 * (1 - std::cos(20.0))).margin(1e-7));
   }
-  SECTION("a driven damper turns at torque over damping, however light what it brakes") {
+  SECTION("a driven damper turns at torque over damping for any inertia") {
     w.inertia = GENERATE(1e-2, 1e-4, 1e-6);
     w.axis.damping = 1e-2;
     w.build();

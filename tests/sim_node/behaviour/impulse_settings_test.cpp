@@ -40,7 +40,7 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
   const int ball = add_ball(w, 0.2, 0.03, {0, 0, 5});
   add_floor(w);
   Solver s(w, by_impulse());
-  SECTION("gravity holds from the next step on, and the path stays on its parabola") {
+  SECTION("gravity holds from the next step on, and the motion continues on the new parabola") {
     run(s, 0.1);
     const double z = body(s, ball).centre_m.z(), v = -kG * 0.1;
     s.set_gravity({1, 0, -2});
@@ -48,7 +48,7 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
     CHECK(body(s, ball).centre_m.z() == Approx(z + v * 0.1 - 0.01).margin(1e-9));
     CHECK(body(s, ball).centre_m.x() == Approx(0.005).margin(1e-9));
   }
-  SECTION("a force moves another mass otherwise") {
+  SECTION("the acceleration by a force follows the new mass") {
     s.set_gravity({0, 0, 0});
     REQUIRE(s.set_mass(ball, 0.8));
     for (int i = 0; i < 100; ++i) {
@@ -59,21 +59,21 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
     CHECK(body(s, ball).centre_m.x() == Approx(0.5 * 0.5 * 0.01 * 1.01).epsilon(1e-9));
     CHECK(body(s, ball).inverse_mass_1_kg == Approx(1.25));
   }
-  SECTION("a pose is there at once, with its contacts") {
+  SECTION("a pose takes effect at once, with its contacts") {
     CHECK(s.contacts().empty());
     REQUIRE(s.set_pose(ball, at(1, 2, 0.03)));
     CHECK(body(s, ball).centre_m.x() == 1);
     REQUIRE(s.contacts().size() == 1);
     CHECK(s.contacts()[0].points[0].depth_m == Approx(0).margin(1e-9));
   }
-  SECTION("velocity and spin are those of now") {
+  SECTION("velocity and spin are the current ones") {
     REQUIRE(s.set_velocity(ball, {1, 2, 3}));
     REQUIRE(s.set_spin(ball, {0, 0, 7}));
     run(s, 0.1);
     CHECK((body(s, ball).centre_m - Vector3d(0.1, 0.2, 5.3 - kG * 0.005)).norm() < 1e-9);
     CHECK(body(s, ball).spin_rad_s.z() == Approx(7));
   }
-  SECTION("what never moves has none of these") {
+  SECTION("a static body has none of these") {
     CHECK_FALSE(s.set_mass(ball + 1, 1));
     CHECK_FALSE(s.set_pose(ball + 1, at(0, 0, 0)));
     CHECK_FALSE(s.set_velocity(ball + 1, {1, 0, 0}));

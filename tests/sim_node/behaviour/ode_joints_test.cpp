@@ -73,7 +73,7 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
     CHECK(angle_about(q, {1, 0, 0}) == Approx(0.2).margin(1e-3));
     CHECK(angle_about(q, {0, 1, 0}) == Approx(0).margin(1e-3));
   }
-  SECTION("a ball turns all ways, a fixed joint none, a damper brakes the ball") {
+  SECTION("a ball joint rotates about every axis, a fixed joint about none, a damper brakes the ball joint") {
     JointDef& joint = add_joint(j.world, JointKind::kBall, j.parent, j.child, {0, 0, 0}, {1, 0, 0});
     // alpha t^2 / 2; ODE's sum of the steps is alpha t (t + h) / 2.
     const double free = 0.5 * 2 * 0.5 * (solver == "quick" ? 0.501 : 0.5);

@@ -227,7 +227,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     }
     CHECK(angle(solver) == Approx(0.7).margin(5e-3));
   }
-  SECTION("Coulomb friction holds what is weaker and slows what is stronger") {
+  SECTION("Coulomb friction holds a smaller torque and slows a larger one") {
     joint.axes[0].friction = 0.1;
     Solver solver(w, settings);
     for (int i = 0; i < 500; ++i) {
@@ -242,7 +242,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     // With impulses the spin is the mean over a step, which lags by half a step, and breakaway takes one step.
     CHECK(body(solver, wheel).spin_rad_s.z() == Approx(0.05 / 0.01 * 0.5).margin(0.05 / 0.01 * kStep));
   }
-  SECTION("a damper decays exponentially, of ODE with the implicit step's rate") {
+  SECTION("a damper decays exponentially, in ODE with the rate of the implicit step") {
     joint.axes[0].damping = 0.02;
     Solver solver(w, settings);
     for (int i = 0; i < 100; ++i) {

@@ -147,7 +147,7 @@ TEST_CASE("An impact reported within the step is a contact, whatever the gap at 
   update(0, 0.001, 1e-3, nullptr);
   update(1, 0.001, 1e-4, nullptr);
   CHECK(events.empty());
-  SECTION("begin, hit and end lie where the solver says, in steps of any length") {
+  SECTION("begin, hit and end are at the times that the solver reports, in steps of any length") {
     Manifold met = m;
     met.impact.blows = 2;
     met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3,
@@ -164,7 +164,7 @@ TEST_CASE("An impact reported within the step is a contact, whatever the gap at 
     CHECK(events[2].time_ns == 12'000'000);
     CHECK(tracker.live().empty());
   }
-  SECTION("nearer than a residual touches, until it is clearly apart") {
+  SECTION("a gap below the residual is contact until it is clearly open") {
     update(2, 0.001, 8e-6, nullptr);
     CHECK(events.size() == 1);
     for (int tick = 3; tick < 60; ++tick) update(tick, 0.001, tick % 2 ? 4e-5 : 0, nullptr);

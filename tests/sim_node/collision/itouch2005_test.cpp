@@ -82,10 +82,10 @@ TEST_CASE("I-Touch's mode finds no false pair and most of the true ones") {
   MeshContact contact({.mode = ContactMode::kItouch2005});
   MeshContactResult found;
   Random random(21);
-  int near = 0, silent = 0, uncovered = 0;
+  int near = 0, missed = 0, uncovered = 0;
   std::vector<PointPair> alone;
   for (int i = 0; i < 6; ++i) {
-    const Isometry3d pose = brought_near(ma, mb, random, 0.3, 3e-4);
+    const Isometry3d pose = placed_near(ma, mb, random, 0.3, 3e-4);
     const Reach reach{1e-3, 1e-4};
     contact.query(ma, Isometry3d::Identity(), mb, pose, reach, found);
     const Placed pa(a, Isometry3d::Identity()), pb(b, pose);
@@ -93,7 +93,7 @@ TEST_CASE("I-Touch's mode finds no false pair and most of the true ones") {
     check_sound(pa, pb, reach.tolerance_m, found);
     CHECK(truth.near > 0);
     near += truth.near;
-    uncovered += truth.silent;
+    uncovered += truth.missed;
     // Each pair of triangles separately.
     for (std::size_t k = 0; k < pa.triangles.size(); ++k)
       for (std::size_t l = 0; l < pb.triangles.size(); ++l) {
@@ -103,13 +103,13 @@ TEST_CASE("I-Touch's mode finds no false pair and most of the true ones") {
         alone.clear();
         const Corners &t = pa.triangles[k], &u = pb.triangles[l];
         itouch2005_contact(one(t[0], t[1], t[2]), one(u[0], u[1], u[2]), reach, alone);
-        silent += alone.empty();
+        missed += alone.empty();
       }
   }
-  INFO(silent << " of " << near << " silent, " << uncovered << " not covered by their neighbours either");
+  INFO(missed << " of " << near << " missed, " << uncovered << " not covered by their neighbours either");
   // I-Touch misses some pairs: where a vertex over a face hides near edges, or an active vertex lies outside the
   // prism. About 15 % at this margin.
-  CHECK(silent > 0);
-  CHECK(silent < 0.25 * near);
-  CHECK(uncovered <= silent);
+  CHECK(missed > 0);
+  CHECK(missed < 0.25 * near);
+  CHECK(uncovered <= missed);
 }

@@ -268,7 +268,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
       CHECK(events[i].time_ns - events[i - 1].time_ns >= 4'900'000);
     }
   }
-  SECTION("a gap that is too wide ends it, at the time when it opened") {
+  SECTION("a gap that is too wide ends the contact, at the time when it opened") {
     step(60, -1e-5, 0.0);
     step(61, 1e-3, 1.0);
     REQUIRE(events.size() == 2);

@@ -65,7 +65,7 @@ TEST_CASE("A box slides on the slippery half of a slope and stays on the rough h
   CAPTURE(solver);
   CHECK(slid(slope(0.5), solver) == Approx(sliding).epsilon(0.05));
   CHECK(std::abs(slid(slope(1.5), solver)) < 0.02);
-  SECTION("as it would with those coefficients everywhere") {
+  SECTION("equal to uniform friction with those coefficients") {
     WorldDef plain = slope(0.5);
     plain.materials[1].friction_asset = 0;
     CHECK(std::abs(slid(plain, solver)) < 0.02);  // 0.4: it sticks

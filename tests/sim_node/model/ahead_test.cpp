@@ -150,7 +150,7 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after 
   for (; world.now < 600; ++world.now) {
     world.tick();
     for (const int b : world.ahead.promoted) promoted[b] = world.now;
-    const auto tell = [&] {
+    const auto publish = [&] {
       const std::int64_t pace = world.now + stood_ms;
       snapshots.tick(
           sync::sim_time(world.now * kMs), sync::sim_time(pace * kMs), world.source, [](contact_frame_t&) {},
@@ -168,8 +168,8 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after 
                 pace * kMs + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(jitter_ns + 1)), m);
           });
     };
-    tell();
-    for (; world.now == 300 && stood_ms < 100; tell()) ++stood_ms;
+    publish();
+    for (; world.now == 300 && stood_ms < 100; publish()) ++stood_ms;
     for (; !wire.empty() && wire.begin()->first <= (world.now + stood_ms) * kMs; wire.erase(wire.begin()))
       history.push(wire.begin()->second, sync::host_time(wire.begin()->first + 1'000 * kMs));
     // A frame 40 ms in the past, for which all pages have arrived, and a frame of now.

@@ -69,7 +69,7 @@ inline std::vector<articulated::LinkDef> random_tree(int n, bool is_free, std::m
 }
 
 // Sets a random pose and motion.
-inline void stir(articulated::ArticulatedSystem& s, std::mt19937& random, double rate = 3) {
+inline void randomize_state(articulated::ArticulatedSystem& s, std::mt19937& random, double rate = 3) {
   std::uniform_real_distribution<double> u(-1, 1);
   auto state = s.state();
   for (double& q : state.positions) q += u(random);

@@ -30,7 +30,7 @@ struct Placed {
 
 struct Truth {
   int near = 0;          // triangle pairs within the tolerance
-  int silent = 0;        // of these, the number without a point pair on both triangles
+  int missed = 0;        // of these, the number without a point pair on both triangles
   double least = 1e300;  // m, when within the tolerance
 };
 
@@ -53,7 +53,7 @@ inline Truth compare(const Placed& a, const Placed& b, double tolerance_m, const
       if (d > tolerance_m - 1e-9) continue;
       truth.near++;
       truth.least = std::min(truth.least, d);
-      truth.silent += !covered(a, i, b, j, found);
+      truth.missed += !covered(a, i, b, j, found);
     }
   return truth;
 }
@@ -77,7 +77,7 @@ inline void check_sound(const Placed& a, const Placed& b, double tolerance_m, co
 }
 
 // Moves b from far along a random direction to about `gap_m` from a. Each move is a distance that is safe.
-inline Eigen::Isometry3d brought_near(const ContactMesh& a, const ContactMesh& b, Random& random, double from_m,
+inline Eigen::Isometry3d placed_near(const ContactMesh& a, const ContactMesh& b, Random& random, double from_m,
                                       double gap_m) {
   MeshContact contact;
   Eigen::Isometry3d pose = random_pose(random, 1);
