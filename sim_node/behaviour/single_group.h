@@ -1,4 +1,4 @@
-// All bodies in one world, at the rate of the ticks.
+// Mechanics of all bodies in one world, at the tick rate.
 #pragma once
 
 #include <tactus/contact_event_t.hpp>
@@ -47,7 +47,7 @@ class SingleGroup : public Mechanics {
   const Solver& solver() const { return solver_; }
 
  private:
-  // What has been set is so at once.
+  // Makes a change effective at once.
   bool placed(bool done) {
     read();
     return done;

@@ -22,12 +22,12 @@ void DualGroups::release() {
   released_.assign(grouping_.left().begin(), grouping_.left().end());
   if (released_.empty()) return;
   gather_units(released_);
-  departed_.units = units_;
-  departed_.states.resize(units_.size());
-  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], departed_.states[i]);
-  mark(departed_.units, 1);
-  tracker_.take(mask_, departed_.contacts);
-  mark(departed_.units, 0);
+  late_.units = units_;
+  late_.states.resize(units_.size());
+  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], late_.states[i]);
+  mark(late_.units, 1);
+  tracker_.extract(mask_, late_.contacts);
+  mark(late_.units, 0);
   activate();
 }
 
@@ -35,7 +35,7 @@ void DualGroups::release() {
 // still.
 void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::SimTime to,
                           std::vector<contact_event_t>& events) {
-  catching_up_.put(moved_);
+  catching_up_.insert(moved_);
   world_->set_active(units);
   read_motions(world_->active_bodies());
   const sync::Nanoseconds tick = sync::from_seconds(settings_.step_s);
@@ -51,10 +51,10 @@ void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::
   }
   mark(units, 1);
   moved_.clear();
-  catching_up_.take(mask_, moved_);
+  catching_up_.extract(mask_, moved_);
   if (steps > 0) reconcile(from, to, events);
   mark(units, 0);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
 }
 
 // Until now the visual group published the events of these contacts for the last few ticks. Where they differ from
@@ -82,7 +82,7 @@ void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<con
       similar->matched = true;
     } else {
       c.id = ids_.fresh();
-      tracker_.tell(c, contact_event_t::BEGIN, to, motions_, events);
+      tracker_.report(c, contact_event_t::BEGIN, to, motions_, events);
     }
   }
   for (const OpenContact& t : open_) {

@@ -81,7 +81,7 @@ void VisualGroup::wake(std::span<const int> woken) {
   moved_.clear();
   std::copy_if(resting_contacts_.begin(), resting_contacts_.end(), std::back_inserter(moved_), wakes);
   std::erase_if(resting_contacts_, wakes);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
   for (const int body : woken) mask_[index(body)] = 0;
 }
 
@@ -89,7 +89,7 @@ void VisualGroup::settle(sync::Nanoseconds length) {
   const auto calm = resting_.settle(world_->active_bodies(), motions_, touching_, supported_, length);
   if (calm.empty()) return;
   for (const int body : calm) mask_[index(body)] = 1;
-  tracker_.take(mask_, resting_contacts_);
+  tracker_.extract(mask_, resting_contacts_);
   for (const int body : calm) {
     motions_[index(body)].velocity_m_s.setZero();
     motions_[index(body)].spin_rad_s.setZero();
@@ -103,7 +103,7 @@ void VisualGroup::remove_leaving(const VisualTask& task) {
   wake(resting_.wake_with(list_));
   mark(task.leaves, 1);
   moved_.clear();
-  tracker_.take(mask_, moved_);
+  tracker_.extract(mask_, moved_);
   mark(task.leaves, 0);
   std::erase_if(units_,
                 [&](int unit) { return std::binary_search(task.leaves.begin(), task.leaves.end(), unit); });
@@ -117,13 +117,13 @@ void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
   for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
   world_->set_active(enters.units);
   read_motions();
-  entering_tracker_.put(enters.contacts);
-  sub_steps(entering_tracker_, now_ - task.missed, task.missed, out, false);
+  newcomers_.insert(enters.contacts);
+  sub_steps(newcomers_, now_ - task.missed, task.missed, out, false);
   moved_.clear();
   std::fill(mask_.begin(), mask_.end(), 1);
-  entering_tracker_.take(mask_, moved_);
+  newcomers_.extract(mask_, moved_);
   std::fill(mask_.begin(), mask_.end(), 0);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
   units_.insert(units_.end(), enters.units.begin(), enters.units.end());
   std::sort(units_.begin(), units_.end());
 }

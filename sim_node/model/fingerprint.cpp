@@ -9,7 +9,7 @@
 namespace tactus::sim {
 namespace {
 
-// Takes values, where an archive takes what it could also read.
+// Write-only archive that accepts values instead of references.
 struct Words {
   StateArchive a;
   template <class... T>

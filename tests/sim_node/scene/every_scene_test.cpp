@@ -94,7 +94,7 @@ TEST_CASE(
     CHECK(fastest < kFastest_m_s);
     CHECK(farthest < kFarthest_m);
     if (const auto* single = dynamic_cast<const SingleGroup*>(&s.mechanics())) {
-      CHECK(single->solver().complaints() == 0);
+      CHECK(single->solver().solver_failures() == 0);
       CHECK(single->solver().largest_joint_gap_m() < 0.005);
     }
   }
