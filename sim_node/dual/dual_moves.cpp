@@ -22,12 +22,12 @@ void DualGroups::release() {
   released_.assign(grouping_.left().begin(), grouping_.left().end());
   if (released_.empty()) return;
   gather_units(released_);
-  late_.units = units_;
-  late_.states.resize(units_.size());
-  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], late_.states[i]);
-  mark(late_.units, 1);
-  tracker_.extract(mask_, late_.contacts);
-  mark(late_.units, 0);
+  departed_.units = units_;
+  departed_.states.resize(units_.size());
+  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], departed_.states[i]);
+  mark(departed_.units, 1);
+  tracker_.extract(mask_, departed_.contacts);
+  mark(departed_.units, 0);
   activate();
 }
 
