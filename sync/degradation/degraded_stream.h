@@ -16,9 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "sync/random/keyed_random.h"
-#include "sync/degradation/snapshot.h"
+#include "sync/bus/page_assembler.h"
 #include "sync/degradation/operator_chain.h"
+#include "sync/degradation/snapshot.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
 
@@ -100,9 +101,10 @@ class DegradedSnapshots {
 
  private:
   static constexpr std::size_t kRemembered = 256;
-  // Pages of a snapshot are told within the time to the next; of so many some may be on their way at once.
-  static constexpr std::size_t kGathering = 4;
-  using Gathered = std::map<std::int32_t, std::pair<Message, HostTime>>;  // by page
+  // Pages of a snapshot are sent within the time to the next; four may be on their way at once. 2,000 pages of 18
+  // bodies are the largest.
+  static constexpr PageLimits kGathering{.groups = 4, .pages = 4096};
+  using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 
   // The pages of the snapshot of a stream that arrived last.
   struct Arriving {
@@ -138,24 +140,18 @@ class DegradedSnapshots {
 
   void gather(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    auto it = std::find_if(gathering_.begin(), gathering_.end(), [&](const auto& g) { return g.first == key; });
-    if (it == gathering_.end()) it = gathering_.insert(it, {key, {}});
-    const auto pages = static_cast<std::size_t>(m.pages);
-    it->second.insert_or_assign(m.page, std::make_pair(std::move(m), arrival));
+    const int number = m.page, count = m.pages;
+    const auto judge = [&](typename Pages::Group& group) {
+      std::vector<Signal> signals;
+      for (const auto& [number, page] : group.pages) {
+        const std::vector<Signal> more = signals_of(page.first);
+        signals.insert(signals.end(), more.begin(), more.end());
+      }
+      const Decision v = verdict_on(group.pages.begin()->page.first, arrival, signals, stack, decisions);
+      for (auto& [number, page] : group.pages) put(std::move(page.first), page.second, v, stack);
+    };
     // One that newer ones have overtaken is judged by what came of it: what is missing counts as a change.
-    if (it->second.size() < pages) {
-      if (gathering_.size() <= kGathering) return;
-      it = gathering_.begin();
-    }
-    const Gathered whole = std::move(it->second);
-    gathering_.erase(it);
-    std::vector<Signal> signals;
-    for (const auto& [number, page] : whole) {
-      const std::vector<Signal> more = signals_of(page.first);
-      signals.insert(signals.end(), more.begin(), more.end());
-    }
-    const Decision v = verdict_on(whole.begin()->second.first, arrival, signals, stack, decisions);
-    for (const auto& [number, page] : whole) put(page.first, page.second, v, stack);
+    if (auto* whole = gathering_.add(key, number, count, {std::move(m), arrival}, judge)) judge(*whole);
   }
 
   Decision verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& stack,
@@ -197,7 +193,7 @@ class DegradedSnapshots {
   }
 
   DelayQueue<Message> waiting_;
-  std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
+  Pages gathering_{kGathering};
   std::map<std::uint64_t, Arriving> arriving_;                // by stream
   std::map<std::uint64_t, Decision> verdicts_;
   std::deque<std::uint64_t> order_;

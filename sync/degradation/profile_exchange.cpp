@@ -12,6 +12,7 @@
 namespace tactus::sync {
 namespace {
 constexpr std::size_t kPageBytes = 1200;
+static_assert(ProfileReceiver::kMaxPages == kMaxProfileBytes / kPageBytes + 1);
 constexpr const char* kFile = "profile.in_force";
 }  // namespace
 
@@ -33,22 +34,10 @@ void send_profile(Bus& bus, const ProfileInForce& profile) {
 
 std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
   if (page.generation <= generation_) return std::nullopt;
-  if (static_cast<std::size_t>(page.pages) > kMaxProfileBytes / kPageBytes + 1) return std::nullopt;
-  const auto same = [&](const Partial& p) { return p.generation == page.generation && p.hash == page.hash; };
-  const auto known = std::find_if(partials_.begin(), partials_.end(), same);
-  Partial partial{page.generation, page.hash, {}};
-  if (known != partials_.end()) {
-    partial = std::move(*known);
-    partials_.erase(known);
-  }
-  partial.pages[page.page] = page.text;
-  if (static_cast<int>(partial.pages.size()) < page.pages) {
-    partials_.push_back(std::move(partial));
-    if (partials_.size() > kMaxOnTheirWay) partials_.pop_front();
-    return std::nullopt;
-  }
+  const auto* pages = pages_.add({page.generation, page.hash}, page.page, page.pages, page.text);
+  if (!pages) return std::nullopt;
   ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};
-  for (const auto& [number, text] : partial.pages) whole.text += text;
+  for (const auto& [number, text] : pages->pages) whole.text += text;
   if (static_cast<int>(whole.text.size()) != page.size ||
       fnv1a_64(whole.text.data(), whole.text.size()) != page.hash)
     return std::nullopt;

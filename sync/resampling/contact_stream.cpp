@@ -13,8 +13,8 @@ constexpr std::size_t kRememberedLives = 8192;
 constexpr std::size_t kSnapshots = 128;
 // Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
 // kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
-constexpr std::size_t kPartialSnapshots = 64;
-constexpr std::size_t kPartialPages = 8 * ContactStream::kMaxPages;
+constexpr PageLimits kPartial{
+    .groups = 64, .pages = ContactStream::kMaxPages, .total = 8 * static_cast<std::size_t>(ContactStream::kMaxPages)};
 
 float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
 
@@ -32,6 +32,9 @@ Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
 }
 
 }  // namespace
+
+ContactStream::ContactStream(OwnClock own)
+    : follower_(own), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
 
 bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
   const std::int64_t before = follower_.incarnation();
@@ -56,7 +59,7 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
 void ContactStream::forget_after(SimTime latest) {
   pending_.erase(pending_.upper_bound(latest), pending_.end());
   for (std::size_t group = 0; group < kGroups; ++group) {
-    partial_[group].erase(partial_[group].upper_bound(latest), partial_[group].end());
+    partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
     while (!snapshots.empty() && snapshots.back().time > latest) {
       contacts_kept_[group] -= snapshots.back().contacts.size();
@@ -117,32 +120,16 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
   const auto at = std::lower_bound(snapshots.begin(), snapshots.end(), time, [](const Snapshot& s, SimTime t) { return s.time < t; });
   if (at != snapshots.end() && at->time == time) return;
-  Pages& pages = partial_[group][time];
-  pages.pages = m.pages;
-  pages.arrived[m.page] = {m.contacts, m.header.seq};
-  if (static_cast<int>(pages.arrived.size()) < pages.pages) {
-    bound_partial(group);
-    return;
-  }
+  const Pages::Group* whole = partial_[group].add(time, m.page, m.pages, {m.contacts, m.header.seq});
+  if (!whole) return;
   Snapshot snapshot{time, {}, {}};
-  for (auto& [number, page] : pages.arrived) {
+  for (const auto& [number, page] : whole->pages) {
     snapshot.contacts.insert(snapshot.contacts.end(), page.contacts.begin(), page.contacts.end());
     snapshot.seqs.resize(snapshot.contacts.size(), page.seq);
   }
-  partial_[group].erase(time);
   // One that was overtaken may still become whole, unless it is too old to matter.
-  partial_[group].erase(partial_[group].begin(), partial_[group].lower_bound(time - kStaleAfter));
+  partial_[group].drop_if([&](SimTime t) { return t < time - kStaleAfter; });
   insert(group, std::move(snapshot));
-}
-
-void ContactStream::bound_partial(std::size_t group) {
-  auto& partial = partial_[group];
-  std::size_t pages = 0;
-  for (const auto& [time, p] : partial) pages += p.arrived.size();
-  while (partial.size() > kPartialSnapshots || (pages > kPartialPages && partial.size() > 1)) {
-    pages -= partial.begin()->second.arrived.size();
-    partial.erase(partial.begin());
-  }
 }
 
 // One that was overtaken finds its place: the newest alone never decides that those after it are of no use.

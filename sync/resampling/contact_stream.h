@@ -2,6 +2,7 @@
 // the integrals over the tick. Pure: time and messages are arguments.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -11,8 +12,9 @@
 #include <tactus/contact_frame_t.hpp>
 #include <vector>
 
-#include "sync/resampling/sample_status.h"
+#include "sync/bus/page_assembler.h"
 #include "sync/clocks/sim_clock_tracker.h"
+#include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -53,7 +55,7 @@ class ContactStream {
   static constexpr Nanoseconds kSpan{1'000'000'000};
 
   // own: messages of another clock are read through its map; those of another run by arrival.
-  explicit ContactStream(OwnClock own) : follower_(own) {}
+  explicit ContactStream(OwnClock own);
 
   // A sense asks for what is so long ago: so much more than kSpan is kept.
   void keep(Nanoseconds delay) { span_ = kSpan + delay; }
@@ -98,10 +100,6 @@ class ContactStream {
     Contacts contacts;
     std::int64_t seq = 0;
   };
-  struct Pages {
-    std::map<int, Page> arrived;
-    int pages = 0;
-  };
   struct Life {  // of a contact, from its events
     std::optional<contact_event_t> begin;
     std::optional<SimTime> end;
@@ -110,7 +108,6 @@ class ContactStream {
   bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   void forget_after(SimTime latest);
   void insert(std::size_t group, Snapshot snapshot);
-  void bound_partial(std::size_t group);
   void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
   SampleStatus status(const std::deque<Snapshot>& group, SimTime t) const;
@@ -135,7 +132,8 @@ class ContactStream {
   std::map<std::int64_t, Life> lives_;
   std::deque<std::int64_t> lives_order_;
 
-  std::map<SimTime, Pages> partial_[kGroups];
+  using Pages = PageAssembler<Page, SimTime>;
+  std::array<Pages, kGroups> partial_;
   std::deque<Snapshot> snapshots_[kGroups];  // in order of time
   std::size_t contacts_kept_[kGroups] = {};
   Nanoseconds span_ = kSpan;
