@@ -239,7 +239,7 @@ int tactus::audio::run(int argc, char** argv) try {
           return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
         });
         sampler->record(strike, event, *impacts);
-        output.submit(strike);
+        output.submit(strike, impacts->table());
       };
       due.handle(now, late, goes_on, sound, drop);
     }
