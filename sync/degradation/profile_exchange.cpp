@@ -36,13 +36,13 @@ std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
   if (page.generation <= generation_) return std::nullopt;
   const auto* pages = pages_.add({page.generation, page.hash}, page.page, page.pages, page.text);
   if (!pages) return std::nullopt;
-  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};
+  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns), {}};
   for (const auto& [number, text] : pages->pages) whole.text += text;
   if (static_cast<int>(whole.text.size()) != page.size ||
       fnv1a_64(whole.text.data(), whole.text.size()) != page.hash)
     return std::nullopt;
   try {
-    parse_profile(whole.text, "profile");
+    whole.parsed = std::make_shared<const Profile>(parse_profile(whole.text, "profile"));
   } catch (const std::invalid_argument& e) {
     refusal_ = e.what();
     return std::nullopt;
@@ -71,22 +71,29 @@ std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, 
   p.start = sim_time(start_ns);
   if (fnv1a_64(p.text.data(), p.text.size()) != p.hash) return std::nullopt;
   try {
-    parse_profile(p.text, "profile");
+    p.parsed = std::make_shared<const Profile>(parse_profile(p.text, "profile"));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
   return p;
 }
 
-std::string read_profile_file(const std::string& path) {
+ProfileInForce read_profile(std::string xml, const std::string& file) {
+  ProfileInForce p;
+  p.parsed = std::make_shared<const Profile>(parse_profile(xml, file));
+  p.hash = fnv1a_64(xml.data(), xml.size());
+  p.text = std::move(xml);
+  return p;
+}
+
+ProfileInForce read_profile_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   if (!file || !(text << file.rdbuf()))
     throw std::invalid_argument("the profile " + path + " cannot be read; give the path of an XML file");
   if (text.str().size() > kMaxProfileBytes)
     throw std::invalid_argument("the profile " + path + " is larger than 64 kB; leave out what it does not need");
-  parse_profile(text.str(), path);
-  return text.str();
+  return read_profile(text.str(), path);
 }
 
 }  // namespace tactus::sync

@@ -16,14 +16,6 @@ namespace tactus::sync {
 
 class Bus;
 
-// A profile that is in force, and since when.
-struct ProfileInForce {
-  std::string text;  // XML
-  std::int64_t hash = 0;
-  std::int64_t generation = 0;  // larger is newer
-  SimTime start{};
-};
-
 // Longest profile, bytes.
 inline constexpr std::size_t kMaxProfileBytes = 65536;
 
@@ -61,8 +53,8 @@ class ProfileReceiver {
   std::string refusal_;
 };
 
-// The XML of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
+// The profile of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
 // profile.
-std::string read_profile_file(const std::string& path);
+ProfileInForce read_profile_file(const std::string& path);
 
 }  // namespace tactus::sync

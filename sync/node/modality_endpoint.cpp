@@ -38,9 +38,8 @@ ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor of)
       simulation_(node.bus().clocks()),
       playout_(declaration_.modality),
       reporter_(declaration_.modality) {
-  if (node.options().profile.empty()) return;
-  const std::string& text = node.options().profile;
-  put_in_force({text, fnv1a_64(text.data(), text.size()), 0, SimTime{}});
+  if (node.options().profile.text.empty()) return;
+  put_in_force(node.options().profile);
   receiver_.set_generation(0);
 }
 
@@ -53,33 +52,34 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   stack_.set_scene(names_);
   tool_ = tool;
   // What was said on the command line or since then holds.
-  if (!node_.options().profile.empty() || receiver_.generation() > 0) return;
+  if (!node_.options().profile.text.empty() || receiver_.generation() > 0) return;
   // A scene that brings none takes away that of the scene before.
   if (scene.profile.empty() && profile_hash_ == 0) return;
   const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
   const std::int64_t hash = fnv1a_64(text.data(), text.size());
-  if (hash != profile_hash_) put_in_force({text, hash, 0, SimTime{}});
+  if (hash == profile_hash_) return;
+  try {
+    put_in_force(read_profile(text, "profile"));
+  } catch (const std::invalid_argument& e) {
+    std::cerr << node_.declaration().node << ": refused: " << e.what() << std::endl;
+  }
 }
 
 void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   const NodeDescriptor& d = declaration_;
-  try {
-    const Profile parsed = parse_profile(profile.text, "profile");
-    stack_ = OperatorChain(parsed, d.modality, profile.start);
-    stack_.set_scene(names_);
-    for (const auto& stream : streams_) stream->change_profile();
-    profile_hash_ = profile.hash;
-    profile_name_ = parsed.name;
-    node_.set_profile(profile.hash);
-    if (profile.generation > 0 || !parsed.rules.empty())
-      std::cerr << d.node << ": profile \"" << parsed.name << "\", "
-                << (stack_.empty() ? "nothing" : "degrades this sense") << std::endl;
-    for (const std::string& name : not_declared(parsed, d))
-      std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
-                << std::endl;
-  } catch (const std::invalid_argument& e) {
-    std::cerr << node_.declaration().node << ": refused: " << e.what() << std::endl;
-  }
+  const Profile& parsed = *profile.parsed;
+  stack_ = OperatorChain(parsed, d.modality, profile.start);
+  stack_.set_scene(names_);
+  for (const auto& stream : streams_) stream->change_profile();
+  profile_hash_ = profile.hash;
+  profile_name_ = parsed.name;
+  node_.set_profile(profile.hash);
+  if (profile.generation > 0 || !parsed.rules.empty())
+    std::cerr << d.node << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
+              << std::endl;
+  for (const std::string& name : not_declared(parsed, d))
+    std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
+              << std::endl;
 }
 
 void ModalityEndpoint::take_control(HostTime) {
