@@ -161,8 +161,8 @@ int tactus::haptic::run(int argc, char** argv) try {
       }
       device.reset();
     }
-    while (const auto m = touch.pop())
-      if (session) session->push(m->message, m->arrival);
+    while (auto m = touch.pop())
+      if (session) session->push(std::move(m->message), m->arrival);
     while (const auto m = events.pop())
       if (session) session->push(m->message, m->arrival);
     while (const auto m = device_states.pop())

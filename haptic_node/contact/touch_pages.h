@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tactus/touch_model_t.hpp>
 
+#include "haptic_node/contact/touch_model_view.h"
 #include "sync/bus/page_assembler.h"
 
 namespace tactus::haptic {
@@ -14,13 +15,16 @@ class TouchPages {
   // Models that may be on their way at once, since pages of one step and the next may overtake each other; of more
   // the oldest is given up. Design: two steps, and what a reordering profile adds.
   static constexpr std::size_t kGathering = 4;
-  static constexpr int kMaxPages =
-      16;  // design: twice what a tool has, 49 planes of 7 a page; larger sets are ignored
+  // Larger models are ignored.
+  static constexpr int kMaxPages = TouchModelView::kMaxPages;
 
-  // Takes a page. When it is the last that its model lacked, the whole model: page 0 of 1, with the planes and books
-  // of all pages in their order; valid until the next call. Else null. Repeated pages change nothing.
-  // Realtime-safe once the lists have grown.
-  const touch_model_t* add(touch_model_t page);
+  TouchPages() = default;
+  TouchPages(const TouchPages&) = delete;  // views point into it
+  TouchPages& operator=(const TouchPages&) = delete;
+
+  // Takes a page. When it is the last that its model lacked, the whole model, valid until the next whole one. Else none.
+  // Repeated pages change nothing. Realtime-safe once the lists have grown.
+  TouchModelView add(touch_model_t page);
   // Whether the page given last was of a model that was whole already.
   bool repeated() const { return repeated_; }
   // Forgets all that are not whole.
@@ -36,7 +40,7 @@ class TouchPages {
   };
   sync::PageAssembler<touch_model_t, Key> pages_{
       {.groups = kGathering, .pages = kMaxPages, .remembered = kGathering}};
-  touch_model_t whole_{};
+  touch_model_t single_{};  // the newest whole one, if it has one page
   bool repeated_ = false;
 };
 

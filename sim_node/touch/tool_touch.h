@@ -10,6 +10,7 @@
 #include <tactus/contact_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <utility>
 #include <vector>
 
 #include "sim_node/model/body_motion.h"
@@ -46,6 +47,8 @@ class ToolTouch {
 
   // The planes, nearest first, whole; pages, header and clock are the publisher's. Tool -1: it only points, and there is none to send.
   const touch_model_t& model() const { return model_; }
+  // Gives the model away for another of the same tool, which the next step writes over: nothing is copied.
+  void exchange_model(touch_model_t& other) { std::swap(model_, other); }
   // Where the tool is: its proxy, as last heard of.
   const Eigen::Vector3d& proxy() const { return proxy_; }
   const Eigen::Vector3d& proxy_velocity() const { return proxy_velocity_; }

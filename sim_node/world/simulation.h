@@ -92,6 +92,7 @@ class Simulation {
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
   void detect_contacts();
+  void take_model(std::size_t tool);
   void place_tools(std::span<BodyMotion> motions);
   void find_tools();
   void sort_news(std::span<const tool_state_t> messages);
