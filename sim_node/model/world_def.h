@@ -8,7 +8,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/asset.h"
 
 namespace tactus::sim {
 

@@ -14,19 +14,13 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
+#include "sync/assets/asset.h"
 #include "sync/bus/bus.h"
 #include "sync/bus/page_assembler.h"
 
 namespace tactus::sync {
 
 inline constexpr std::size_t kChunkBytes = 1024;
-using Bytes = std::vector<std::uint8_t>;
-
-struct Asset {
-  std::int8_t kind = asset_ref_t::SCENE;
-  std::string name{};
-  Bytes bytes{};
-};
 
 // The sending side, in sim_node. Sends at most kChunksPerPoll chunks a call (bulk port), so that a late joiner
 // never delays a tick by more than a few microseconds.

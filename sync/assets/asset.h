@@ -1,0 +1,19 @@
+// An asset of a scene: the bytes of a mesh, a picture, a shader or the scene itself.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tactus/asset_ref_t.hpp>
+#include <vector>
+
+namespace tactus::sync {
+
+using Bytes = std::vector<std::uint8_t>;
+
+struct Asset {
+  std::int8_t kind = asset_ref_t::SCENE;
+  std::string name{};
+  Bytes bytes{};
+};
+
+}  // namespace tactus::sync
