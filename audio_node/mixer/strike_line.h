@@ -17,9 +17,9 @@ class StrikeLine {
 
   explicit StrikeLine(CallbackQueues& crossing) : crossing_(crossing) {}
 
-  // table: what the sides of the strike refer to; null: into none that may go. False when the queue is full.
+  // table: the sides of the strike refer to it; null: to none that is ever freed. False when the queue is full.
   bool submit(Strike strike, const Table& table);
-  // Once a tick: frees the tables of earlier scenes that the callback has let go of.
+  // Once a tick: frees the tables of earlier scenes that the callback reads no more.
   void free_unread();
   // Tables of earlier scenes that are kept; at most one for each strike that the callback holds.
   std::size_t kept() const { return kept_.size(); }

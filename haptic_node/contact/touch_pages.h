@@ -13,7 +13,7 @@ namespace tactus::haptic {
 class TouchPages {
  public:
   // Models that may be on their way at once, since pages of one step and the next may overtake each other; of more
-  // the oldest is given up. Design: two steps, and what a reordering profile adds.
+  // the oldest is given up. Design: two steps, and two more of a reordering profile.
   static constexpr std::size_t kGathering = 4;
   // Larger models are ignored.
   static constexpr int kMaxPages = TouchModelView::kMaxPages;

@@ -7,10 +7,10 @@
 
 namespace tactus::sim {
 
-// What a page holds at most, of each; by the size of a datagram (tests/lcmtypes/size_test.cpp).
+// The most of each on a page, by the size of a datagram (tests/lcmtypes/size_test.cpp).
 inline constexpr std::size_t kPlanesOfPage = 7, kBooksOfPage = 7;
 
-// Calls send(page) for each page of a whole model, first to last: at least one, so that an empty model is told
+// Calls send(page) for each page of a whole model, first to last: at least one, so that an empty model is sent
 // too. `page` is scratch, kept by the caller so that nothing is allocated from step to step. A model of one page is not
 // copied: the scratch page borrows its lists.
 template <class Send>

@@ -1,5 +1,4 @@
-// Reassembles messages that are sent in pages. Pure. Bounded, whatever arrives: pages that are lost, repeated,
-// reordered or forged.
+// Reassembles messages that are sent in pages. Pure. Bounded, also when pages are lost, repeated, reordered or forged.
 #pragma once
 
 #include <algorithm>
@@ -69,7 +68,7 @@ struct PageLimits {
 // page came first, or the one of the smallest key.
 enum class PageOrder : std::uint8_t { kFirstPage, kNewestPage, kKey };
 
-// Key: what all pages of one message have in common and pages of no other message have.
+// Key: all pages of one message have it in common, and no page of another message has it.
 // Realtime-safe: once its memory has grown, as far as Page is.
 template <class Page, class Key>
 class PageAssembler {

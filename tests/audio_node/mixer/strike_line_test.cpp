@@ -80,7 +80,7 @@ TEST_CASE("When the callback has ended, nothing but the newest table is kept") {
   CHECK(l.bench->crossing.reports.room() + 10 == l.bench->crossing.reports.capacity());
 }
 
-TEST_CASE("Whatever is struck in whatever scene, no strike sounds with modes that have gone") {
+TEST_CASE("No strike sounds with modes that have gone, over any order of strikes and scenes") {
   std::mt19937 random(4);
   Line l;
   auto of = table(300);

@@ -1,4 +1,4 @@
-// Pages on a wire that loses, repeats, reorders and forges them: only whole messages come out, each once, and what is kept
+// Pages on a wire that loses, repeats, reorders and forges them: only whole messages come out, each once, and memory
 // stays bounded.
 #include "sync/bus/page_assembler.h"
 
@@ -36,7 +36,7 @@ using Assembler = PageAssembler<std::string, std::int64_t>;
 
 }  // namespace
 
-TEST_CASE("A message comes out with its last page, in the order of its pages, whatever the order of their arrival") {
+TEST_CASE("A message comes out with its last page, in the order of its pages, for any order of arrival") {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const int count = 1 + static_cast<int>(random() % 12);
@@ -53,7 +53,7 @@ TEST_CASE("A message comes out with its last page, in the order of its pages, wh
   }
 }
 
-TEST_CASE("Whatever the wire does to pages, each message whose pages all arrive comes out once and no other does") {
+TEST_CASE("Of pages that are lost, repeated and reordered, each message that is whole comes out once and no other does") {
   const auto order = GENERATE(PageOrder::kFirstPage, PageOrder::kNewestPage, PageOrder::kKey);
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
@@ -118,11 +118,11 @@ TEST_CASE("The incomplete message that is given up is the one that the order nam
   const auto [order, gone] = GENERATE(std::pair{PageOrder::kFirstPage, 8}, std::pair{PageOrder::kNewestPage, 3}, std::pair{PageOrder::kKey, 1});
   Assembler pages({.groups = 3}, order);
   std::vector<std::int64_t> dropped;
-  const auto note = [&](Assembler::Group& g) { dropped.push_back(g.key); };
-  for (const std::int64_t key : {8, 3, 1}) pages.add(key, 0, 3, "x", note);
-  for (const std::int64_t key : {8, 1}) pages.add(key, 1, 3, "x", note);
+  const auto drop = [&](Assembler::Group& g) { dropped.push_back(g.key); };
+  for (const std::int64_t key : {8, 3, 1}) pages.add(key, 0, 3, "x", drop);
+  for (const std::int64_t key : {8, 1}) pages.add(key, 1, 3, "x", drop);
   CHECK(dropped.empty());
-  pages.add(5, 0, 3, "x", note);
+  pages.add(5, 0, 3, "x", drop);
   CHECK(dropped == std::vector<std::int64_t>{gone});
 }
 
