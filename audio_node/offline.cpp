@@ -1,5 +1,6 @@
 #include "audio_node/offline.h"
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -8,10 +9,21 @@
 
 namespace tactus::audio {
 
+void OfflineOptions::add_to(CLI::App& app) {
+  sync::OfflineOptions::add_to(app, "renders this log of a run", "--wav");
+  app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
+}
+
+std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock) {
+  if (options.log.empty()) return nullptr;
+  if (options.wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  return std::make_unique<Offline>(options, loop_rate_Hz, clock);
+}
+
 Offline::Offline(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock)
     : run_(options, {{options.wav, "--wav"}}, loop_rate_Hz, clock, kRingOn), wav_(options.wav) {}
 
-OpenCard Offline::open() {
+OpenCard Offline::open_card() {
   return [this](const StreamOptions& options, Card::Render render) {
     if (card_)
       throw std::runtime_error(

@@ -1,11 +1,25 @@
 #include "haptic_node/offline.h"
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 #include <stdexcept>
 
 #include "sync/log/export_csv.h"
 
 namespace tactus::haptic {
+
+void OfflineOptions::add_to(CLI::App& app) {
+  sync::OfflineOptions::add_to(app, "feels this log of a run", "--trace");
+  app.add_option("--trace", trace, "file for what the hand feels in the log, CSV with the columns of haptic.csv")
+      ->needs("--log");
+}
+
+std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
+  if (options.log.empty()) return nullptr;
+  if (options.trace.empty())
+    throw std::runtime_error("--log needs --trace FILE, which what the hand feels is written to");
+  return std::make_unique<Offline>(options, rate_Hz, clock);
+}
 
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
     : run_(options, {{options.trace, "--trace"}}, rate_Hz, clock),
@@ -17,19 +31,24 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
 void Offline::follow(int tool) {
   follows_ = tool >= 0;
   tick_ = {};
+  coming_.reset();
   track_.follow(tool);
-  if (!follows_) return;
-  coming_ = track_.next(run_.now());
-  if (!coming_) run_.end_at(run_.now());
+  if (follows_) schedule();
 }
 
-sync::HostTime Offline::next(sync::Bus& bus) {
-  if (!follows_) return run_.next(bus);
-  tick_ = *coming_;
-  const sync::HostTime now = run_.next_at(bus, tick_.at);
-  coming_ = track_.next(now);
-  if (!coming_) run_.end_at(now);
-  return now;
+void Offline::schedule() {
+  coming_ = track_.next(run_.now());
+  if (coming_)
+    run_.set_next_tick(coming_->at);
+  else
+    run_.end_at(run_.now());
+}
+
+bool Offline::begin_tick(sync::HostTime now) {
+  const bool recorded = coming_ && coming_->at == now;
+  tick_ = recorded ? *coming_ : RecordedTick{};
+  if (recorded) schedule();
+  return recorded;
 }
 
 void Offline::add(const tool_state_t& state) {

@@ -1,5 +1,5 @@
-// A recorded run in place of bus and device: the node's loop hears the log, its hand is where the log says that
-// it was, and what it feels goes into a table. Its ticks are those of the run, so that row by row the force can be
+// A recorded run in place of bus and device: the node renders the log, its hand is where the log says that it was, and
+// what it feels goes into a table. Its ticks are those of the run, so that row by row the force can be
 // held against the one that was felt.
 #pragma once
 
@@ -17,6 +17,8 @@ namespace tactus::haptic {
 
 struct OfflineOptions : sync::OfflineOptions {
   std::string trace;  // CSV
+
+  void add_to(CLI::App& app);
 };
 
 // All times but `clock`, that of whoever looks on, are the log's.
@@ -25,15 +27,15 @@ class Offline {
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
+  // The same where a log is asked for; else null.
+  static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
+
   sync::Offline& run() { return run_; }
   // A scene has come: its ticks are those of this tool from now on; -1: of none.
   void follow(int tool);
   std::unique_ptr<Device> device() const { return std::make_unique<RecordedHand>(tick_.device); }
-  // The next tick: of the run, once a tool is followed.
-  sync::HostTime next(sync::Bus& bus);
-  // It was one of the run: the tick in which a scene comes is none.
-  bool in_tick() const { return tick_.at != sync::HostTime{}; }
-  bool over() const { return run_.over(); }
+  // Once a tick. True when it is one of the run: the tick in which a scene comes is none.
+  bool begin_tick(sync::HostTime now);
   // What the hand feels in this tick.
   void add(const tool_state_t& state);
   // The table gets its name. What came of it, in lines. Throws std::runtime_error with one sentence when nobody
@@ -41,6 +43,8 @@ class Offline {
   std::string result(const std::string& problem, sync::HostTime clock);
 
  private:
+  void schedule();
+
   sync::Offline run_;
   sync::AtomicFile trace_;
   ToolTrack track_;

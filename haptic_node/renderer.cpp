@@ -1,282 +1,170 @@
 #include "haptic_node/renderer.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <utility>
+#include <thread>
 
-#include "haptic_node/contact/rotation_math.h"
-#include "lcmtypes/vectors.h"
+#include "haptic_node/rendering/tagged.h"
+#include "lcmtypes/pointing.h"
+#include "sync/time/phases.h"
+#include "sync/node/realtime.h"
+#include "sync/assets/scene_pictures.h"
 
 namespace tactus::haptic {
-namespace {
 
-// The force in levels of `step_N` of its size; 0: as it is.
-Eigen::Vector3d stepped(const Eigen::Vector3d& force_N, double step_N) {
-  const double size = force_N.norm();
-  if (!(step_N > 0) || !(size > 0)) return force_N;
-  return force_N * (std::round(size / step_N) * step_N / size);
-}
-
-SurfaceLimits surface_limits(const Settings& s) {
-  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
-          s.surface_speed_limit_m_s};
-}
-CouplingLimits coupling_limits(const Settings& s) {
-  return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
-}
-ReliefDef reliefs_of(const Settings& s) {
-  return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
-}
-PassivityLimits passivity_limits(const Settings& s) {
-  return {s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
-}
-TransientShape transient_shape(const Settings& s) {
-  return {s.transient_gain,
-          s.transient_limit_N,
-          s.transient_soft_frequency_Hz,
-          s.transient_hard_frequency_Hz,
-          s.transient_decay_1_s,
-          {kLate, sync::from_seconds(s.late_tolerance_s),
-           sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
+void Options::add_to(CLI::App& app) {
+  app.add_option("--tool", tool, "tool that the hand holds; default: the scene's first");
+  app.add_option("--device", device,
+                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+                 "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  log.add_to(app);
+  app.get_option("--trace")->excludes("--device");
 }
 
-// So many as a message tells of; the others' share goes to these.
-void keep_largest(std::span<Eigen::Vector3d> forces) {
-  if (forces.size() <= ContactImpulses::kMaxTold || forces.size() > kMaxHalfSpaces) return;
-  std::array<double, kMaxHalfSpaces> sizes;
-  for (std::size_t i = 0; i < forces.size(); ++i) sizes[i] = forces[i].squaredNorm();
-  const auto last = sizes.begin() + ContactImpulses::kMaxTold - 1;
-  std::nth_element(sizes.begin(), last, sizes.begin() + static_cast<std::ptrdiff_t>(forces.size()),
-                   std::greater<>());
-  std::size_t kept = 0;
-  for (Eigen::Vector3d& f : forces)
-    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactImpulses::kMaxTold)) f.setZero();
+void Options::parse_device() {
+  if (!device.empty()) device_spec = std::make_shared<DeviceSpec>(parse_device_spec(device));
 }
 
-}  // namespace
-
-Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety)
-    : tool_(tool),
-      tool_body_(scene.tools[static_cast<std::size_t>(tool)].body),
-      settings_(settings),
-      coupling_(coupling_limits(settings)),
-      period_s_(1 / settings.rate_Hz),
-      step_s_(static_cast<double>(scene.step_ns) * 1e-9),
-      surfaces_(skin_m(scene.tools[static_cast<std::size_t>(tool)]), surface_limits(settings)),
-      reliefs_(reliefs_of(settings)),
-      rendering_(scene.tools[static_cast<std::size_t>(tool)], settings),
-      handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
-      torque_handover_(settings.recovery_time_s,
-                       settings.recovery_speed_m_s * settings.stiffness_limit_N_m * rendering_.lever_m()),
-      passivity_(passivity_limits(settings)),
-      transients_(transient_shape(settings)),
-      safety_(safety),
-      fade_(settings.stale_after_s, settings.fade_s) {
-  for (const material_def_t& m : scene.materials) youngs_modulus_Pa_.push_back(m.youngs_modulus_Pa);
-  forces_.reserve(kMaxHalfSpaces);
-  felt_.reserve(kMaxHalfSpaces);
-  out_.reports.reserve(256);
-  out_.state.tool = tool;
-  out_.state.constraints.reserve(ContactImpulses::kMaxTold);
+NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      tool_name_(options.tool),
+      device_given_(options.device_spec),
+      log_(log),
+      device_states_(host.bus().queue<device_state_t>(channels::kDeviceState, 64)),
+      device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
+      touch_(host.sense().held_snapshots<touch_model_t>(channels::kTouchModel, 1024)),
+      events_(host.sense().events()),
+      safety_(safety_limits(settings())),
+      quality_(settings()) {
+  tag(host.node().tags(), published_);
+  host.node().set_state(node_health_t::WAITING, "waits for the scene");
 }
 
-void Renderer::change(const Settings& settings) {
-  settings_ = settings;
-  transients_.change(transient_shape(settings));
-  reliefs_.change(reliefs_of(settings));
-  if (rendering_.change(settings)) {
-    for (Surface& s : surfaces_.list()) {
-      s.grip.setZero();
-      s.owed.setZero();
-      s.slips = false;
-    }
-    handover_.renew();
-    torque_handover_.renew();
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  scene_ = scenes.scene();
+  choice_ = choose(*scene_, settings, tool_name_);
+  if (session_) session_->let_go();
+  begin_to_open(scenes);
+  if (log_) log_->follow(choice_.tool);
+  host().say(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
+  const auto points = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
+  points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
+  no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
+  quality_ = Quality(settings);
+  return {.tool = choice_.tool,
+          .rate_Hz = settings.rate_Hz,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz),
+          .status = {.state = node_health_t::WAITING,
+                     .note = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
+}
+
+void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
+  opening_device_.reset();
+  maps_.reset();
+  opening_maps_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
+    sync::leave_realtime();
+    return std::make_unique<SurfaceMaps>(read_maps(scene, pictures));
+  });
+  if (choice_.tool < 0) return;
+  opening_device_.emplace([scene = *scene_, choice = choice_, given = device_given_, log = log_] {
+    sync::leave_realtime();
+    return log ? log->device() : device_of(scene, choice, given.get());
+  });
+}
+
+void NodeRenderer::finish_opening() {
+  // A log waits for both; the live loop waits for nothing.
+  while (log_ && ((opening_maps_ && !opening_maps_->done()) || (opening_device_ && !opening_device_->done())))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (opening_maps_ && opening_maps_->done()) {
+    maps_ = opening_maps_->take();
+    opening_maps_.reset();
+    if (!maps_->trouble.empty()) host().say(maps_->trouble);
+    if (session_ && !session_->over()) session_->set_maps(maps_);
   }
-  passivity_.change(passivity_limits(settings));
+  if (opening_device_ && opening_device_->done()) take_device();
 }
 
-sync::Nanoseconds Renderer::uncertainty() const {
-  return sync::from_seconds(period_s_ / 2 + settings_.device_uncertainty_s);
-}
-
-void Renderer::take_device(const TickInput& in) {
-  DeviceState device = in.device;
-  if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
-      !device.spin.allFinite()) {
-    device = device_;
-    device.velocity.setZero();
-    device.spin.setZero();
+void NodeRenderer::take_device() {
+  try {
+    session_.emplace(*scene_, choice_, opening_device_->take(), host().bus().clocks(), safety_);
+    if (maps_) session_->set_maps(maps_);
+    host().node().set_state(node_health_t::READY, "waits for a touch model");
+  } catch (const std::exception& e) {
+    host().say(e.what());
+    host().node().set_state(node_health_t::WAITING, e.what());
   }
-  if (!begun_) {
-    begun_ = true;
-    last_ = in.now - sync::from_seconds(period_s_);
-    device_ = device;
-    device_share_ = device.lost ? 0 : 1;
-    rendering_.reset(device);
+  opening_device_.reset();
+}
+
+void NodeRenderer::change(const Settings& settings, const std::string&) {
+  if (!session_) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
+  choice_.settings = settings;
+  session_->change(settings);
+}
+
+void NodeRenderer::receive() {
+  while (auto m = touch_.pop())
+    if (session_) session_->push(std::move(m->message), m->arrival);
+  while (const auto m = events_.pop())
+    if (session_) session_->push(m->message, m->arrival);
+  while (const auto m = device_states_.pop())
+    if (session_) session_->push(m->message, m->arrival);
+  // What others of this run command; a replayed log commands nothing.
+  const sync::Identity& me = host().bus().identity();
+  while (const auto m = device_forces_.pop())
+    if (session_ && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)
+      session_->push(m->message, m->arrival);
+}
+
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  const bool in_tick = !log_ || log_->begin_tick(now);
+  finish_opening();
+  receive();
+  if (!session_ || !in_tick) return std::nullopt;
+  TickOutput& out = render(now);
+  if (session_->over()) return std::nullopt;
+  publish(out);
+  for (const presentation_t& report : out.reports) host().report(report);
+  if (host().live()) quality_.add(host().clock() - now);
+  return status();
+}
+
+TickOutput& NodeRenderer::render(sync::HostTime now) {
+  const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
+  const sync::ModalityEndpoint& sense = host().sense();
+  return session_->step(now,
+                        {.delay = sense.delay(),
+                         .touch_delay = sense.profile_delay(),
+                         .force_step_N = sense.output().force_step_N,
+                         .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
+                        quality_.planes());
+}
+
+void NodeRenderer::publish(TickOutput& out) {
+  if (log_) log_->add(out.state);
+  host().bus().publish(channels::kToolState, out.state);
+  if (host().node().tags().wanted()) published_ = out.state;
+  if (device_force_t* force = session_->tell()) host().bus().publish(channels::kDeviceForce, *force);
+}
+
+sync::Status NodeRenderer::status() const {
+  sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
+  if (session_->device_lost()) {
+    s.state = node_health_t::OUTPUT_LOST;
+    s.note = "the device does not answer, or two hold it: the force is zero";
+  } else if (points_) {
+    s.note = "points, and does not touch";
+  } else if (session_->heard() && session_->lost()) {
+    s.state = node_health_t::INPUT_LOST;
+    s.note = "no touch model: the force is zero";
+  } else if (session_->heard()) {
+    s.note = maps_ ? maps_->trouble : "reads the maps of its surfaces";
+  } else {
+    s.state = node_health_t::READY;
+    s.note = "waits for a touch model";
   }
-  if (device.lost) {
-    device.velocity.setZero();
-    device.spin.setZero();
-  }
-  moved_ = device.position - device_.position;
-  turned_ = turn_between(device_.orientation, device.orientation);
-  device_ = device;
-}
-
-void Renderer::take_touch(const TickInput& in, double dt) {
-  // A device that is lost may come back anywhere: it begins anew there, as touch does.
-  const bool away = device_share_ <= 0;
-  device_share_ = std::clamp(device_share_ + (device_.lost ? -1 : 1) * dt / settings_.fade_s, 0.0, 1.0);
-  const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0 || away || device_share_ <= 0;
-  if (silent) {
-    // Whatever comes after the loss is new.
-    surfaces_.clear();
-    rendering_.reset(device_);
-  }
-  if (in.fresh) model_time_ = sync::sim_time(in.fresh.header().sim_time_ns);
-  const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
-  model_age_s_ = age_s;
-  // Else a hand would feel for seconds a delay that a profile has ended.
-  const auto before = std::exchange(touch_delay_, in.touch_delay);
-  if (in.touch_delay < before) loop_delay_.relieve(sync::to_seconds(before - in.touch_delay));
-  loop_delay_.pass(age_s, dt);
-  if (in.fresh) {
-    loop_delay_.observe(age_s);
-    passivity_.hear(in.fresh);
-  }
-  const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
-  if (in.fresh) rendering_.renew(device_);
-  surfaces_.turn(rendering_.turned(device_));
-  surfaces_.step(in.fresh, sim_now, rendering_.position(), dt, rendering_.planes(in.planes));
-}
-
-Wrench Renderer::constraint_wrench(double dt) {
-  const double delay_s = loop_delay_.value_s(step_s_, period_s_);
-  const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
-  for (Surface& s : surfaces_.list()) {
-    const Gains g =
-        coupling_gains(s.stiffness_N_m, s.damping_N_s_m, s.effective_mass_kg, delay_s, period_s_, coupling_);
-    if (s.coupling_stiffness_N_m < 0) s.coupling_stiffness_N_m = g.stiffness_N_m;
-    s.coupling_stiffness_N_m += follow * (g.stiffness_N_m - s.coupling_stiffness_N_m);
-    s.coupling_damping_N_s_m = g.damping_N_s_m;
-  }
-  forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
-  reliefs_.look(surfaces_.list(), rendering_.place(), dt);
-  rendering_.solve(surfaces_.list(), device_, dt);
-  passivity_.observe(rendering_.stored(surfaces_.list()), moved_, turned_, model_age_s_, dt);
-  rendering_.press(surfaces_.list(), device_, passivity_.factor(), forces_);
-  reliefs_.lean(surfaces_.list(), rendering_.place(), forces_);
-  const Wrench sum = rendering_.sum(surfaces_.list(), forces_);
-  return {handover_.step(surfaces_.list(), sum.force_N, dt),
-          torque_handover_.step(surfaces_.list(), sum.torque_N_m, dt)};
-}
-
-Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
-  const bool tool_is_b = e.body_b == tool_body_;
-  const std::int32_t material = tool_is_b ? e.material_a : e.material_b;
-  Hit hit;
-  hit.event_id = e.event_id;
-  hit.scheduled = scheduled;
-  hit.direction = (tool_is_b ? 1 : -1) * to_eigen(e.normal).normalized();  // away from what was hit
-  hit.approach_speed_m_s = e.approach_speed_m_s;
-  hit.effective_mass_kg = std::min<double>(e.effective_mass_kg, settings_.device_mass_kg);
-  if (material >= 0 && material < static_cast<std::int32_t>(youngs_modulus_Pa_.size()))
-    hit.youngs_modulus_Pa = youngs_modulus_Pa_[static_cast<std::size_t>(material)];
-  return hit;
-}
-
-void Renderer::take_events(const TickInput& in) {
-  if (!in.map) return;
-  for (const contact_event_t& e : in.events) {
-    if (e.tool != tool_) continue;
-    const sync::HostTime happened = in.map->to_host(sync::sim_time(e.time_ns));
-    if (e.kind == contact_event_t::HIT)
-      transients_.schedule(
-          hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s) + in.transient_delay),
-          out_.reports);
-    if (e.kind == contact_event_t::BEGIN)
-      owed_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr, out_.reports);
-  }
-}
-
-// What is left of the constraint force after all limits, split over the surfaces: the bodies then feel exactly
-// what the hand feels.
-void Renderer::split(const Wrench& felt_constraint) {
-  const auto list = surfaces_.list();
-  const bool any = std::any_of(forces_.begin(), forces_.end(), [](const auto& f) { return f.norm() > 0; });
-  felt_.clear();
-  if (!any) return;
-  keep_largest(forces_);
-  rendering_.share(felt_constraint, list, forces_);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    felt_.push_back({list[i].contact_id, list[i].body, Eigen::Vector3d::Zero(), forces_[i]});
-    if (!forces_[i].isZero(0)) felt_.back().point = rendering_.place().touched(list[i]);
-  }
-}
-
-sync::SampleStatus Renderer::status(const TickInput& in) const {
-  if (!model_time_ || !in.touch_arrival) return sync::SampleStatus::kNone;
-  if (fade_.lost()) return sync::SampleStatus::kStale;
-  if (!in.map) return sync::SampleStatus::kHeld;
-  const double age_s = sync::to_seconds(in.map->to_sim(in.now) - *model_time_);
-  if (age_s == 0) return sync::SampleStatus::kExact;
-  return age_s <= settings_.extrapolate_at_most_s ? sync::SampleStatus::kExtrapolated : sync::SampleStatus::kHeld;
-}
-
-void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_N) {
-  tool_state_t& m = out_.state;
-  m.header.sim_time_ns = in.map ? std::max<std::int64_t>(0, sync::to_ns(in.map->to_sim(in.now))) : -1;
-  m.device.position_m = to_vec3(device_.position);
-  m.device.orientation = to_quat(device_.orientation);
-  m.proxy.orientation = to_quat(rendering_.orientation());
-  m.proxy.position_m = to_vec3(rendering_.position());
-  m.device_velocity_m_s = to_vec3f(device_.velocity);
-  m.proxy_velocity_m_s = to_vec3f(rendering_.velocity());
-  m.device_spin_rad_s = to_vec3f(device_.spin);
-  m.proxy_spin_rad_s = to_vec3f(rendering_.spin());
-  m.force_N = to_vec3f(out_.force_N);
-  m.torque_N_m = to_vec3f(out_.torque_N_m);
-  m.transient_N = to_vec3f(transient_N);
-  m.energy_J = static_cast<float>(safety_.energy_J());
-  m.generated_J = static_cast<float>(passivity_.generated_J());
-  m.coupling = static_cast<float>(passivity_.factor());
-  m.touch_how = static_cast<std::int8_t>(status(in));
-  m.fade = static_cast<float>(share());
-  m.buttons = device_.buttons;
-  book_.tell(in.now, m.constraints);
-  m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
-}
-
-TickOutput& Renderer::step(const TickInput& in) {
-  out_.reports.clear();
-  take_device(in);
-  // What happened after the watchdog was without force.
-  const double dt = sync::to_seconds(std::clamp(in.now - last_, sync::Nanoseconds(1000), Device::kWatchdog));
-  safety_.begin_tick(in.now);
-  last_ = in.now;
-
-  take_touch(in, dt);
-  take_events(in);
-  const Wrench constraint = constraint_wrench(dt);
-  const bool felt = share() > 0;
-  const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = stepped(share() * (constraint.force_N + transient), in.force_step_N);
-  if (!device_.lost) safety_.at(device_.position);
-  const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
-  out_.force_N = limited.force_N;
-  out_.torque_N_m = limited.torque_N_m;
-  // The transient takes its part of what the limits left.
-  const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
-  const Eigen::Vector3d felt_transient = left * share() * transient;
-  split({out_.force_N - felt_transient, out_.torque_N_m});
-  book_.step(in.now, dt, felt_);
-  passivity_.note(felt_, surfaces_.list(), rendering_.turns() ? &rendering_.position() : nullptr);
-  owed_.step(in.now, book_, uncertainty(), out_.reports);
-  fill_state(in, felt_transient);
-  return out_;
+  return s;
 }
 
 }  // namespace tactus::haptic

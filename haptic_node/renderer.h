@@ -1,124 +1,70 @@
-// One tick of touch: from the touch model, the events due and the state of the device to the force on the hand,
-// the state of the tool and the reports. Pure: no clock, no bus, no device.
+// The modality of touch on the renderer host: one tool with its device, from one scene to the next.
 #pragma once
 
+#include <memory>
 #include <optional>
-#include <span>
-#include <tactus/contact_event_t.hpp>
-#include <tactus/presentation_t.hpp>
-#include <tactus/scene_t.hpp>
-#include <tactus/tool_state_t.hpp>
-#include <vector>
+#include <string>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 
-#include "haptic_node/contact/contact_impulses.h"
-#include "haptic_node/rendering/coupling.h"
-#include "haptic_node/devices/device.h"
-#include "haptic_node/rendering/force_crossfade.h"
-#include "haptic_node/contact/pending_onsets.h"
-#include "haptic_node/safety/passivity.h"
-#include "haptic_node/contact/reliefs.h"
-#include "haptic_node/rendering/rendering.h"
-#include "haptic_node/safety/safety.h"
-#include "haptic_node/settings.gen.h"
-#include "haptic_node/contact/surfaces.h"
-#include "haptic_node/contact/touch_model_view.h"
-#include "haptic_node/rendering/transient.h"
-#include "sync/resampling/sample_status.h"
-#include "sync/time/time.h"
+#include "haptic_node/offline.h"
+#include "haptic_node/rendering/quality.h"
+#include "haptic_node/rendering/session.h"
+#include "sync/node/renderer.h"
+#include "sync/node/background_task.h"
 
 namespace tactus::haptic {
 
-struct TickInput {
-  sync::HostTime now{};
-  DeviceState device;
-  // A touch model of this tool that has not been given before; null: none.
-  TouchModelView fresh;
-  // When the newest touch model arrived, raw; nothing: none yet.
-  std::optional<sync::HostTime> touch_arrival;
-  // Between simulated time and the host clock; nothing: not known.
-  std::optional<sync::TimeMap> map;
-  // Of hit transients, on top of the setting; and by which touch models were held back on purpose: they are felt
-  // as if it were so long ago.
-  sync::Nanoseconds transient_delay{0}, touch_delay{0};
-  // The force is commanded in steps of this size; 0: none.
-  double force_step_N = 0;
-  // So many of the planes of a touch model are considered.
-  std::size_t planes = Surfaces::kMaxPresent;
-  // Contact events that have become due, each exactly once.
-  std::span<const contact_event_t> events;
+// What the command line says, beside the options of every node.
+struct Options {
+  std::string tool;    // empty: the scene's first
+  std::string device;  // empty: as the scene says
+  std::shared_ptr<const DeviceSpec> device_spec;
+  OfflineOptions log;
+
+  void add_to(CLI::App& app);
+  // Fills device_spec. Throws std::runtime_error with one sentence when there is no such device.
+  void parse_device();
 };
 
-struct TickOutput {
-  tool_state_t state{};
-  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the hand, world: command it now
-  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the same
-  std::vector<presentation_t> reports;
-};
-
-class Renderer {
+class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
-  Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
+  // log: null: it renders the bus.
+  NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log);
 
-  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not
-  // its.
-  void change(const Settings& settings);
-
-  // What lies on the surfaces of its scene, from the next tick on; null: nothing.
-  void set_maps(std::shared_ptr<const SurfaceMaps> maps) { reliefs_.set_maps(std::move(maps)); }
-
-  // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
-  // ticks.
-  TickOutput& step(const TickInput& in);
-
-  // True while the touch model is lost.
-  bool lost() const { return fade_.lost(); }
-  // True while the device is.
-  bool device_lost() const { return device_.lost; }
+  std::optional<sync::Status> step(sync::HostTime now) override;
+  std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
 
  private:
-  // Of the force that is wanted: less while the touch model or the device is lost, or has just come back.
-  double share() const { return fade_.value() * device_share_; }
-  void take_device(const TickInput& in);
-  void take_touch(const TickInput& in, double dt);
-  void take_events(const TickInput& in);
-  Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
-  Wrench constraint_wrench(double dt);
-  void split(const Wrench& felt_constraint);
-  void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
-  sync::SampleStatus status(const TickInput& in) const;
-  sync::Nanoseconds uncertainty() const;
+  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void change(const Settings& settings, const std::string& name) override;
+  void begin_to_open(const sync::SceneReceiver& scenes);
+  void finish_opening();
+  void take_device();
+  void receive();
+  TickOutput& render(sync::HostTime now);
+  void publish(TickOutput& out);
+  sync::Status status() const;
 
-  int tool_;
-  std::int32_t tool_body_;
-  std::vector<double> youngs_modulus_Pa_;
-  Settings settings_;
-  CouplingLimits coupling_;
-  double period_s_, step_s_;
-
-  Surfaces surfaces_;
-  Reliefs reliefs_;
-  Rendering rendering_;
-  ForceCrossfade handover_, torque_handover_;
-  LoopDelay loop_delay_;
-  sync::Nanoseconds touch_delay_{0};  // of the tick before
-  Passivity passivity_;
-  Transients transients_;
-  Safety& safety_;
-  Fade fade_;
-  ContactImpulses book_;
-  PendingOnsets owed_;
-
-  bool begun_ = false;
-  sync::HostTime last_{};
-  DeviceState device_;
-  double device_share_ = 1;
-  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();  // of the device, since the last tick
-  std::optional<sync::SimTime> model_time_;
-  double model_age_s_ = 0;
-  std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
-  std::vector<FeltForce> felt_;          // of each surface, as commanded
-  TickOutput out_;
+  std::string tool_name_;
+  std::shared_ptr<const DeviceSpec> device_given_;
+  Offline* log_;
+  sync::Queue<device_state_t>& device_states_;
+  sync::Queue<device_force_t>& device_forces_;
+  sync::ModalityEndpoint::Stream<touch_model_t>& touch_;
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  Safety safety_;  // one for all scenes
+  NodeConfig choice_;
+  Quality quality_;
+  const scene_t* scene_ = nullptr;
+  // Read in threads of their own. Until the maps are there the surfaces are smooth.
+  std::optional<sync::BackgroundTask<Device>> opening_device_;
+  std::optional<sync::BackgroundTask<SurfaceMaps>> opening_maps_;
+  std::shared_ptr<const SurfaceMaps> maps_;
+  std::optional<Session> session_;
+  bool points_ = false;    // its tool is a wand or the head: it waits for no touch model
+  bool no_touch_ = false;  // so are all tools of the scene: no touch model marks the beginning of the world
+  tool_state_t published_{};  // the newest, for the tags
 };
 
 }  // namespace tactus::haptic

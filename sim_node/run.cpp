@@ -53,18 +53,18 @@ struct Telling {
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
-  const sync::NodeDescriptor declaration{.node = "sim_node",
-                                      .modality = "",
-                                      .rate_Hz = 1000,
-                                      .fifo_priority = 50,
-                                      .about = "Simulates the world of a scene and publishes its contacts.",
-                                      .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
+  const sync::NodeDescriptor descriptor{.name = "sim_node",
+                                        .modality = "",
+                                        .rate_Hz = 1000,
+                                        .fifo_priority = 50,
+                                        .about = "Simulates the world of a scene and publishes its contacts.",
+                                        .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
   CLI::App app;
   sync::NodeOptions options;
   std::string scene;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   app.add_option("SCENE", scene, "SDF file of the world")->required()->check(CLI::ExistingFile);
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   std::vector<std::string> warnings;
   const sim::WorldDef world = read_before ? *read_before : sim::load_sdf(scene, warnings);
@@ -73,7 +73,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
 
   sim::Simulation simulation(world, settings);
 
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   simulation.start(node.bus().identity().incarnation);
   sync::SceneSender scene_sender(node.bus(), sim::make_assets(world, simulation.step_length().count()));
   std::optional<Telling> telling;

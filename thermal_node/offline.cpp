@@ -1,11 +1,25 @@
 #include "thermal_node/offline.h"
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 #include <stdexcept>
 
 #include "sync/log/export_csv.h"
 
 namespace tactus::thermal {
+
+void OfflineOptions::add_to(CLI::App& app) {
+  sync::OfflineOptions::add_to(app, "feels this log of a run", "--trace");
+  app.add_option("--trace", trace, "file for what the skin feels in the log, CSV with the columns of thermal.csv")
+      ->needs("--log");
+}
+
+std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
+  if (options.log.empty()) return nullptr;
+  if (options.trace.empty())
+    throw std::runtime_error("--log needs --trace FILE, which what the skin feels is written to");
+  return std::make_unique<Offline>(options, rate_Hz, clock);
+}
 
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
     : run_(options, {{options.trace, "--trace"}}, rate_Hz, clock),

@@ -1,7 +1,8 @@
-// A recorded run in place of bus: the node's loop hears the log, and what the skin feels goes into a table.
+// A recorded run in place of the bus: the node renders the log, and what the skin feels goes into a table.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <tactus/thermal_state_t.hpp>
 
@@ -11,6 +12,8 @@ namespace tactus::thermal {
 
 struct OfflineOptions : sync::OfflineOptions {
   std::string trace;  // CSV
+
+  void add_to(CLI::App& app);
 };
 
 // All times but `clock`, that of whoever looks on, are the log's.
@@ -18,6 +21,8 @@ class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
+  // The same where a log is asked for; else null.
+  static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::Offline& run() { return run_; }
   // What the skin feels in this tick.

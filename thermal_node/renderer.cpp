@@ -1,208 +1,112 @@
 #include "thermal_node/renderer.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "thermal_node/skin/bioheat_model.h"
-#include "thermal_node/skin/skin_model.h"
+#include "sync/time/phases.h"
+#include "thermal_node/devices/external.h"
+#include "thermal_node/devices/make_device.h"
+#include "thermal_node/skin/thickness.h"
 
 namespace tactus::thermal {
-namespace {
 
-// Of what gives no temperature.
-constexpr double kRoom_degC = 23;
-// Colder than this is nothing, hotter no solid: tungsten melts at 3422 degC.
-constexpr double kColdest_degC = -273.15, kHottest_degC = 3422;
-
-std::unique_ptr<Skin> make_skin(const Settings& s) {
-  if (s.model == "bioheat")
-    return std::make_unique<BioheatModel>(
-        Tissue{layers_of(s.site), s.skin_rest_degC, s.room_degC, s.perfusion_1_s, s.air_conductance_W_m2K});
-  return std::make_unique<SkinModel>(SkinProperties{
-      s.skin_rest_degC, effusivity(s.skin_conductivity_W_mK, s.skin_density_kg_m3, s.skin_specific_heat_J_kgK),
-      s.perfusion_1_s, s.air_conductance_W_m2K});
+NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      tool_name_(std::move(tool_name)),
+      log_(log),
+      events_(host.sense().events()),
+      frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
+      answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
+      stream_(host.bus().clocks()),
+      quality_(Settings{}) {
+  add_tags();
+  host.node().set_state(node_health_t::WAITING, "waits for the scene");
 }
 
-// How far a plate may be beyond its range before it counts as out of control: an overshoot is less.
-constexpr double kRunaway_K = 2;
-// What a plate under a finger can be at all; what says otherwise is a broken sensor.
-constexpr double kColdestPlate_degC = -50, kHottestPlate_degC = 150;
-
-ControllerLimits limits(const Settings& s) {
-  return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
+void NodeRenderer::add_tags() {
+  sync::Tags& tags = host().node().tags();
+  tags.add("skin", "degC", &published_.skin_degC);
+  tags.add("command", "degC", &published_.commanded_degC);
+  tags.add("plate", "degC", [this] { return plate_degC_.value_or(published_.commanded_degC); });
+  tags.add("flux", "W/m2", &published_.heat_flux_W_m2);
+  tags.add("force", "N", &published_.force_N);
 }
 
-// As published: what is no quantity reads as none.
-float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
-
-bool usable(sync::SampleStatus status) { return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale; }
-
-}  // namespace
-
-Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
-                   std::optional<double> element_degC, std::vector<double> thickness_m)
-    : settings_(settings),
-      materials_(std::move(materials)),
-      thickness_m_(std::move(thickness_m)),
-      tool_(tool),
-      tool_body_(tool_body),
-      late_{kLate, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
-      skin_(make_skin(settings)),
-      lag_(element_degC.value_or(settings.skin_rest_degC)),
-      flux_lag_(0),
-      display_({contact_conductance_W_m2K(settings.plate_conductivity_W_mK)}, make_skin(settings)),
-      dwell_({settings.dose_max_s, settings.cold_below_degC, settings.cold_max_s}),
-      controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)),
-      commanded_degC_(element_degC.value_or(settings.skin_rest_degC)) {}
-
-ObjectProperties Renderer::object(const material_def_t& m, int body) const {
-  const double degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
-  ObjectProperties object{std::clamp(degC, kColdest_degC, kHottest_degC),
-                          effusivity(m.conductivity_W_mK, m.density_kg_m3, m.specific_heat_J_kgK)};
-  if (object.effusivity > 0 && m.conductivity_W_mK > 0) {
-    object.conductivity_W_mK = m.conductivity_W_mK;
-    object.heat_capacity_J_m3K = m.density_kg_m3 * m.specific_heat_J_kgK;
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  const scene_t& scene = *scenes.scene();
+  choice_ = choose(scene, settings, tool_name_);
+  if (log_) log_->run().expect_rate(settings.rate_Hz);
+  quality_ = Quality(settings);
+  if (renderer_) dwell_ = renderer_->dwell();
+  renderer_.reset();
+  device_ = make_device(settings, choice_.tool, plate_degC_.value_or(settings.skin_rest_degC));
+  if (choice_.tool >= 0) {
+    renderer_.emplace(settings, scene.materials, choice_.tool, choice_.tool_body, element_degC_,
+                      thickness_of_bodies(scene));
+    renderer_->resume(dwell_);
   }
-  if (body >= 0 && body < static_cast<int>(thickness_m_.size()))
-    object.thickness_m = thickness_m_[static_cast<std::size_t>(body)];
-  return object;
+  return {.tool = choice_.tool,
+          .rate_Hz = settings.rate_Hz,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
+          .status = {.state = node_health_t::WAITING, .note = choice_.problem}};
 }
 
-// Where the thing is held, with the heat that it has taken; a new one takes the place of what was touched longest
-// ago.
-std::size_t Renderer::thing_of(int body, int material) {
-  const auto same = [&](const Thing& t) { return t.body == body && t.material == material && t.touched >= 0; };
-  auto found = std::find_if(things_.begin(), things_.end(), same);
-  if (found == things_.end()) {
-    found = std::min_element(things_.begin(), things_.end(),
-                             [](const Thing& a, const Thing& b) { return a.touched < b.touched; });
-    *found = {material, body, tick_};
-    skin_->set_object(object(materials_[static_cast<std::size_t>(material)], body),
-                      static_cast<std::size_t>(found - things_.begin()));
-  }
-  found->touched = tick_;
-  return static_cast<std::size_t>(found - things_.begin());
+void NodeRenderer::change(const Settings& settings, const std::string&) {
+  choice_.settings = settings;
+  if (renderer_) renderer_->change(settings);
 }
 
-// Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
-// the force and area of the touch itself and then weighted with its time.
-void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s) {
-  const double contact_s = sync::to_seconds(c.contact_time);
-  if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
-    return;
-  const double conductance =
-      contact_conductance_W_m2K(materials_[static_cast<std::size_t>(c.material)].conductivity_W_mK);
-  const double time_share = std::min(1.0, contact_s / interval_s);
-  const Press press{settings_.reference_force_N, settings_.reference_area_m2, settings_.pressure_exponent};
-  const double pressed = std::min(
-      time_share * contact_share(c.force_N / time_share, c.area_m2 / time_share, press), 1 - sum.pressed_share);
-  sum.pressed_share += pressed;
-  const double covered = c.area_m2 > 0 ? std::min(1.0, c.area_m2 / time_share / settings_.reference_area_m2) : 0;
-  sum.conductance_W_m2K[thing_of(c.body, c.material)] += conductance * pressed;
-  sum.touched_share = std::min(1.0, sum.touched_share + covered * time_share);
+void NodeRenderer::receive() {
+  stream_.keep(host().sense().delay());
+  while (const auto m = events_.pop()) stream_.push(m->message, m->arrival);
+  while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
+  while (const auto m = answers_.pop())
+    // Not that of a log which is played meanwhile: its plate is not under this finger.
+    if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
 }
 
-// Touches that were over before this tick's interval but are heard of only now: their heat is still owed. The
-// force follows from the momentum of a plastic impact, m v, over the time of touch, as in
-// sync/resampling/contact_integral.cpp.
-void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interval_s) {
-  for (const contact_event_t& end : tick.events) {
-    if (end.kind != contact_event_t::END || end.tool != tool_ || sync::sim_time(end.time_ns) > tick.sim_begin)
-      continue;
-    const auto begin = std::find_if(tick.events.begin(), tick.events.end(), [&](const contact_event_t& e) {
-      return e.kind == contact_event_t::BEGIN && e.contact_id == end.contact_id;
-    });
-    if (begin == tick.events.end() || end.time_ns <= begin->time_ns) continue;
-    sync::ContactPart c;
-    c.contact_time = sync::Nanoseconds(end.time_ns - begin->time_ns);
-    c.force_N = static_cast<double>(begin->effective_mass_kg) * begin->approach_speed_m_s / interval_s;
-    c.material = begin->body_a == tool_body_ ? begin->material_b : begin->material_a;
-    c.body = begin->body_a == tool_body_ ? begin->body_b : begin->body_a;
-    add(sum, c, interval_s);
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  receive();
+  if (!renderer_) return std::nullopt;
+  render(now);
+  for (const presentation_t& report : renderer_->reports()) host().report(report);
+  if (host().live()) quality_.add(host().clock() - now);
+  return status();
+}
+
+void NodeRenderer::render(sync::HostTime now) {
+  const sync::ModalityEndpoint& sense = host().sense();
+  const Tick tick = ticks_.next(stream_, now, sense.newest_arrival(), choice_.tool, choice_.tool_body, sense.delay());
+  std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
+  const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
+  const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
+  thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().response_s,
+                                                 .longest_substep_s = quality_.longest_substep_s(),
+                                                 .plate = plate});
+  rendering.reset();
+  published_ = state;
+  element_degC_ = state.commanded_degC;
+  device_silent_ = device_ && !plate;
+  if (log_) log_->add(state);
+  host().bus().publish(channels::kThermalState, state);
+  if (plate) plate_degC_ = plate->plate_degC;
+  if (plate && device_->simulated() && !log_) {
+    thermal_device_t answer = to_message(*plate, choice_.tool);
+    host().bus().publish(channels::kThermalDevice, answer);
   }
 }
 
-// Heat is a slow state: an event is applied in the tick in which it becomes due, however late, never dropped. The
-// skin is told with the end of the tick; where in the tick the element begins to move is known to half a tick.
-void Renderer::report(const contact_event_t& event, const Tick& tick) {
-  if (event.tool != tool_ || event.kind == contact_event_t::END) return;
-  presentation_t r{};
-  r.event_id = event.event_id;
-  r.part = presentation_t::WHOLE;
-  const sync::HostTime due = tick.map.to_host(sync::sim_time(event.time_ns)) + tick.delay;
-  r.scheduled_ns = std::max<std::int64_t>(0, sync::to_ns(due));
-  r.presented_ns = sync::to_ns(tick.end);
-  r.uncertainty_ns = (sync::from_seconds(1 / settings_.rate_Hz) / 2).count();
-  r.outcome = late_.outcome(tick.end - due);
-  reports_.push_back(r);
-}
-
-double Renderer::load_W() const { return display_.finger_flux_W_m2() * settings_.reference_area_m2; }
-
-// From the skin as it should feel to what the plate is told: lag, then what the plate must be for it, then the
-// limits, the tightest last. A plate that its sensor finds out of its range or that reports a fault is called back
-// to rest.
-Command Renderer::command(const Rendering& rendering, double interval_s) {
-  const bool measured = rendering.plate && rendering.plate->plate_degC > kColdestPlate_degC &&
-                        rendering.plate->plate_degC < kHottestPlate_degC;
-  const double plate_degC = measured ? rendering.plate->plate_degC : commanded_degC_;
-  const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
-  const TemperatureRange range = dwell_.step(plate_degC, interval_s, wide);
-  const bool runaway =
-      rendering.plate && (!measured || rendering.plate->fault || plate_degC < wide.min_degC - kRunaway_K ||
-                          plate_degC > wide.max_degC + kRunaway_K);
-
-  const double skin_degC = lag_.step(skin_->surface_degC(), interval_s, rendering.response_s);
-  const double flux_W_m2 = flux_lag_.step(skin_->heat_flux_W_m2(), interval_s, rendering.response_s);
-  const double aim = display_.step(skin_degC, flux_W_m2, plate_degC, interval_s, rendering.longest_substep_s);
-  double wanted = settings_.display == "flux" ? aim : skin_degC;
-  if (input_lost_ || runaway) wanted = settings_.skin_rest_degC;
-
-  const double allowed = std::clamp(wanted, range.min_degC, range.max_degC);
-  Command command = controller_.step(allowed, interval_s);
-  command.limited = command.limited || allowed != wanted || runaway;
-  commanded_degC_ = command.command_degC;
-  if (input_lost_ || runaway) {
-    lag_.set(command.command_degC);
-    flux_lag_.set(0);
+sync::Status NodeRenderer::status() const {
+  sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
+  if (host().sense().newest_arrival() == sync::HostTime{}) {
+    s.state = node_health_t::READY;
+    s.note = "waits for contacts";
+  } else if (renderer_->input_lost()) {
+    s.state = node_health_t::INPUT_LOST;
+    s.note = "no contacts: the command returns to resting skin";
+  } else if (device_silent_) {
+    s.note = "the display is silent: taken to be as commanded";
   }
-  return command;
-}
-
-thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
-  reports_.clear();
-  for (const contact_event_t& event : tick.events) report(event, tick);
-
-  const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
-  const bool lost = input_lost_ = !usable(tick.contact.status);
-  ++tick_;
-  Exchange e;
-  if (interval_s > 0) add_missed_touches(e, tick, interval_s);
-  e.pressed_share = 0;  // those had the pad to themselves
-  if (!lost) {
-    // What presses most, should it be more than the models hold.
-    std::vector<sync::ContactPart> parts = tick.contact.parts;
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const auto& a, const auto& b) { return a.force_N > b.force_N; });
-    parts.resize(std::min(parts.size(), Skin::kThings));
-    for (const sync::ContactPart& part : parts) add(e, part, tick.contact_interval_s());
-  }
-  skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
-  const Command command = this->command(rendering, interval_s);
-
-  thermal_state_t out{};
-  out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));
-  out.tool = tool_;
-  const auto most = std::max_element(e.conductance_W_m2K.begin(), e.conductance_W_m2K.end());
-  out.material = *most > 0 ? things_[static_cast<std::size_t>(most - e.conductance_W_m2K.begin())].material : -1;
-  out.force_N = lost ? 0 : reading(tick.contact.force_N);
-  out.area_m2 = lost ? 0 : reading(tick.contact.area_m2);
-  out.heat_flux_W_m2 = static_cast<float>(skin_->heat_flux_W_m2());
-  out.skin_degC = static_cast<float>(skin_->surface_degC());
-  out.commanded_degC = static_cast<float>(command.command_degC);
-  out.limited = command.limited ? 1 : 0;
-  return out;
+  return s;
 }
 
 }  // namespace tactus::thermal

@@ -1,107 +1,54 @@
-// The thermal sense of one tool: contacts in, skin temperature, command and reports of presentation out. Pure.
+// The modality of warmth on the renderer host: from the contacts of one tool to the command of its display.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <tactus/contact_event_t.hpp>
-#include <tactus/material_def_t.hpp>
-#include <tactus/presentation_t.hpp>
-#include <tactus/thermal_state_t.hpp>
-#include <vector>
+#include <string>
+#include <tactus/contact_frame_t.hpp>
 
-#include "sync/presentation/late.h"
-#include "thermal_node/skin/contact_model.h"
-#include "thermal_node/display/controller.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/node/renderer.h"
+#include "thermal_node/devices/node_config.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/skin/dwell.h"
-#include "thermal_node/display/flux_display.h"
-#include "thermal_node/display/lag.h"
-#include "thermal_node/settings.gen.h"
-#include "thermal_node/skin/skin.h"
+#include "thermal_node/offline.h"
+#include "thermal_node/display/quality.h"
+#include "thermal_node/rendering/renderer.h"
 #include "thermal_node/display/ticks.h"
 
 namespace tactus::thermal {
 
-// Heat is a slow state: what comes late still warms.
-inline constexpr sync::Late kLate = sync::Late::kAlwaysApply;
-
-// How well a tick is rendered.
-struct Rendering {
-  double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
-  double longest_substep_s = Skin::kLongestSubstep_s;
-  std::optional<PlateReading>
-      plate{};  // of the display since the last tick; nothing: it is where it was commanded
-};
-
-class Renderer {
+class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // materials: of the scene; tool, tool_body: index of the tool in the scene and its body. element_degC: where the
-  // element stands, as another scene left it; nothing: at resting skin. thickness_m: by body, see thickness.h; a
-  // body beyond its end is infinite.
-  Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
-           std::optional<double> element_degC = std::nullopt, std::vector<double> thickness_m = {});
+  // tool_name: from the command line; empty: the setting's, else the scene's first. log: null: it renders the bus.
+  NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log);
 
-  // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
-  // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
-  // model and the rendering say.
-  thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
-
-  // Other settings from the next step on, of those that can be changed while it runs.
-  void change(const Settings& settings) {
-    settings_.reference_force_N = settings.reference_force_N;
-    settings_.pressure_exponent = settings.pressure_exponent;
-  }
-
-  // What the finger is thought to give to the plate, W.
-  double load_W() const;
-
-  // What the skin has had of warmth and cold; resume it when another scene takes over, for the skin is the same.
-  const Dwell& dwell() const { return dwell_; }
-  void resume(const Dwell& before) { dwell_.resume(before); }
-
-  // Whether the last step had no input that could be relied on.
-  bool input_lost() const { return input_lost_; }
-
-  // What became of the begin and hit events of the own tool in the last step, each exactly once.
-  const std::vector<presentation_t>& reports() const { return reports_; }
+  std::optional<sync::Status> step(sync::HostTime now) override;
+  std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
 
  private:
-  // Means over the tick.
-  struct Exchange {
-    std::array<double, Skin::kThings> conductance_W_m2K{};  // to each thing under the skin
-    double touched_share = 0;                               // of the pad and of the time
-    double pressed_share = 0;  // of what the whole pad, firmly pressed, conducts: at most 1
-  };
-  // A thing that the models hold under the skin.
-  struct Thing {
-    int material = -1, body = -1;
-    std::int64_t touched = -1;  // tick in which it was last
-  };
-  void add(Exchange& sum, const sync::ContactPart& part, double interval_s);
-  void add_missed_touches(Exchange& sum, const Tick& tick, double interval_s);
-  std::size_t thing_of(int body, int material);
-  ObjectProperties object(const material_def_t& material, int body) const;
-  void report(const contact_event_t& event, const Tick& tick);
-  Command command(const Rendering& rendering, double interval_s);
+  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void change(const Settings& settings, const std::string& name) override;
+  void receive();
+  void render(sync::HostTime now);
+  sync::Status status() const;
+  void add_tags();
 
-  Settings settings_;
-  std::vector<material_def_t> materials_;
-  std::vector<double> thickness_m_;
-  int tool_;
-  int tool_body_;
-  sync::LatePolicy late_;
-  std::unique_ptr<Skin> skin_;
-  Lag lag_, flux_lag_;
-  FluxDisplay display_;
-  Dwell dwell_;
-  Controller controller_;
-  double commanded_degC_;
-  std::array<Thing, Skin::kThings> things_{};
-  std::int64_t tick_ = 0;
-  bool input_lost_ = true;
-  std::vector<presentation_t> reports_;
+  std::string tool_name_;
+  Offline* log_;
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
+  sync::Queue<thermal_device_t>& answers_;
+  sync::ContactStream stream_;
+  NodeConfig choice_;
+  Ticks ticks_;
+  Quality quality_;
+  std::optional<thermal::Renderer> renderer_;
+  Dwell dwell_{DwellLimits{}};  // of the skin, whatever the scene
+  std::unique_ptr<Device> device_;
+  std::optional<double> element_degC_;  // as commanded last, whatever the scene
+  std::optional<double> plate_degC_;    // as measured last
+  bool device_silent_ = false;
+  thermal_state_t published_{};  // the newest, for the tags
 };
 
 }  // namespace tactus::thermal

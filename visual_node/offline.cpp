@@ -1,5 +1,6 @@
 #include "visual_node/offline.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
@@ -20,6 +21,19 @@ std::vector<sync::Offline::Written> written_anew(const OfflineOptions& options) 
 }
 
 }  // namespace
+
+void OfflineOptions::add_to(CLI::App& app) {
+  sync::OfflineOptions::add_to(app, "draws this log of a run", "--video");
+  app.add_option("--video", video, "file for the pictures of the log, MP4")->needs("--log");
+  app.add_option("--frames", frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
+  app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged")->needs("--log");
+}
+
+std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
+  if (options.log.empty()) return nullptr;
+  if (options.video.empty()) throw std::runtime_error("--log needs --video FILE, which the pictures are written to");
+  return std::make_unique<Offline>(options, rate_Hz, clock);
+}
 
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
     : options_(options), rate_Hz_(rate_Hz), run_(options, written_anew(options), rate_Hz, clock) {

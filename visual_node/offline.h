@@ -1,5 +1,4 @@
-// A recorded run in place of bus and screen: the node's loop hears the log and draws into a file, as fast as it
-// can. A frame takes no time there, so that nothing in it depends on how fast the machine draws: the same log
+// A recorded run in place of bus and screen: the node draws the log into a file, as fast as it can. A frame takes no time there, so that nothing in it depends on how fast the machine draws: the same log
 // gives the same pixels.
 #pragma once
 
@@ -20,6 +19,8 @@ struct OfflineOptions : sync::OfflineOptions {
   std::string frames;    // table of when each frame is and what it shows, CSV; empty: none
   std::string snapshot;  // PNG file; empty: none
   double snapshot_every_s = 1;
+
+  void add_to(CLI::App& app);
 };
 
 // All times but `clock`, that of whoever looks on, are the log's.
@@ -28,6 +29,9 @@ class Offline {
   // Throws std::runtime_error with one sentence when the log holds no run, or the video would lie where something
   // is.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
+
+  // The same where a log is asked for; else null.
+  static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::Offline& run() { return run_; }
   sync::HostTime now() const { return run_.now(); }

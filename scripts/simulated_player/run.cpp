@@ -24,11 +24,11 @@ using namespace tactus;
 
 namespace {
 
-const sync::NodeDescriptor kParticipant{.node = "participant",
-                                     .modality = "",
-                                     .rate_Hz = 1000,
-                                     .fifo_priority = 55,
-                                     .about = "Plays a scene's game in place of a person."};
+const sync::NodeDescriptor kParticipant{.name = "participant",
+                                        .modality = "",
+                                        .rate_Hz = 1000,
+                                        .fifo_priority = 55,
+                                        .about = "Plays a scene's game in place of a person."};
 // Where the hand rests before the world begins: over the near edge of the dark room.
 constexpr double kRest_m[]{-0.2, 0, 0.13};
 
@@ -67,7 +67,7 @@ int tactus::participant::run(int argc, char** argv, const Rules* read_before) tr
   app.add_option("--reaction", player_def.reaction_s, "from what is seen or heard to what is done, s")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
-  sync::parse_or_exit(app, kParticipant.node, argc, argv);
+  sync::parse_or_exit(app, kParticipant.name, argc, argv);
   const Rules rules = read_before ? *read_before : read_rules(scene_file);
 
   sync::Node node(kParticipant, options);
@@ -119,5 +119,5 @@ int tactus::participant::run(int argc, char** argv, const Rules* read_before) tr
   }
   return 0;
 } catch (const std::exception& e) {
-  return sync::fail(kParticipant.node, e);
+  return sync::fail(kParticipant.name, e);
 }

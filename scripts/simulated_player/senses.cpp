@@ -9,7 +9,7 @@ namespace {
 
 // Those whose senses these are: visual_node and audio_node.
 sync::NodeDescriptor of(const char* node, const char* modality, int owes) {
-  return {.node = node, .modality = modality, .owes = owes, .about = ""};
+  return {.name = node, .modality = modality, .expected_events = owes, .about = ""};
 }
 
 // Below the rim by so much, a ball that hits something lies in the hole (design: a third of the shallowest ball).

@@ -44,11 +44,11 @@ using nlohmann::json;
 namespace tactus::conductor {
 namespace {
 
-const sync::NodeDescriptor kConductor{.node = "conductor",
-                                   .modality = "",
-                                   .rate_Hz = 1000,
-                                   .fifo_priority = 55,
-                                   .about = "Leads the trials of a study."};
+const sync::NodeDescriptor kConductor{.name = "conductor",
+                                      .modality = "",
+                                      .rate_Hz = 1000,
+                                      .fifo_priority = 55,
+                                      .about = "Leads the trials of a study."};
 constexpr sync::Nanoseconds kSensesEvery{500'000'000}, kRepeat{50'000'000};
 constexpr int kForceEvery = 5;  // ticks between two lines on the force of a press
 constexpr int kMaxOrdersATick = 16;
@@ -79,7 +79,7 @@ class Conductor {
         forces_(node.bus().queue<device_force_t>(channels::kDeviceForce, 64)) {
     if (hand) hand_.emplace(hand->first, hand->second);
     if (looks) pictures_ = &node.bus().queue<picture_chunk_t>(channels::kPictureChunk, 4096, sync::Port::kBulk);
-    state_.device = kConductor.node;
+    state_.device = kConductor.name;
     state_.pose.orientation.w = 1;
     state_.header.sim_time_ns = -1;
   }
@@ -313,7 +313,7 @@ int run(int argc, char** argv) try {
       ->check(CLI::Range(0.0, 1.0))
       ->needs(hand);
   app.add_flag("--look", looks, "says the pictures, too, that visual_node streams");
-  sync::parse_or_exit(app, kConductor.node, argc, argv);
+  sync::parse_or_exit(app, kConductor.name, argc, argv);
   std::optional<std::pair<Eigen::Vector3d, double>> held;
   if (!rest_m.empty()) held.emplace(Eigen::Vector3d(rest_m[0], rest_m[1], rest_m[2]), above_m);
 
@@ -325,7 +325,7 @@ int run(int argc, char** argv) try {
     if (!conductor.step(node.wait())) break;
   return 0;
 } catch (const std::exception& e) {
-  return sync::fail(kConductor.node, e);
+  return sync::fail(kConductor.name, e);
 }
 
 }  // namespace tactus::conductor

@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-// design: below the haptic loop (50), above all that only shows (sync/node/node_descriptor.h).
+// design: below the haptic loop (50), above all that only shows (sync/node_descriptor.h).
 constexpr int kPriority = 45;
 
 }  // namespace

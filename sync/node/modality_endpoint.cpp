@@ -27,17 +27,17 @@ std::vector<std::string> not_declared(const Profile& profile, const NodeDescript
 
 }  // namespace
 
-ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.declaration()) { listens_in_ = false; }
+ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.descriptor()) { listens_in_ = false; }
 
 ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor of)
     : node_(node),
-      declaration_(std::move(of)),
+      descriptor_(std::move(of)),
       listens_in_(true),
       degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)),
       playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
       simulation_(node.bus().clocks()),
-      playout_(declaration_.modality),
-      reporter_(declaration_.modality) {
+      playout_(descriptor_.modality),
+      reporter_(descriptor_.modality) {
   if (node.options().profile.text.empty()) return;
   put_in_force(node.options().profile);
   receiver_.set_generation(0);
@@ -61,12 +61,12 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   try {
     put_in_force(read_profile(text, "profile"));
   } catch (const std::invalid_argument& e) {
-    std::cerr << node_.declaration().node << ": refused: " << e.what() << std::endl;
+    std::cerr << node_.descriptor().name << ": refused: " << e.what() << std::endl;
   }
 }
 
 void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
-  const NodeDescriptor& d = declaration_;
+  const NodeDescriptor& d = descriptor_;
   const Profile& parsed = *profile.parsed;
   stack_ = OperatorChain(parsed, d.modality, profile.start);
   stack_.set_scene(names_);
@@ -75,10 +75,10 @@ void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   profile_name_ = parsed.name;
   node_.set_profile(profile.hash);
   if (profile.generation > 0 || !parsed.rules.empty())
-    std::cerr << d.node << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
+    std::cerr << d.name << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
               << std::endl;
   for (const std::string& name : not_declared(parsed, d))
-    std::cerr << d.node << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
+    std::cerr << d.name << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
               << std::endl;
 }
 
@@ -89,7 +89,7 @@ void ModalityEndpoint::take_control(HostTime) {
       // Also the same text once more: its times count from when it is put in force.
       if (const auto whole = receiver_.take(m->message)) put_in_force(*whole);
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
-    std::cerr << node_.declaration().node << ": refused: " << refusal << std::endl;
+    std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;
   while (const auto m = playouts_.pop())
     if (ours(m->message.header)) playout_.take(m->message);
 }
@@ -148,7 +148,7 @@ void ModalityEndpoint::note_arrivals(const contact_events_t& m, HostTime arrival
 }
 
 bool ModalityEndpoint::owes(const contact_event_t& e) const {
-  const int owes = declaration_.owes;
+  const int owes = descriptor_.expected_events;
   if ((owes & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
   return (e.kind == contact_event_t::BEGIN && (owes & node_health_t::OWES_BEGIN)) ||
          (e.kind == contact_event_t::HIT && (owes & node_health_t::OWES_HIT));
@@ -186,7 +186,7 @@ void ModalityEndpoint::publish_decisions() {
   if (decisions_.size() > kMaxDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMaxDecisions);
   degraded_t m{};
   m.header.sim_time_ns = -1;
-  m.modality = declaration_.modality;
+  m.modality = descriptor_.modality;
   m.profile = profile_hash_;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
     const DecisionRecord& d = decisions_[i];

@@ -147,7 +147,7 @@ class ModalityEndpoint {
   void publish_decisions();
 
   Node& node_;
-  NodeDescriptor declaration_;
+  NodeDescriptor descriptor_;
   bool listens_in_ = false;
   Queue<degradation_t>& degradations_;
   Queue<playout_t>& playouts_;

@@ -64,7 +64,7 @@ constexpr std::size_t kLongestNote = 140;
 }  // namespace
 
 void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
-  name = d.node;
+  name = d.name;
   app.description(d.about);
   add_bus_options(app, bus);
   app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
@@ -80,10 +80,10 @@ void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
       ->capture_default_str();
   app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
-  if (!d.modality.empty() || d.node == "sync_node")
+  if (!d.modality.empty() || d.name == "sync_node")
     app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
   // For measurements only, hence not in --help: a renderer that eats its core.
-  app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.node)->check(CLI::Range(0.0, 100.0))->group("");
+  app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.name)->check(CLI::Range(0.0, 100.0))->group("");
   app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
 }
 
@@ -104,21 +104,21 @@ int fail(const std::string& node, const std::exception& e) {
   return 1;
 }
 
-Node::Node(NodeDescriptor declaration, NodeOptions options)
-    : declaration_(std::move(declaration)),
+Node::Node(NodeDescriptor descriptor, NodeOptions options)
+    : descriptor_(std::move(descriptor)),
       options_(with_profile(std::move(options))),
-      scheduling_(enter(declaration_, options_)),
+      scheduling_(enter(descriptor_, options_)),
       bus_(Identity::fresh(options_.name, options_.run_id), options_.bus),
-      loop_(declaration_.rate_Hz),
+      loop_(descriptor_.rate_Hz),
       tags_(options_.name, options_.run_id),
       tag_requests_(channels::kTagRequest, kMaxTagRequests) {
   bus_.follow_clocks();
   bus_.attach(tag_requests_);
   tag_work();
   health_.tool = -1;
-  health_.nominal_rate_Hz = declaration_.rate_Hz;
+  health_.nominal_rate_Hz = descriptor_.rate_Hz;
   rate_since_ = tick_begin_ = next_report_ = host_now();
-  std::cerr << options_.name << ": " << declaration_.rate_Hz << " Hz, " << scheduling_ << ", "
+  std::cerr << options_.name << ": " << descriptor_.rate_Hz << " Hz, " << scheduling_ << ", "
             << (VirtualTime::current() ? "a bus of this process" : lcm_url(options_.bus, options_.bus.port)) << std::endl;
 }
 
@@ -158,7 +158,7 @@ void Node::override_ticks(std::int64_t ticks, std::int64_t missed, double rate_H
 
 void Node::tag_work() {
   tags_.add("work", "us", &work_us_);
-  std::vector<Phase> phases = declaration_.phases;
+  std::vector<Phase> phases = descriptor_.phases;
   phases.insert(phases.end(), {Phase::kDecode, Phase::kOther});
   for (const Phase phase : phases) tags_.add(std::string("work.") + name(phase), "us", phases_.told(phase));
 }
@@ -192,7 +192,7 @@ void Node::end_tick(HostTime now) {
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
   } else if (demoted_ && guard_.calm() >= kForgiven) {
     demoted_ = false;
-    scheduling_ = set_realtime(Realtime::kTry, declaration_.fifo_priority) + " again, after a demotion";
+    scheduling_ = set_realtime(Realtime::kTry, descriptor_.fifo_priority) + " again, after a demotion";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
   }
 }
@@ -230,8 +230,8 @@ node_health_t Node::health_message(HostTime now) {
   node_health_t m = health_;
   m.header.sim_time_ns = -1;
   m.node = options_.name;
-  m.modality = declaration_.modality;
-  m.owes = declaration_.owes | (declaration_.late == Late::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
+  m.modality = descriptor_.modality;
+  m.owes = descriptor_.expected_events | (descriptor_.late_policy == Late::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
   m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
   if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();
@@ -251,7 +251,7 @@ node_health_t Node::health_message(HostTime now) {
   };
   // What it cannot do without comes first: it is listed whatever there is room for.
   const auto needed = [&](const InputCount& c) {
-    return std::find(declaration_.inputs.begin(), declaration_.inputs.end(), c.channel) != declaration_.inputs.end();
+    return std::find(descriptor_.inputs.begin(), descriptor_.inputs.end(), c.channel) != descriptor_.inputs.end();
   };
   for (const bool first : {true, false})
     for (const auto& inbox : bus_.inboxes())

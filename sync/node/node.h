@@ -1,7 +1,7 @@
 // What every process of the cluster has: options, identity, priority, the bus, a paced loop, health. A node's main
 // is then the same few lines:
 //
-//   sync::Node node(declaration, options);
+//   sync::Node node(descriptor, options);
 //   while (node.running()) {
 //     const sync::HostTime now = node.wait();   // sleeps until the tick, drains the bus
 //     ...                                       // pure work
@@ -34,7 +34,7 @@ namespace tactus::sync {
 struct NodeOptions {
   BusOptions bus;
   std::int64_t run_id = 1;
-  std::string name;  // process name; default: the declaration's
+  std::string name;  // process name; default: the descriptor's
   std::string realtime = "try";
   std::string out = ".";  // folder for what the node writes
   std::uint64_t seed = 1;
@@ -44,7 +44,7 @@ struct NodeOptions {
   double load = 0;               // for measurements: so much of its period is wasted
   bool check = false;            // leave, with success, where the bus would be joined
 
-  void add_to(CLI::App& app, const NodeDescriptor& declaration);
+  void add_to(CLI::App& app, const NodeDescriptor& descriptor);
 };
 
 // Parses; prints help or one sentence and exits when there is nothing to run. Then the process may start.
@@ -57,7 +57,7 @@ int fail(const std::string& node, const std::exception& e);
 class Node {
  public:
   // Takes its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.
-  Node(NodeDescriptor declaration, NodeOptions options);
+  Node(NodeDescriptor descriptor, NodeOptions options);
   ~Node();
 
   // False after SIGTERM or SIGINT.
@@ -77,7 +77,7 @@ class Node {
   // Variables of this process that can be recorded; the time of each phase of its tick is among them.
   Tags& tags() { return tags_; }
   const NodeOptions& options() const { return options_; }
-  const NodeDescriptor& declaration() const { return declaration_; }
+  const NodeDescriptor& descriptor() const { return descriptor_; }
   void set_rate(double rate_Hz);
   // For a loop whose phase is somebody else's: the next tick is then; so many before it are left out and count as missed.
   void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
@@ -112,7 +112,7 @@ class Node {
   void report(HostTime now);
   node_health_t health_message(HostTime now);
 
-  NodeDescriptor declaration_;
+  NodeDescriptor descriptor_;
   NodeOptions options_;
   std::string scheduling_;
   bool demoted_ = false;

@@ -1,5 +1,5 @@
-// A modality is a declaration: what it reads, how often it ticks, what instant it calls presented, what becomes of
-// what is late, and what about its output can be degraded. A node folder declares; sync/ does the rest.
+// What a node is, as data: its name, its modality, its inputs, its rate and what a profile can degrade of its output.
+// A node folder holds one; sync/ knows no modality beside it.
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@
 namespace tactus::sync {
 
 struct NodeDescriptor {
-  std::string node;      // "audio_node"
-  std::string modality;  // "audio"; empty: renders nothing
-  int owes = node_health_t::OWES_NOTHING;
+  std::string name;      // of the process: "audio_node"
+  std::string modality;  // "audio"; empty: it renders nothing
+  int expected_events = node_health_t::OWES_NOTHING;  // bits of node_health_t: each such event needs a report
   double rate_Hz = 100;
   int fifo_priority = 0;  // 0: normal scheduling
   std::string about;      // one sentence for --help
 
   // Of a modality only.
-  std::vector<std::string> inputs = {};  // channels that it reads: its profile acts on them
-  std::string presents = {};             // the instant that PRESENTED speaks of
-  Late late = Late::kShowNewest;
+  std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
+  std::string presentation_instant = {};   // the instant that PRESENTED reports
+  Late late_policy = Late::kShowNewest;    // what becomes of an event that comes too late
   std::vector<std::string> degradable = {};  // attributes of a profile that act on its output, e.g. "frame_rate"
 
-  std::vector<Phase> phases = {};  // of its tick, that are tagged beside decoding and what is left: "work.render", ...
+  std::vector<Phase> phases = {};  // phases of its tick that are tagged beside decoding and the rest: "work.render"
 };
 
 }  // namespace tactus::sync

@@ -56,6 +56,11 @@ void Offline::adapt(NodeOptions& options) {
   if (options.degrade.empty()) options.profile = read_profile("<profile/>", "profile");
 }
 
+HostTime Offline::next(Bus& bus) {
+  const std::optional<HostTime> at = std::exchange(next_tick_, std::nullopt);
+  return now_ = at ? feed_.next_at(bus, *at) : feed_.next(bus);
+}
+
 void Offline::expect_rate(double rate_Hz) const {
   if (rate_Hz == rate_Hz_) return;
   std::ostringstream text;

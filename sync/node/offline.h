@@ -1,11 +1,5 @@
-// A recorded run in place of the bus: what every renderer does alike with --log. Its loop is the one that it has
-// live, but for where its time comes from:
-//
-//   std::optional<sync::Offline> offline;
-//   if (!of_log.log.empty()) offline.emplace(of_log, files, rate_Hz, sync::host_now()), offline->adapt(options);
-//   sync::Node node(declaration, options);
-//   while (node.running() && !(offline && offline->over())) {
-//     const sync::HostTime now = offline ? offline->next(node.bus()) : node.wait();
+// A recorded run in place of the bus: the part of --log that all renderers share. The loop is the one that runs live
+// (sync/node/run_renderer.h); sync/node/tick_source.h takes its ticks from here.
 //
 // All times but `clock`, that of whoever looks on, are the log's.
 #pragma once
@@ -48,9 +42,10 @@ class Offline {
   // What a node needs to take part in the run of the log. `--degrade logged` takes the profiles of the run.
   void adapt(NodeOptions& options);
   const LogFeed& feed() const { return feed_; }
-  // The next tick of the log; or one at that time.
-  HostTime next(Bus& bus) { return now_ = feed_.next(bus); }
-  HostTime next_at(Bus& bus, HostTime tick) { return now_ = feed_.next_at(bus, tick); }
+  // The next tick of the log.
+  HostTime next(Bus& bus);
+  // The next tick is at this time, and not one period after the last.
+  void set_next_tick(HostTime at) { next_tick_ = at; }
   HostTime now() const { return now_; }
   bool over() const { return now_ >= end_; }
   // It is over at this time already, for there is nothing more to do.
@@ -72,6 +67,7 @@ class Offline {
   bool as_recorded_;
   std::unique_ptr<AtomicFile> presented_;
   HostTime end_, now_, began_, said_;
+  std::optional<HostTime> next_tick_;
 };
 
 }  // namespace tactus::sync

@@ -44,27 +44,27 @@ sync::BusOptions bulk_of(sync::BusOptions bus) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{.node = "relay",
-                                      .modality = "",
-                                      .rate_Hz = 500,  // so it adds a millisecond in the mean
-                                      .fifo_priority = 40,
-                                      .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
+  const sync::NodeDescriptor descriptor{.name = "relay",
+                                        .modality = "",
+                                        .rate_Hz = 500,  // so it adds a millisecond in the mean
+                                        .fifo_priority = 40,
+                                        .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
   CLI::App app;
   sync::NodeOptions options;
   std::string listen, rules_file;
   std::vector<std::string> to;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   app.add_option("--listen", listen, "where other relays reach this one: [ADDRESS:]PORT");
   app.add_option("--to", to, "where another site's relay listens, and what the line to it carries: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
   app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/spread/relays/ has some");
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   std::optional<sync::LineEnd> here;
   std::optional<sync::RelayRules> rules;
   if (!listen.empty()) here = sync::parse_line_end(listen);
   if (!rules_file.empty()) rules = sync::parse_relay_rules(read_rules(rules_file), rules_file);
   const std::vector<sync::LineEnd> sites = other_sites(to);
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   if (!here || !rules || sites.empty()) throw std::invalid_argument("--listen, --to and --rules are needed; see relay --help");
   sync::Relay relay(*rules, sites, options.run_id);
   sync::LineSocket line(*here);

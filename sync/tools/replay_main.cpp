@@ -77,14 +77,14 @@ void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& ass
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{.node = "replay",
-                                      .modality = "",
-                                      .rate_Hz = 1000,
-                                      .fifo_priority = 50,
-                                      .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
+  const sync::NodeDescriptor descriptor{.name = "replay",
+                                        .modality = "",
+                                        .rate_Hz = 1000,
+                                        .fifo_priority = 50,
+                                        .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
   CLI::App app;
   sync::NodeOptions options;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   std::string log, speed = "1", control;
   sync::ReplayOptions play;
   sync::ReplayWishes wishes;
@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
   app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
   app.add_flag("--stay", stay, "does not leave at the end of the log");
   app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
@@ -126,7 +126,7 @@ int main(int argc, char** argv) try {
   const std::vector<sync::Asset> assets = wishes.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
   if (only_describe) return describe(origin, assets, replay->length_s()), 0;
 
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
   if (!wishes.verbatim && scene_asset(assets) == assets.end())
     std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";

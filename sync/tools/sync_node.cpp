@@ -62,14 +62,14 @@ std::string clocks_note(const std::vector<clock_map_t>& maps) {
 }  // namespace
 
 int tactus::sync::run_sync_node(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{.node = "sync_node",
-                                      .modality = "",
-                                      .rate_Hz = 50,  // at the least: it wakes when something arrives
-                                      .fifo_priority = 40,
-                                      .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
+  const sync::NodeDescriptor descriptor{.name = "sync_node",
+                                        .modality = "",
+                                        .rate_Hz = 50,  // at the least: it wakes when something arrives
+                                        .fifo_priority = 40,
+                                        .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
   CLI::App app;
   sync::NodeOptions options;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
   // For tests only, hence not in --help: the clock that is compared with others drifts, and jumps once.
   app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
@@ -79,9 +79,9 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   playout_options.add_to(app, true);
   sync::PlayoutPlan plan;
   app.callback([&] { plan = playout_options.plan(); });  // also where only the arguments are checked
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
 
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, kEventsQueue);
   auto& presented = node.bus().queue<presented_t>(channels::kPresented, kReportsQueue);

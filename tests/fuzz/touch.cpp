@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "haptic_node/devices/recorded_hand.h"
-#include "haptic_node/session.h"
+#include "haptic_node/rendering/session.h"
 #include "lcmtypes/channels.h"
 #include "sync/log/log_reader.h"
 

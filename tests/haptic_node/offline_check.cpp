@@ -3,7 +3,7 @@
 #include <random>
 
 #include "haptic_node/devices/recorded_hand.h"
-#include "haptic_node/session.h"
+#include "haptic_node/rendering/session.h"
 #include "sync/log/export_csv.h"
 #include "sync/log/log_reader.h"
 #include "tests/audio_node/support/recorded_run.h"

@@ -1,56 +1,27 @@
-// The sense of wind: bodies and hits in, the speed of a fan and reports of presentation out. Pure.
+// A fan that blows a gust for every hit. Pure.
 #pragma once
-
-#include <functional>
-#include <map>
-#include <optional>
-#include <tactus/presentation_t.hpp>
-#include <tactus/scene_t.hpp>
-#include <vector>
-
-#include "sync/resampling/body_history.h"
-#include "sync/resampling/contact_stream.h"
+#include <cmath>
+#include <tactus/contact_event_t.hpp>
 #include "sync/presentation/late.h"
 #include "wind_node/settings.gen.h"
 
 namespace tactus::wind {
-
-struct FanState {
-  double wind_m_s = 0;  // of the air that the bodies move past the head
-  double gust = 0;      // of the hits, 0 .. 1
-  double share = 0;     // of the fan's full speed, 0 .. 1
+struct Fan {
+  double gust = 0, share = 0;  // of the hits; of the fan's full speed, which is commanded: 0 .. 1
+  // One tick. response_s: time constant of a fan that is made slow on purpose; 0: none.
+  void step(const Settings& s, double response_s) {
+    gust *= std::exp(-1 / (s.rate_Hz * s.gust_time_s));
+    share += (response_s > 0 ? 1 - std::exp(-1 / (s.rate_Hz * response_s)) : 1) * (gust - share);
+  }
+  // The gust of a hit begins in this tick, unless it is too late. Returns the report.
+  presentation_t blow(const Settings& s, const contact_event_t& hit, sync::HostTime scheduled, sync::HostTime now) {
+    const sync::LatePolicy late{sync::Late::kShowNewest, sync::from_seconds(s.late_after_s),
+                                sync::from_seconds(s.drop_after_s)};
+    const std::int8_t outcome = late.outcome(now - scheduled);
+    const bool blows = outcome != presentation_t::DROPPED_LATE;
+    if (blows) gust = std::fmin(1, gust + hit.approach_speed_m_s / s.full_hit_m_s);
+    const std::int64_t half_tick_ns = sync::from_seconds(0.5 / s.rate_Hz).count(), at_ns = blows ? sync::to_ns(now) : -1;
+    return {hit.event_id, presentation_t::WHOLE, -1, sync::to_ns(scheduled), at_ns, half_tick_ns, outcome};
+  }
 };
-
-class Fan {
- public:
-  // When an event that happened then is to be presented.
-  using Schedule = std::function<sync::HostTime(std::int64_t event_id, sync::HostTime happened)>;
-
-  Fan(const Settings& settings, const scene_t& scene, sync::OwnClock own);
-
-  void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
-  void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
-
-  // The command of the tick that begins now. delay: what blows happened so long ago; response_s: time constant of
-  // a fan that is made slow on purpose.
-  FanState step(sync::HostTime now, sync::Nanoseconds delay, double response_s, const Schedule& schedule);
-  // What became of the hits that were due in the last step, each exactly once.
-  const std::vector<presentation_t>& reports() const { return reports_; }
-
- private:
-  void blow(const contact_event_t& hit, sync::HostTime scheduled, sync::HostTime now);
-  double wind_m_s(sync::SimTime t) const;
-
-  Settings settings_;
-  sync::LatePolicy late_;
-  Eigen::Vector3d head_;
-  std::map<int, double> radius_m_;  // of the bodies that move
-  sync::BodyHistory bodies_;
-  sync::ContactStream contacts_;
-  std::multimap<sync::HostTime, contact_event_t> scheduled_;
-  std::optional<sync::HostTime> last_;
-  double gust_ = 0, share_ = 0;
-  std::vector<presentation_t> reports_;
-};
-
 }  // namespace tactus::wind

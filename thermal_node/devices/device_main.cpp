@@ -21,22 +21,22 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{
-      .node = "thermal_device",
+  const sync::NodeDescriptor descriptor{
+      .name = "thermal_device",
       .modality = "",
       .rate_Hz = 100,
       .about = "A thermal display behind two messages: an example, with a simulated element."};
   CLI::App app;
   sync::NodeOptions options;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   int tool = 0;
   app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
   const thermal::NodeConfig choice = thermal::resolve_config(scene_t{}, "", options.set);
   if (!choice.refused.empty()) throw std::runtime_error(choice.refused.front());
   const thermal::Settings& settings = choice.settings;
 
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   auto& commands = node.bus().queue<thermal_state_t>(channels::kThermalState, 64);
   const double neutral_degC = settings.skin_rest_degC;
   thermal::SimulatedPeltier plate({}, {}, neutral_degC);

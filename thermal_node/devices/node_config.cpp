@@ -1,10 +1,21 @@
 #include "thermal_node/devices/node_config.h"
 
+#include <utility>
+
 namespace tactus::thermal {
 
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+  Settings settings;
+  std::vector<std::string> refused =
+      sync::apply_settings(settings, setting_fields(), "thermal_node", scene.settings, set);
+  NodeConfig choice = resolve_config(scene, settings, tool_name);
+  choice.refused = std::move(refused);
+  return choice;
+}
+
+NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name) {
   NodeConfig choice;
-  choice.refused = sync::apply_settings(choice.settings, setting_fields(), "thermal_node", scene.settings, set);
+  choice.settings = settings;
   const std::string& wanted = tool_name.empty() ? choice.settings.tool : tool_name;
   std::string names;
   for (int i = 0; i < scene.tool_count; ++i) {

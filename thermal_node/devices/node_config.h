@@ -17,7 +17,9 @@ struct NodeConfig {
   std::vector<std::string> refused;  // settings that do not fit, one sentence each
 };
 
-// tool_name: from the command line; empty: the scene's setting, else its first tool. set: name=value.
+// tool_name: from the command line; empty: the setting, else the scene's first tool.
+NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
+// The same with the settings of the scene and of the command line. set: name=value.
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -1,12 +1,21 @@
 #include "haptic_node/devices/selection/node_config.h"
 
 #include <sstream>
+#include <utility>
 
 namespace tactus::haptic {
 
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
+  Settings settings;
+  std::vector<std::string> refused = sync::apply_settings(settings, setting_fields(), "haptic_node", scene.settings, set);
+  NodeConfig c = resolve_config(scene, settings, tool_name);
+  c.refused = std::move(refused);
+  return c;
+}
+
+NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name) {
   NodeConfig c;
-  c.refused = sync::apply_settings(c.settings, setting_fields(), "haptic_node", scene.settings, set);
+  c.settings = settings;
   for (std::size_t i = 0; i < scene.tools.size() && c.tool < 0; ++i)
     if (tool_name.empty() || scene.tools[i].name == tool_name) c.tool = static_cast<int>(i);
   if (c.tool < 0)

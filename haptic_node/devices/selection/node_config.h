@@ -16,7 +16,9 @@ struct NodeConfig {
   std::vector<std::string> refused;  // one sentence per setting that does not fit
 };
 
-// tool_name: empty takes the first tool. set: "name=value" from the command line, over what the scene says.
+// tool_name: empty takes the first tool.
+NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
+// The same with the settings of the scene and of the command line. set: "name=value", which override the scene.
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 // What the hand is protected by, one line for the log.

@@ -55,16 +55,16 @@ std::vector<sync::HeadAsset> assets_of(const sync::SceneReceiver& scene) {
 }  // namespace
 
 int tactus::sync::run_recorder(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{.node = "recorder",
-                                      .modality = "",
-                                      .rate_Hz = 50,  // of writing to disk; a thread of its own stamps on arrival
-                                      .fifo_priority = 40,
-                                      .about = "Writes everything that crosses the bus to OUT/run.lcmlog."};
+  const sync::NodeDescriptor descriptor{.name = "recorder",
+                                        .modality = "",
+                                        .rate_Hz = 50,  // of writing to disk; a thread of its own stamps on arrival
+                                        .fifo_priority = 40,
+                                        .about = "Writes everything that crosses the bus to OUT/run.lcmlog."};
   CLI::App app;
   sync::NodeOptions options;
   log_info_t info{};
   std::string scene_file;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   app.add_option("--scene", scene_file, "scene of the run, noted in the log");
   app.add_option("--seconds", info.seconds, "length of the run, noted in the log");
   app.add_option("--git", info.git, "commit of the run, noted in the log");
@@ -78,7 +78,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   std::vector<std::string> patterns{"*"};
   app.add_option("--tags", patterns, "tagged variables to record, as node.tag with * for any letters, or none; may be repeated")
       ->capture_default_str();
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
   info.scene = std::filesystem::path(scene_file).filename().string();
   info.version = TACTUS_VERSION;
   info.seed = static_cast<std::int64_t>(options.seed);
@@ -92,7 +92,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
     throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
 
   tag_request_t wanted = request_for(patterns);
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   sync::RecorderTap tap(options.bus);
   sync::SceneReceiver scene(node.bus());
   sync::LogParts parts(options.out, limits);

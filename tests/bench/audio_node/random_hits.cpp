@@ -62,19 +62,19 @@ contact_event_t hit(std::int64_t id, std::int64_t time_ns, double azimuth_rad) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const sync::NodeDescriptor declaration{.node = "sim_node",
-                                      .modality = "",
-                                      .rate_Hz = 1000,
-                                      .fifo_priority = 50,
-                                      .about = "Stands in for sim_node: strikes a board at random times."};
+  const sync::NodeDescriptor descriptor{.name = "sim_node",
+                                        .modality = "",
+                                        .rate_Hz = 1000,
+                                        .fifo_priority = 50,
+                                        .about = "Stands in for sim_node: strikes a board at random times."};
   CLI::App app;
   sync::NodeOptions options;
   std::string scene_file;
-  options.add_to(app, declaration);
+  options.add_to(app, descriptor);
   app.add_option("SCENE", scene_file, "not read: the board is always the same");
-  sync::parse_or_exit(app, declaration.node, argc, argv);
+  sync::parse_or_exit(app, descriptor.name, argc, argv);
 
-  sync::Node node(declaration, options);
+  sync::Node node(descriptor, options);
   sync::SceneSender scene_sender(node.bus(), {{asset_ref_t::SCENE, "scene", sync::encode(dull_board())}});
   node.set_state(node_health_t::WAITING, "offers the scene; its time has not begun");
   const sync::HostTime grace_ends = sync::host_now() + kGrace;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_node/renderer.h"
+#include "haptic_node/rendering/renderer.h"
 #include "sim_node/touch/tool_touch.h"
 #include "tests/bench/haptic_node/touch_loop.h"
 

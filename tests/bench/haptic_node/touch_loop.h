@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_node/renderer.h"
+#include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/rotation_math.h"
 #include "sim_node/world/simulation.h"
 

@@ -8,7 +8,7 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "haptic_node/session.h"
+#include "haptic_node/rendering/session.h"
 #include "sim_node/world/simulation.h"
 #include "sim_node/publish/publisher.h"
 #include "sync/bus/bus.h"

@@ -12,7 +12,7 @@
 #include "sync/log/log_reader.h"
 #include "tests/bench/offline/offline_world.h"
 #include "thermal_node/devices/node_config.h"
-#include "thermal_node/renderer.h"
+#include "thermal_node/rendering/renderer.h"
 #include "thermal_node/display/ticks.h"
 #include "visual_node/frame/frame_composer.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "haptic_node/session.h"
+#include "haptic_node/rendering/session.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;

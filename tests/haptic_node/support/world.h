@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptic_node/renderer.h"
+#include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/surfaces.h"
 #include "lcmtypes/vectors.h"
 

@@ -150,7 +150,7 @@ TEST_CASE("A node ticks on its deadlines in virtual time, misses none and report
   time.add("node", [&] {
     NodeOptions options;
     options.name = "test_node";
-    Node node({.node = "test_node", .modality = "", .rate_Hz = 1000, .about = ""}, options);
+    Node node({.name = "test_node", .modality = "", .rate_Hz = 1000, .about = ""}, options);
     while (node.running()) ticks.push_back(node.wait());
     return 0;
   });

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "thermal_node/renderer.h"
+#include "thermal_node/rendering/renderer.h"
 
 namespace tactus::thermal {
 

@@ -9,7 +9,7 @@
 
 #include "haptic_node/devices/selection/node_config.h"
 #include "haptic_node/devices/selection/make_device.h"
-#include "haptic_node/renderer.h"
+#include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/touch_input.h"
 #include "sync/resampling/contact_stream.h"
 

@@ -1,4 +1,4 @@
-#include "thermal_node/renderer.h"
+#include "thermal_node/rendering/renderer.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptic_node/renderer.h"
+#include "haptic_node/rendering/renderer.h"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "haptic_node/session.h"
+#include "haptic_node/rendering/session.h"
 
 #include <catch2/catch.hpp>
 

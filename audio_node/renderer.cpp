@@ -1,0 +1,269 @@
+#include "audio_node/renderer.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+#include "audio_node/devices/file_output.h"
+#include "audio_node/excitation/mesh_extent.h"
+#include "sync/time/phases.h"
+#include "sync/node/realtime.h"
+#include "sync/assets/scene_pictures.h"
+#include "sync/virtual_time/virtual_time.h"
+
+namespace tactus::audio {
+namespace {
+
+constexpr int kCallbackPriority = 70;
+constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
+constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
+constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
+constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
+// Design: half a tick; a blow takes up to 0.3 ms to prepare. Those that come together wait for the next ticks.
+constexpr sync::Nanoseconds kStrikesFor{500'000};
+constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, should a map run behind
+
+void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pair) {
+  media_clock_t m{};
+  m.header.sim_time_ns = -1;
+  m.medium = medium;
+  m.index = pair.index;
+  m.host_time_ns = pair.host_ns;
+  m.reason = static_cast<std::int8_t>(pair.reason);
+  bus.publish(channels::kMediaClock, m);
+}
+
+// Tables of 200 MB take 20 ms to free: not in a loop.
+template <class Unread>
+void free_elsewhere(Unread unread) {
+  if (!unread.empty()) std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+}
+
+bool in_real_time(bool live) { return live && !sync::VirtualTime::current(); }
+
+}  // namespace
+
+void Options::add_to(CLI::App& app) {
+  app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
+  app.add_flag("--no-sound", no_sound, "compute no samples, and report when each sound would have begun; only in virtual time");
+  log.add_to(app);
+}
+
+void Options::check() const {
+  if (no_sound && !sync::VirtualTime::current())
+    throw std::runtime_error("--no-sound is for virtual time; live, --audio-device virtual plays into a file and leaves the room quiet");
+}
+
+NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      log_(log),
+      no_sound_(options.no_sound),
+      real_time_(in_real_time(host.live())),
+      events_(host.sense().events()),
+      frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
+      world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
+      tools_(host.bus().queue<tool_state_t>(channels::kToolState, 512)),
+      ear_(host.bus().clocks()),
+      contacts_(host.bus().clocks()),
+      bodies_(host.bus().clocks()),
+      output_(host.options().out, options.device, kCallbackPriority,
+              log          ? log->open_card()
+              : real_time_ ? OpenCard{}
+                           : open_files(host.options().out, no_sound_ ? "null" : options.device),
+              no_sound_),
+      started_(host.clock()) {
+  configure(settings());
+  add_tags();
+}
+
+void NodeRenderer::add_tags() {
+  sync::Tags& tags = host().node().tags();
+  tags.add("hits", "1", &hits_);
+  tags.add("dropped", "1", &dropped_);
+  tags.add("callbacks", "1", [this] { return static_cast<double>(output_.callbacks()); }, 100);
+  tags.add("underflows", "1", [this] { return static_cast<double>(output_.underflows()); }, 100);
+  tags.add("latency", "s", [this] { return sync::to_seconds(output_.latency()); }, 100);
+}
+
+void NodeRenderer::configure(const Settings& settings) {
+  if (!instructions_named(settings.instructions))
+    host().say("this machine has no " + settings.instructions + " instructions; it computes with " +
+               name(available_instructions().back()));
+  output_.configure(settings);
+  host().sense().set_own_delay(sync::from_seconds(settings.presentation_delay_s));
+  host().sense().set_output_latency(output_.latency());
+}
+
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  scene_ = scenes.scene();
+  ear_.set_scene(*scene_);
+  due_.clear([this](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
+  configure(settings);
+  const auto extent = [&](std::int64_t hash) -> std::optional<Extent> {
+    const sync::Asset* asset = scenes.asset(hash);
+    const auto mesh = asset ? sync::decode_asset<mesh_t>(asset->bytes) : std::nullopt;
+    return mesh ? extent_of(*mesh) : std::nullopt;
+  };
+  impacts_ = std::make_unique<Impacts>(*scene_, extent, output_.settings(), output_.settings().sample_rate_Hz, ++scenes_);
+  sampler_ = std::make_unique<Sampler>(*scene_, output_.settings());
+  begin_to_read(scenes);
+  return {.output_latency = output_.latency()};
+}
+
+void NodeRenderer::begin_to_read(const sync::SceneReceiver& scenes) {
+  sliding_.reset();
+  output_.hear(nullptr);
+  opening_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
+    sync::leave_realtime();
+    return read_surfaces(of, pictures);
+  });
+}
+
+void NodeRenderer::change(const Settings& settings, const std::string&) {
+  output_.configure(settings);
+  if (sampler_) sampler_->configure(output_.settings());
+  if (impacts_) impacts_->set_gain(settings.gain);
+  if (sliding_) sliding_->set_gain(settings.gain);
+}
+
+void NodeRenderer::finish_reading() {
+  while (!real_time_ && opening_surfaces_ && !opening_surfaces_->done())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (opening_surfaces_ && opening_surfaces_->done()) take_surfaces();
+  free_elsewhere(output_.take_unread());
+  free_elsewhere(output_.step_library());
+  while (!real_time_ && output_.library().reading()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    output_.step_library();
+  }
+  if (sampler_) sampler_->play(output_.library().database(), output_.library().number());
+}
+
+void NodeRenderer::take_surfaces() {
+  auto heard = std::make_shared<const HeardSurfaces>();
+  try {
+    heard = opening_surfaces_->take();
+  } catch (const std::exception& e) {
+    host().say(std::string("cannot read the maps of the scene (") + e.what() + "); what scrapes sounds without them");
+  }
+  opening_surfaces_.reset();
+  output_.hear(heard);
+  sliding_ = std::make_unique<Sliding>(*scene_, heard, bodies_, *impacts_, output_.settings(),
+                                       output_.settings().sample_rate_Hz);
+}
+
+void NodeRenderer::receive() {
+  while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
+  while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
+  while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
+  while (const auto m = tools_.pop()) ear_.push(m->message, m->arrival);
+}
+
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  finish_reading();
+  const bool plays = (impacts_ || (real_time_ && now - started_ > kOpenAnyway)) && output_.keep_open(now);
+  const sync::ModalityEndpoint& sense = host().sense();
+  output_.allow(sense.delay());
+  output_.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
+  if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
+  receive();
+  collect_hits(now);
+  strike_due(now);
+  submit_lasting(now);
+  publish();
+  print_news();
+  return status(now, plays);
+}
+
+void NodeRenderer::collect_hits(sync::HostTime now) {
+  const auto map = contacts_.map(now);
+  if (!map || !impacts_) return;
+  for (const contact_event_t& event : contacts_.take_events(map->to_sim(now + kEarly))) {
+    if (event.kind != contact_event_t::HIT) continue;
+    ++hits_;
+    const sync::HostTime scheduled =
+        host().sense().schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
+    if (!due_.push(event, scheduled)) drop(event, scheduled);
+  }
+}
+
+void NodeRenderer::strike_due(sync::HostTime now) {
+  if (!impacts_ || !sampler_) return;
+  const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
+  // A log is rendered as fast as possible, however long a tick of it takes.
+  const sync::HostTime begun = sync::host_now();
+  const Settings& settings = output_.settings();
+  due_.handle(
+      now, late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
+      [&] { return !real_time_ || sync::host_now() - begun < kStrikesFor; },
+      [&](const contact_event_t& event, sync::HostTime scheduled) { strike(event, scheduled); },
+      [&](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
+}
+
+void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled) {
+  impacts_->hear_from(ear_.at(scheduled));
+  Strike strike = impacts_->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
+    const auto pose = bodies_.pose(body, sync::sim_time(event.time_ns));
+    if (pose.status == sync::SampleStatus::kNone) return std::nullopt;
+    return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
+  });
+  sampler_->record(strike, event, *impacts_);
+  output_.submit(strike, impacts_->table());
+}
+
+void NodeRenderer::submit_lasting(sync::HostTime now) {
+  const sync::Nanoseconds every = output_.tell_every(kScrapeLead);
+  const bool due = !no_sound_ && now - submitted_at_ >= every;
+  if (sliding_) sliding_->tell_every(sync::to_seconds(every));
+  const bool slides = due && sliding_ && sync::to_seconds(now - slid_at_) >= sliding_->period_s();
+  const auto map = contacts_.map(now);
+  if (!map || !sampler_ || !due || !(slides || sampler_->plays())) return;
+  submitted_at_ = now;
+  sampler_->tell_every(sync::to_seconds(every));
+  const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
+  if (sliding_) sliding_->hear_from(ear_.at(heard_at));
+  sampler_->hear_from(ear_.at(heard_at));
+  const sync::Nanoseconds delay = host().sense().delay();
+  const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
+  contacts_.keep(delay);
+  bodies_.keep(delay);
+  // Without snapshots of contacts they would go on for ever.
+  const bool known = now - frames_.count().newest_arrival < kContactsLost;
+  const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
+  for (const RecordedContact& rub : sampler_->rubs(lasting, heard_at)) output_.submit(rub);
+  if (!slides) return;
+  for (Scrape scrape : sliding_->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at_))) {
+    scrape.slide *= sampler_->modal_of(scrape.id, Interaction::kScrape);
+    scrape.roll *= sampler_->modal_of(scrape.id, Interaction::kRoll);
+    output_.submit(scrape);
+  }
+  slid_at_ = now;
+}
+
+void NodeRenderer::publish() {
+  while (const auto report = output_.next_report()) {
+    host().report(*report, report->presented_ns >= 0);
+    dropped_ += report->outcome == presentation_t::DROPPED_LATE || report->outcome == presentation_t::DROPPED_BY_PROFILE;
+  }
+  while (const auto pair = output_.next_pair()) publish_pair(host().bus(), output_.medium(), *pair);
+}
+
+void NodeRenderer::print_news() {
+  for (const std::string& news : output_.library().news()) host().say(news);
+  if (sampler_)
+    for (const std::string& news : sampler_->news()) host().say(news);
+  if (const auto news = output_.news()) host().say(*news);
+}
+
+sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
+  host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
+  const sync::HostTime heard = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
+  const std::int8_t state = !impacts_                   ? node_health_t::WAITING
+                            : !plays                    ? node_health_t::OUTPUT_LOST
+                            : heard == sync::HostTime{} ? node_health_t::READY
+                            : now - heard > kInputLost  ? node_health_t::INPUT_LOST
+                                                        : node_health_t::RUNNING;
+  return {state, output_.note(), output_.quality(), static_cast<int>(kQualities.size())};
+}
+
+}  // namespace tactus::audio

@@ -1,0 +1,84 @@
+// The modality of sound on the renderer host. It prepares strikes and contacts that last for the callback of the sound
+// card, which renders them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tactus/contact_frame_t.hpp>
+
+#include "audio_node/excitation/due_hits.h"
+#include "audio_node/spatial/ear.h"
+#include "audio_node/excitation/impact.h"
+#include "audio_node/offline.h"
+#include "audio_node/devices/output.h"
+#include "audio_node/excitation/sampler.h"
+#include "audio_node/excitation/sliding.h"
+#include "sync/resampling/body_history.h"
+#include "sync/resampling/contact_stream.h"
+#include "sync/node/renderer.h"
+#include "sync/node/background_task.h"
+
+namespace tactus::audio {
+
+// What the command line says, beside the options of every node.
+struct Options {
+  std::string device;     // empty: the setting's
+  bool no_sound = false;  // computes no samples
+  OfflineOptions log;
+
+  void add_to(CLI::App& app);
+  // Throws std::runtime_error with one sentence.
+  void check() const;
+};
+
+class NodeRenderer : public sync::SettingsRenderer<Settings> {
+ public:
+  // log: null: it renders the bus.
+  NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log);
+
+  std::optional<sync::Status> step(sync::HostTime now) override;
+  std::string finish_log(sync::HostTime clock) override {
+    return log_->result(output_.settings().sample_rate_Hz, hits_, dropped_, clock);
+  }
+
+ private:
+  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void change(const Settings& settings, const std::string& name) override;
+  void configure(const Settings& settings);
+  void add_tags();
+  void begin_to_read(const sync::SceneReceiver& scenes);
+  void finish_reading();
+  void take_surfaces();
+  void receive();
+  void collect_hits(sync::HostTime now);
+  void strike_due(sync::HostTime now);
+  void strike(const contact_event_t& event, sync::HostTime scheduled);
+  void drop(const contact_event_t& event, sync::HostTime scheduled) { output_.drop(event.event_id, scheduled); }
+  void submit_lasting(sync::HostTime now);
+  void publish();
+  void print_news();
+  sync::Status status(sync::HostTime now, bool plays);
+
+  Offline* log_;
+  bool no_sound_;
+  bool real_time_;  // a log and a virtual time play into a file, and wait for what is read
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
+  sync::ModalityEndpoint::Stream<world_state_t>& world_;
+  sync::Queue<tool_state_t>& tools_;  // past the profile, which makes events late or rare: the place of the ear is none
+  Ear ear_;
+  sync::ContactStream contacts_;
+  sync::BodyHistory bodies_;
+  Output output_;
+  const scene_t* scene_ = nullptr;
+  std::unique_ptr<Impacts> impacts_;
+  std::unique_ptr<Sliding> sliding_;
+  std::unique_ptr<Sampler> sampler_;
+  std::optional<sync::BackgroundTask<HeardSurfaces>> opening_surfaces_;
+  DueHits due_;
+  sync::HostTime started_, slid_at_{}, submitted_at_{};
+  std::int64_t scenes_ = 0, hits_ = 0, dropped_ = 0;
+};
+
+}  // namespace tactus::audio

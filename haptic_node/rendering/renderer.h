@@ -1,0 +1,124 @@
+// One tick of touch: from the touch model, the events due and the state of the device to the force on the hand,
+// the state of the tool and the reports. Pure: no clock, no bus, no device.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <vector>
+
+#include "haptic_node/contact/contact_impulses.h"
+#include "haptic_node/rendering/coupling.h"
+#include "haptic_node/devices/device.h"
+#include "haptic_node/rendering/force_crossfade.h"
+#include "haptic_node/contact/pending_onsets.h"
+#include "haptic_node/safety/passivity.h"
+#include "haptic_node/contact/reliefs.h"
+#include "haptic_node/rendering/rendering.h"
+#include "haptic_node/safety/safety.h"
+#include "haptic_node/settings.gen.h"
+#include "haptic_node/contact/surfaces.h"
+#include "haptic_node/contact/touch_model_view.h"
+#include "haptic_node/rendering/transient.h"
+#include "sync/resampling/sample_status.h"
+#include "sync/time/time.h"
+
+namespace tactus::haptic {
+
+struct TickInput {
+  sync::HostTime now{};
+  DeviceState device;
+  // A touch model of this tool that has not been given before; null: none.
+  TouchModelView fresh;
+  // When the newest touch model arrived, raw; nothing: none yet.
+  std::optional<sync::HostTime> touch_arrival;
+  // Between simulated time and the host clock; nothing: not known.
+  std::optional<sync::TimeMap> map;
+  // Of hit transients, on top of the setting; and by which touch models were held back on purpose: they are felt
+  // as if it were so long ago.
+  sync::Nanoseconds transient_delay{0}, touch_delay{0};
+  // The force is commanded in steps of this size; 0: none.
+  double force_step_N = 0;
+  // So many of the planes of a touch model are considered.
+  std::size_t planes = Surfaces::kMaxPresent;
+  // Contact events that have become due, each exactly once.
+  std::span<const contact_event_t> events;
+};
+
+struct TickOutput {
+  tool_state_t state{};
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the hand, world: command it now
+  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the same
+  std::vector<presentation_t> reports;
+};
+
+class Renderer {
+ public:
+  // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
+  Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
+
+  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not
+  // its.
+  void change(const Settings& settings);
+
+  // What lies on the surfaces of its scene, from the next tick on; null: nothing.
+  void set_maps(std::shared_ptr<const SurfaceMaps> maps) { reliefs_.set_maps(std::move(maps)); }
+
+  // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
+  // ticks.
+  TickOutput& step(const TickInput& in);
+
+  // True while the touch model is lost.
+  bool lost() const { return fade_.lost(); }
+  // True while the device is.
+  bool device_lost() const { return device_.lost; }
+
+ private:
+  // Of the force that is wanted: less while the touch model or the device is lost, or has just come back.
+  double share() const { return fade_.value() * device_share_; }
+  void take_device(const TickInput& in);
+  void take_touch(const TickInput& in, double dt);
+  void take_events(const TickInput& in);
+  Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
+  Wrench constraint_wrench(double dt);
+  void split(const Wrench& felt_constraint);
+  void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
+  sync::SampleStatus status(const TickInput& in) const;
+  sync::Nanoseconds uncertainty() const;
+
+  int tool_;
+  std::int32_t tool_body_;
+  std::vector<double> youngs_modulus_Pa_;
+  Settings settings_;
+  CouplingLimits coupling_;
+  double period_s_, step_s_;
+
+  Surfaces surfaces_;
+  Reliefs reliefs_;
+  Rendering rendering_;
+  ForceCrossfade handover_, torque_handover_;
+  LoopDelay loop_delay_;
+  sync::Nanoseconds touch_delay_{0};  // of the tick before
+  Passivity passivity_;
+  Transients transients_;
+  Safety& safety_;
+  Fade fade_;
+  ContactImpulses book_;
+  PendingOnsets owed_;
+
+  bool begun_ = false;
+  sync::HostTime last_{};
+  DeviceState device_;
+  double device_share_ = 1;
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();  // of the device, since the last tick
+  std::optional<sync::SimTime> model_time_;
+  double model_age_s_ = 0;
+  std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
+  std::vector<FeltForce> felt_;          // of each surface, as commanded
+  TickOutput out_;
+};
+
+}  // namespace tactus::haptic

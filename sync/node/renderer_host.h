@@ -1,0 +1,43 @@
+// What a renderer is given: its node, its endpoint on the bus, and whether it renders what happens or a log.
+#pragma once
+
+#include <string>
+
+#include "sync/node/node.h"
+#include "sync/node/tick_source.h"
+#include "sync/node/modality_endpoint.h"
+
+namespace tactus::sync {
+
+class RendererHost {
+ public:
+  RendererHost(Node& node, ModalityEndpoint& sense, const TickSource& ticks) : node_(node), sense_(sense), ticks_(ticks) {}
+
+  Node& node() { return node_; }
+  Bus& bus() { return node_.bus(); }
+  // Its input streams, its delay, and what a profile does to both.
+  ModalityEndpoint& sense() { return sense_; }
+  const NodeDescriptor& descriptor() const { return node_.descriptor(); }
+  const NodeOptions& options() const { return node_.options(); }
+
+  // False: a log is rendered, as fast as possible.
+  bool live() const { return ticks_.live(); }
+  // The time within a tick. In a log a tick takes no time.
+  HostTime clock() const { return ticks_.now(); }
+
+  // Reports what became of an event. rendered: it counts as rendered in NODE_HEALTH.
+  void report(const presentation_t& report, bool rendered = true) {
+    sense_.report(report);
+    if (rendered) node_.count_rendered(1);
+  }
+  // A sentence for the user, behind the name of the process.
+  void say(const std::string& sentence) const { print(options().name + ": " + sentence); }
+  void print(const std::string& line) const;
+
+ private:
+  Node& node_;
+  ModalityEndpoint& sense_;
+  const TickSource& ticks_;
+};
+
+}  // namespace tactus::sync

@@ -1,0 +1,87 @@
+#include "sync/node/run_renderer.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "sync/node/live_settings.h"
+
+namespace tactus::sync {
+namespace {
+
+// One run of a renderer.
+class RendererRun {
+ public:
+  RendererRun(const NodeDescriptor& descriptor, const NodeOptions& options, RendererFactory& factory, Offline* log)
+      : log_(log), node_(descriptor, options), scenes_(node_.bus()), sense_(node_), ticks_(node_, log),
+        host_(node_, sense_, ticks_), renderer_(factory.make(host_)), live_(node_) {
+    if (log_) sense_.tell([this](const presentation_t& r) { log_->note(node_.descriptor().modality, r); });
+  }
+
+  void loop() {
+    while (node_.running() && !ticks_.over() && !renderer_->closed()) {
+      const HostTime now = ticks_.next();
+      sense_.step(now);
+      if (scenes_.poll(now)) load();
+      change_settings(now);
+      if (const std::optional<Status> status = renderer_->step(now)) {
+        sense_.publish(ticks_.now());
+        show(*status);
+      }
+      show_progress();
+    }
+    if (log_) host_.say(renderer_->finish_log(host_now()));
+    renderer_->finish();
+  }
+
+ private:
+  void load() {
+    live_.set_scene(*scenes_.scene());
+    const Loaded loaded = renderer_->begin_scene(scenes_);
+    if (loaded.rate_Hz > 0) node_.set_rate(loaded.rate_Hz);
+    node_.set_tool(loaded.tool);
+    sense_.set_scene(*scenes_.scene(), loaded.tool);
+    sense_.set_output_latency(loaded.output_latency);
+    show(loaded.status);
+  }
+  void change_settings(HostTime now) {
+    const auto change = [this](const std::string& name, const std::string& value) { renderer_->change_setting(name, value); };
+    for (const std::string& refused : live_.step(now, change)) host_.say(refused);
+  }
+  void show(const Status& status) {
+    node_.set_state(status.state, status.note);
+    if (status.qualities > 0) node_.set_quality(status.quality, status.qualities);
+  }
+  void show_progress() {
+    if (!log_) return;
+    if (const auto line = log_->progress(host_now())) host_.say(*line);
+  }
+
+  Offline* log_;
+  Node node_;
+  SceneReceiver scenes_;
+  ModalityEndpoint sense_;
+  TickSource ticks_;
+  RendererHost host_;
+  std::unique_ptr<Renderer> renderer_;
+  LiveSettings live_;
+};
+
+}  // namespace
+
+void RendererHost::print(const std::string& line) const { std::cerr << line << std::endl; }
+
+int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int argc, char** argv) try {
+  CLI::App app;
+  NodeOptions options;
+  options.add_to(app, descriptor);
+  factory.add_options(app);
+  parse_or_exit(app, descriptor.name, argc, argv);
+  Offline* const log = factory.prepare(options);
+  if (log) log->adapt(options);
+  RendererRun(descriptor, options, factory, log).loop();
+  return 0;
+} catch (const std::exception& e) {
+  return fail(descriptor.name, e);
+}
+
+}  // namespace tactus::sync

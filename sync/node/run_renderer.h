@@ -1,0 +1,47 @@
+// The renderer host: everything that processes of all modalities have in common. It owns options, bus, scene reception,
+// live settings, degradation, playout, health, real-time priority, and the one loop, live and from a log.
+//
+// A node's run.cpp is a descriptor, a factory and a call:
+//
+//   const sync::NodeDescriptor kWind{.name = "wind_node", .modality = "wind", ...};
+//   int main(int argc, char** argv) {
+//     sync::PlainFactory<WindRenderer> factory;
+//     return sync::run_renderer(kWind, factory, argc, argv);
+//   }
+#pragma once
+
+#include <memory>
+
+#include "sync/node/renderer.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tactus::sync {
+
+// Makes the renderer of a node in three steps: options, what is opened before the bus, the renderer itself.
+class RendererFactory {
+ public:
+  virtual ~RendererFactory() = default;
+
+  // Options of this node, beside those that every node has.
+  virtual void add_options(CLI::App&) {}
+  // The options are parsed, and the bus is not joined yet. Checks them; opens what can fail. Returns the log that is
+  // rendered in place of the bus, which this factory owns; null: none. Throws std::runtime_error with one sentence.
+  virtual Offline* prepare(const NodeOptions& options) = 0;
+  // Subscribes to the inputs. host: outlives the renderer.
+  virtual std::unique_ptr<Renderer> make(RendererHost& host) = 0;
+};
+
+// Of a renderer without options of its own, which renders no log.
+template <class Made>
+class PlainFactory : public RendererFactory {
+  Offline* prepare(const NodeOptions&) override { return nullptr; }
+  std::unique_ptr<Renderer> make(RendererHost& host) override { return std::make_unique<Made>(host); }
+};
+
+// The program. Returns its exit status, after one sentence on stderr where that is not 0.
+int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int argc, char** argv);
+
+}  // namespace tactus::sync

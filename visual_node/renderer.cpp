@@ -1,0 +1,264 @@
+#include "visual_node/renderer.h"
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "sync/time/phases.h"
+#include "sync/assets/scene_pictures.h"
+#include "visual_node/scene_view/meshes.h"
+
+namespace tactus::visual {
+
+void Options::add_to(CLI::App& app) {
+  app.add_flag("--window", window, "open a window");
+  app.add_flag("--no-video", no_video, "write no video.mp4");
+  app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown")->excludes("--window");
+  app.add_option("--snapshot", keep.snapshot, "PNG file that the newest picture is written to");
+  app.add_option("--snapshot-every", keep.snapshot_every_s, "how often, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  log.add_to(app);
+  app.get_option("--no-pictures")->excludes("--log");
+}
+
+void Options::complete(const std::string& node, const sync::NodeOptions& options) {
+  keep.folder = options.out;
+  // Several of a room write into one folder.
+  if (options.name.starts_with(node + "_")) keep.name += options.name.substr(node.size());
+  keep.video = !no_video && !no_pictures;
+  if (no_pictures && !keep.snapshot.empty())
+    throw std::runtime_error("--no-pictures leaves nothing for --snapshot; leave one out");
+  log.snapshot = keep.snapshot;
+  log.snapshot_every_s = keep.snapshot_every_s;
+}
+
+std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options) {
+  return options.no_pictures ? std::make_unique<RenderOutput>(settings) : std::make_unique<RenderOutput>(settings, options.window);
+}
+
+NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log)
+    : SettingsRenderer(host, setting_fields()),
+      stage_(stage),
+      log_(log),
+      world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
+      events_(host.sense().events()),
+      tools_(host.sense().snapshots<tool_state_t>(channels::kToolState, 512)),
+      composer_(host.bus().clocks(), settings(), host.descriptor().late_policy),
+      lock_(host.bus().clocks(), host.descriptor().modality, host.bus().identity().incarnation),
+      walls_(host.node(), lock_),
+      recording_(options.keep),
+      overlays_(host.bus()),
+      desk_(host.bus()),
+      questions_(host.bus()) {
+  host.node().set_rate(settings().rate_Hz);
+  composer_.set_schedule([&sense = host.sense()](std::int64_t event, sync::HostTime happened) {
+    return sense.schedule(event, happened);
+  });
+  if (log_) composer_.foresee({}, {});
+  questions_.configure(settings());
+  say(overlays_.configure(settings()));
+  add_tags();
+}
+
+void NodeRenderer::add_tags() {
+  sync::Tags& tags = host().node().tags();
+  tags.add("picture", "us", [this] { return sync::to_seconds(took_) * 1e6; });
+  tags.add("quality", "1", [this] { return stage_.quality().step(); });
+  tags.add("flashed", "1", &flashed_);
+}
+
+void NodeRenderer::say(const std::vector<std::string>& sentences) const {
+  for (const std::string& sentence : sentences) host().say(sentence);
+}
+
+sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+  take_messages();
+  loaded_ = true;
+  scene_ = scenes.scene();
+  std::vector<std::string> trouble;
+  const SceneView& view =
+      composer_.load(*scene_, meshes_of(scenes), settings,
+                     height_maps_of(*scene_, sync::pictures_of(scenes), trouble), look_files_of(scenes, trouble));
+  trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
+  if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
+  for (const std::string& sentence : overlays_.configure(settings)) trouble.push_back(sentence);
+  questions_.configure(settings);
+  say(trouble);
+  lock_.load(*scene_, settings);
+  const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
+  host().node().set_state(preparing.state, preparing.note);
+  stage_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
+    if (!log_) host().node().heartbeat();
+  });
+  begin_outputs(view, settings);
+  return {.rate_Hz = settings.rate_Hz,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kFlashesTake,
+          .status = preparing};
+}
+
+void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings) {
+  if (log_)
+    log_->begin(view.width(), view.height(), settings);
+  else if (stage_.draws())
+    recording_.begin(view.width(), view.height(), settings);
+  if (stage_.draws()) stream_.begin(view.width(), view.height(), settings);
+}
+
+void NodeRenderer::change(const Settings& settings, const std::string& name) {
+  take_messages();  // they came before the change
+  LiveOverlays::check(settings);
+  if (name.starts_with("stream")) {
+    if (!stage_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
+    stream_.begin(stage_.picture().width(), stage_.picture().height(), settings);
+  } else {
+    overlays_.configure(settings);
+    questions_.configure(settings);
+    composer_.change(settings);
+  }
+}
+
+// For a wait within a tick: takes in what arrived meanwhile.
+void NodeRenderer::receive(sync::HostTime now) {
+  host().sense().step(now);
+  take_messages();
+}
+
+void NodeRenderer::take_messages() {
+  while (const auto m = world_.pop())
+    composer_.push(m->message, m->arrival), overlays_.push(m->message), desk_.push(m->message);
+  while (const auto m = events_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message, m->arrival);
+  while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
+  walls_.receive();
+}
+
+std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
+  take_messages();
+  if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // that took several ticks
+  recover(now);
+  const std::optional<AgreedFrame> agreed = begin_frame();
+  const SceneView* view = composer_.view();
+  if (stage_.draws()) questions_.step();
+  if (host().live() && stage_.draws())
+    desk_.step(now, stage_.display(), overlays_, questions_, frame_.list,
+               view ? std::span(view->geometries()) : std::span<const Triangles>{},
+               [this](const std::string& sentence) { host().say(sentence); });
+  const bool fresh = stage_.due(now, host().sense().output());
+  if (fresh) draw(agreed ? host().clock() : now, agreed);
+  host().sense().publish(host().clock());  // before the pixels are read back
+  keep(now, fresh);
+  if (log_) return std::nullopt;
+  const sync::Status status = this->status(now, fresh);
+  if (agreed) host().node().align(lock_.next_begin(sync::host_now()), agreed->skipped);
+  return status;
+}
+
+void NodeRenderer::recover(sync::HostTime now) {
+  if (const std::string lost = stage_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
+  say(stage_.take_trouble());
+}
+
+// Which frame this tick draws: of a room, one that its walls agree on.
+std::optional<AgreedFrame> NodeRenderer::begin_frame() {
+  // A wall that is slow receives the pose of its head all the same.
+  if (lock_.on() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
+  const auto agreed = lock_.begin(host().clock(), host().sense().profile_delay());
+  const sync::Deadlines& deadlines = host().node().deadlines();
+  const std::int64_t before = std::exchange(periods_, deadlines.ticks() + deadlines.missed());
+  slot_ += log_ ? 1 : agreed ? 1 + agreed->skipped : periods_ - before;
+  return agreed;
+}
+
+void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed) {
+  const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
+  const sync::ModalityEndpoint& sense = host().sense();
+  const auto meanwhile = [this](sync::HostTime t) { receive(t); };
+  output_ = sense.output();
+  overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
+  const sync::HostTime heard = world_.count().newest_arrival;
+  frame_ = agreed ? composer_.frame(now, *agreed, heard)
+                  : composer_.frame(now, slot_, sense.delay(), heard, sense.profile_delay());
+  stage_.draw_scene(frame_.list, output_);
+  const sync::HostTime drawn = host().clock();
+  if (agreed && !log_) walls_.wait_for_latch(*agreed);
+  // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
+  const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
+  if (!log_) receive(latched);
+  composer_.latch(frame_, latched, agreed ? agreed->delay : sense.delay(), stage_.held());
+  draw_overlays(latched);
+  const sync::HostTime ready = host().clock();
+  if (agreed && !log_) lock_.drawn(drawn - now, ready - latched), walls_.hold(*agreed, meanwhile);
+  waited_ = agreed ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
+  stage_.show();
+  fence_ = host().clock();
+  times_ = {now, latched};
+  took_ = fence_ - now;
+  if (agreed && !log_) walls_.shown(*agreed);
+  present(latched);
+}
+
+void NodeRenderer::draw_overlays(sync::HostTime latched) {
+  if (overlays_.on().any() && stage_.draws()) {
+    const sync::ModalityEndpoint& sense = host().sense();
+    PanelFacts facts;
+    facts.rendering = took_;
+    facts.period = sync::from_seconds(1 / settings().rate_Hz);
+    facts.quality = stage_.quality().step();
+    facts.qualities = stage_.quality().steps();
+    facts.profile = sense.profile_name();
+    facts.delay = sense.delay();
+    facts.profile_delay = sense.profile_delay();
+    facts.output = output_;
+    overlays_.append(frame_, facts, latched, stage_.picture().width(), stage_.picture().height());
+  }
+  if (stage_.draws()) questions_.append(frame_, latched, stage_.picture().width(), stage_.picture().height());
+  stage_.draw_over(frame_.list);
+}
+
+// The picture is out: reports the events that it is the first to show.
+void NodeRenderer::present(sync::HostTime latched) {
+  const sync::HostTime shown = fence_ + sync::from_seconds(settings().display_latency_s);
+  questions_.presented(shown);
+  // An event that arrives just after the latch waits for that of the next frame; not for a picture that a profile holds.
+  if (!output_.any())
+    host().sense().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
+  for (const presentation_t& report : composer_.presented(shown)) {
+    const bool rendered = report.outcome != presentation_t::DROPPED_LATE;
+    host().report(report, rendered);
+    flashed_ += rendered;
+    ++reported_;
+  }
+}
+
+void NodeRenderer::keep(sync::HostTime now, bool fresh) {
+  const auto read = [this](std::span<std::uint8_t> rgba) { stage_.picture().read(rgba); };
+  if (log_) return log_->add(read);
+  if (auto pair = stage_.draws() ? recording_.add(slot_, fresh ? fence_ : now + took_, read) : std::nullopt) {
+    times_.read = sync::host_now();
+    host().bus().publish(channels::kMediaClock, *pair);
+    if (fresh && settings().motion_marker == "strip")
+      for (media_clock_t& m : stages_of(*pair, times_)) host().bus().publish(channels::kMediaClock, m);
+  }
+  if (fresh && stage_.draws())
+    stream_.add(now, frame_.instant ? sync::to_ns(*frame_.instant) : -1,
+                fence_ + sync::from_seconds(settings().display_latency_s), read);
+  for (picture_chunk_t& chunk : stream_.take_chunks())
+    host().bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
+  if (const std::string trouble = recording_.trouble(); trouble != said_) host().say(said_ = trouble);
+}
+
+sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
+  const std::string walls = lock_.note(now), video = walls.empty() ? recording_.note() : walls;
+  QualityControl& quality = stage_.quality();
+  if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
+  if (const std::string change = quality.take_change(); !change.empty()) host().say(change);
+  return {frame_.state, frame_.note + (frame_.note.empty() || video.empty() ? "" : "; ") + video, quality.step(),
+          quality.steps()};
+}
+
+void NodeRenderer::finish() {
+  if (closed()) host().say("the window was closed");
+  if (const std::string how = composer_.poses().text(); !how.empty()) host().say("poses of bodies in the pictures: " + how);
+}
+
+}  // namespace tactus::visual

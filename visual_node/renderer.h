@@ -1,0 +1,88 @@
+// The modality of vision on the renderer host: from the messages of a tick to the picture that is shown and kept.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sync/node/renderer.h"
+#include "visual_node/frame/frame_composer.h"
+#include "visual_node/frame/frame_lock.h"
+#include "visual_node/frame/frame_times.h"
+#include "visual_node/frame/wall_sync.h"
+#include "visual_node/gl/render_output.h"
+#include "visual_node/offline.h"
+#include "visual_node/overlay/window_controls.h"
+#include "visual_node/video/picture_stream.h"
+#include "visual_node/video/recording.h"
+
+namespace tactus::visual {
+
+// What the command line says, beside the options of every node.
+struct Options {
+  bool window = false, no_video = false, no_pictures = false;
+  RecordingOptions keep;
+  OfflineOptions log;
+
+  void add_to(CLI::App& app);
+  // Fills what follows from the options of every node. Throws std::runtime_error with one sentence.
+  void complete(const std::string& node, const sync::NodeOptions& options);
+};
+
+// What pictures are drawn on. Throws std::runtime_error with one sentence.
+std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options);
+
+class NodeRenderer : public sync::SettingsRenderer<Settings> {
+ public:
+  // stage: outlives this. log: null: it renders the bus.
+  NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log);
+
+  std::optional<sync::Status> step(sync::HostTime now) override;
+  bool closed() override { return stage_.closed() || desk_.closing(); }
+  std::string finish_log(sync::HostTime clock) override { return log_->result(flashed_, reported_ - flashed_, clock); }
+  void finish() override;
+
+ private:
+  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void change(const Settings& settings, const std::string& name) override;
+  void add_tags();
+  void begin_outputs(const SceneView& view, const Settings& settings);
+  void receive(sync::HostTime now);
+  void take_messages();
+  void recover(sync::HostTime now);
+  std::optional<AgreedFrame> begin_frame();
+  void draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed);
+  void draw_overlays(sync::HostTime latched);
+  void present(sync::HostTime latched);
+  void keep(sync::HostTime now, bool fresh);
+  sync::Status status(sync::HostTime now, bool fresh);
+  void say(const std::vector<std::string>& sentences) const;
+
+  RenderOutput& stage_;
+  Offline* log_;
+  sync::ModalityEndpoint::Stream<world_state_t>& world_;
+  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Stream<tool_state_t>& tools_;
+  FrameComposer composer_;
+  FrameLock lock_;
+  WallSync walls_;
+  Recording recording_;
+  PictureStream stream_;
+  LiveOverlays overlays_;
+  WindowControls desk_;
+  LiveQuestions questions_;
+  const scene_t* scene_ = nullptr;
+  bool loaded_ = false;  // in this tick
+  Frame frame_;
+  sync::OutputDef output_;  // what was wrong with it on purpose
+  sync::HostTime fence_{};
+  FrameTimes times_;
+  sync::Nanoseconds took_{0}, waited_{0};
+  std::int64_t slot_ = -1, periods_ = 0;  // of the video; of the loop, ticked and missed
+  std::int64_t reported_ = 0, flashed_ = 0;
+  std::string said_;
+};
+
+}  // namespace tactus::visual
