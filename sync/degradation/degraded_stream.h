@@ -11,12 +11,12 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <tactus/contact_events_t.hpp>
 #include <utility>
 #include <vector>
 
 #include "sync/bus/page_assembler.h"
+#include "sync/bus/recent_map.h"
 #include "sync/degradation/operator_chain.h"
 #include "sync/degradation/snapshot.h"
 #include "sync/random/keyed_random.h"
@@ -81,7 +81,7 @@ class DegradedSnapshots {
     if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
     if (stack.lost_on_wire(wire_key(m), time)) return;
     if constexpr (requires { m.pages; })
-      if (stack.compares() && m.pages > 1 && !verdicts_.contains(snapshot_key(m)))
+      if (stack.compares() && m.pages > 1 && !verdicts_.find(snapshot_key(m)))
         return gather(std::move(m), arrival, stack, decisions);
     const Decision v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
@@ -157,7 +157,7 @@ class DegradedSnapshots {
   Decision verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& stack,
                      Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
+    if (const Decision* known = verdicts_.find(key)) return *known;
     StreamItem item{.key = key,
               .stream = stream_of(m),
               .incarnation = m.header.incarnation,
@@ -167,12 +167,7 @@ class DegradedSnapshots {
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
     const Decision v = stack.decide(item);
-    verdicts_.emplace(key, v);
-    order_.push_back(key);
-    if (order_.size() > kRemembered) {
-      verdicts_.erase(order_.front());
-      order_.pop_front();
-    }
+    verdicts_.try_emplace(key, v);
     if (decisions && v.touched) decisions->push_back({key, false, item.time, v, arrival});
     return v;
   }
@@ -195,8 +190,7 @@ class DegradedSnapshots {
   DelayQueue<Message> waiting_;
   Pages gathering_{kGathering};
   std::map<std::uint64_t, Arriving> arriving_;                // by stream
-  std::map<std::uint64_t, Decision> verdicts_;
-  std::deque<std::uint64_t> order_;
+  RecentMap<std::uint64_t, Decision> verdicts_{kRemembered};
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};
@@ -209,19 +203,25 @@ class DegradedEvents {
   // The next message that is let through by now, and when its events arrived: one with only its header and clock
   // comes through at once.
   std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);
+  // When each event arrived first, by its id, also one that was lost on the wire on purpose.
+  struct Known {
+    HostTime arrival{};
+    bool decided = false;  // in this life of the simulation
+  };
+  using Memory = RecentMap<std::int64_t, Known>;
+  const Memory& memory() const { return memory_; }
   // Events that the profile dropped since the last call; whoever owes them says so.
   std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
 
  private:
   static constexpr std::size_t kRemembered = 8192;  // as sync/resampling/contact_stream.cpp
   static constexpr std::size_t kMaxDropped = 4096;
-  bool first_heard(std::int64_t id);
+  bool decides(std::int64_t id);
 
   DelayQueue<contact_events_t> waiting_;
   contact_events_t newest_{};  // header and clock
   HostTime newest_arrival_{};  // of that
-  std::set<std::int64_t> seen_;
-  std::deque<std::int64_t> order_;
+  Memory memory_{kRemembered};
   std::vector<contact_event_t> dropped_;
 };
 

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kPageBytes = 1200;
 static_assert(ProfileReceiver::kMaxPages == kMaxProfileBytes / kPageBytes + 1);
 constexpr const char* kFile = "profile.in_force";
+constexpr const char* kFreshFile = "profile.in_force.new";
 }  // namespace
 
 void send_profile(Bus& bus, const ProfileInForce& profile) {
@@ -52,7 +53,7 @@ std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
 }
 
 void keep_profile(const std::filesystem::path& folder, const ProfileInForce& p, std::int64_t run_id) {
-  const std::filesystem::path file = folder / kFile, fresh = folder / (std::string(kFile) + ".new");
+  const std::filesystem::path file = folder / kFile, fresh = folder / kFreshFile;
   std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
   out << run_id << " " << p.generation << " " << to_ns(p.start) << " " << p.hash << "\n" << p.text;
   out.close();

@@ -6,9 +6,6 @@
 namespace tactus::sync {
 namespace {
 
-// Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
-constexpr std::size_t kRememberedIds = 8192;
-constexpr std::size_t kRememberedLives = 8192;
 // At the least, however old.
 constexpr std::size_t kSnapshots = 128;
 // Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
@@ -43,10 +40,8 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
   if (verdict == TrackResult::kRestart) {
     if (before != 0) ++restarts_;
     pending_.clear();
-    seen_.clear();
-    seen_order_.clear();
+    received_.clear();
     lives_.clear();
-    lives_order_.clear();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
     for (auto& kept : contacts_kept_) kept = 0;
@@ -76,14 +71,9 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
       ++refused_;
       continue;
     }
-    if (!seen_.insert(event.event_id).second) {
+    if (!received_.try_emplace(event.event_id).second) {
       ++duplicates_;
       continue;
-    }
-    seen_order_.push_back(event.event_id);
-    if (seen_order_.size() > kRememberedIds) {
-      seen_.erase(seen_order_.front());
-      seen_order_.pop_front();
     }
     note_event(event);
     pending_.emplace(sim_time(event.time_ns), event);
@@ -95,16 +85,9 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
 }
 
 void ContactStream::note_event(const contact_event_t& event) {
-  const auto [it, fresh] = lives_.try_emplace(event.contact_id);
-  if (fresh) {
-    lives_order_.push_back(event.contact_id);
-    if (lives_order_.size() > kRememberedLives) {
-      lives_.erase(lives_order_.front());
-      lives_order_.pop_front();
-    }
-  }
-  if (event.kind == contact_event_t::BEGIN) it->second.begin = event;
-  if (event.kind == contact_event_t::END) it->second.end = sim_time(event.time_ns);
+  Life& life = lives_.try_emplace(event.contact_id).first;
+  if (event.kind == contact_event_t::BEGIN) life.begin = event;
+  if (event.kind == contact_event_t::END) life.end = sim_time(event.time_ns);
 }
 
 void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
@@ -154,10 +137,9 @@ std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
 }
 
 bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
-  const auto it = lives_.find(contact_id);
-  if (it == lives_.end()) return true;  // joined late: its begin was not heard
-  const Life& life = it->second;
-  return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
+  const Life* life = lives_.find(contact_id);
+  if (!life) return true;  // joined late: its begin was not received
+  return (!life->begin || sim_time(life->begin->time_ns) <= t) && (!life->end || *life->end > t);
 }
 
 SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t) const {
@@ -171,8 +153,8 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
 // It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
 bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
-  const auto life = lives_.find(id);
-  if (life != lives_.end() && life->second.begin) return false;
+  const Life* life = lives_.find(id);
+  if (life && life->begin) return false;
   return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
 }
 
@@ -195,8 +177,8 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
   for (std::size_t i = 0; i < after->contacts.size(); ++i) {
     const contact_t& c = after->contacts[i];
-    const auto life = lives_.find(c.contact_id);
-    const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
+    const Life* life = lives_.find(c.contact_id);
+    const bool begun = life && life->begin && sim_time(life->begin->time_ns) <= t;
     if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
       out.push_back({c, after->seqs[i], false});
   }
