@@ -215,7 +215,7 @@ void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled
     return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
   });
   sampler_->record(strike, event, *impacts_);
-  output_.submit(strike);
+  output_.submit(strike, impacts_->table());
 }
 
 void NodeRenderer::submit_lasting(sync::HostTime now) {

@@ -108,8 +108,8 @@ void NodeRenderer::change(const Settings& settings, const std::string&) {
 }
 
 void NodeRenderer::receive() {
-  while (const auto m = touch_.pop())
-    if (session_) session_->push(m->message, m->arrival);
+  while (auto m = touch_.pop())
+    if (session_) session_->push(std::move(m->message), m->arrival);
   while (const auto m = events_.pop())
     if (session_) session_->push(m->message, m->arrival);
   while (const auto m = device_states_.pop())

@@ -38,6 +38,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
       crossing_(std::make_shared<CallbackQueues>()),
+      strikes_(*crossing_),
       scrapes_(*crossing_),
       rubs_(crossing_->recorded.rubs),
       library_(crossing_->recorded),
@@ -53,6 +54,7 @@ void Output::configure(Settings settings) {
 }
 
 bool Output::keep_open(sync::HostTime now) {
+  strikes_.free_unread();
   if (stream_ && stream_->alive(now)) {
     scrapes_.tell_ends();
     rubs_.tell_ends();
@@ -150,8 +152,8 @@ void Output::hear_from(const Eigen::Isometry3d& listener) {
   if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
 }
 
-void Output::submit(const Strike& strike) {
-  if (!stream_ || !crossing_->strikes.push(strike)) drop(strike.event_id, strike.scheduled);
+void Output::submit(const Strike& strike, const StrikeLine::Table& table) {
+  if (!stream_ || !strikes_.submit(strike, table)) drop(strike.event_id, strike.scheduled);
 }
 
 void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {

@@ -11,6 +11,7 @@
 #include "audio_node/mixer/library.h"
 #include "audio_node/samples/rub_line.h"
 #include "audio_node/mixer/scrape_line.h"
+#include "audio_node/mixer/strike_line.h"
 #include "audio_node/settings.gen.h"
 #include "sync/node/background_task.h"
 
@@ -35,8 +36,9 @@ class Output {
   // Once a tick: what is wrong with the output on purpose.
   void degrade(const DropoutDef& dropout);
 
-  // When nothing plays or the queue is full the strike will never sound, and is reported as dropped.
-  void submit(const Strike& strike);
+  // When nothing plays or the queue is full the strike will never sound, and is reported as dropped. table: what it refers
+  // to; it is kept as long as the callback may read it.
+  void submit(const Strike& strike, const StrikeLine::Table& table = nullptr);
   // One that is never made: it is reported as dropped.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Scrapes from now on are of these surfaces; null: of none. It keeps those before as long as the callback may
@@ -101,9 +103,10 @@ class Output {
   // The stream's callback owns its share of both.
   std::shared_ptr<CallbackQueues> crossing_;
   std::shared_ptr<Renderer> renderer_;
-  ScrapeLine scrapes_;  // goes after the stream, whose callback reads what it keeps
+  StrikeLine strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
+  ScrapeLine scrapes_;
   RubLine rubs_;
-  Library library_;                     // as well
+  Library library_;
   std::optional<RenderCommand> ordered_;       // what the renderer has been told; nothing: it is new
   std::optional<Listener> heard_from_;  // likewise
   OpenCard open_;                       // none: a Stream

@@ -94,9 +94,11 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
                  const Settings& settings, double rate_Hz, std::int64_t generation)
     : settings_(settings), rate_Hz_(rate_Hz), generation_(generation), listener_(to_eigen(scene.listener)) {
   for (const material_def_t& m : scene.materials) materials_.push_back(elastic(m));
+  const auto table = std::make_shared<ResonatorTable>();
   const auto add = [&](const body_def_t& body, const shape_def_t* shape, int material_index) {
     const auto extent = shape && shape->kind == shape_def_t::MESH ? mesh(shape->mesh_hash) : std::nullopt;
-    Voice v{body_sound(body, shape, material(material_index), extent, settings), {}, {}, {}};
+    Voice v{body_sound(body, shape, material(material_index), extent, settings), table->size(), {}, {}};
+    Resonators& resonators = table->emplace_back();
     if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
       sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
     if (body.is_static) v.stands = to_eigen(body.pose);
@@ -107,7 +109,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
       const ModeStep step =
           mode_step(std::sqrt(std::max(1.0, mode.frequency_Hz * mode.frequency_Hz - lost * lost)),
                     mode.damping_1_s, rate_Hz);
-      v.resonators.add(step);
+      resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
                            kSoundSpeed_m_s *
                            radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
@@ -128,6 +130,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
   }
   body_def_t none{};
   unknown_ = add(none, nullptr, -1);
+  resonators_ = table;
 }
 
 const Impacts::Voice& Impacts::voice(int id) const {
@@ -144,7 +147,7 @@ Elastic Impacts::material(int index) const {
 PerMode Impacts::gains(int body, const std::optional<BodyPlace>& place) const {
   const Voice& v = voice(body);
   PerMode gains{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(v.resonators.count); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(resonators(body).count); ++i) {
     const Mode& mode = v.sound.modes[i];
     gains[i] = static_cast<float>(v.radiated[i] * (place ? gain_at(v.sound, mode, *place) : mode.gain));
   }
@@ -222,7 +225,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   for (std::size_t i = 0; i < 2; ++i) {
     StrikeSide& side = strike.sides[i];
     side.voice = voice_id(ids[i]);
-    side.resonators = bodies[i]->resonators;
+    side.resonators = &(*resonators_)[bodies[i]->number];
     side.gains = gains(ids[i], on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
     side.impulse = static_cast<float>(impulse);
     side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);

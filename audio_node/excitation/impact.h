@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
@@ -46,7 +47,9 @@ class Impacts {
 
   const BodySound& body(int id) const { return voice(id).sound; }
   std::int64_t voice_id(int body) const { return generation_ << 32 | static_cast<std::uint32_t>(body); }
-  const Resonators& resonators(int body) const { return voice(body).resonators; }
+  const Resonators& resonators(int body) const { return (*resonators_)[voice(body).number]; }
+  // What the sides of strikes refer to.
+  const std::shared_ptr<const ResonatorTable>& table() const { return resonators_; }
   // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
   PerMode gains(int body, const std::optional<BodyPlace>& place) const;
   // Where a point of the world and a direction lie on a body: by `pose`, or by the scene when it stands still.
@@ -56,7 +59,7 @@ class Impacts {
  private:
   struct Voice {
     BodySound sound;
-    Resonators resonators;
+    std::size_t number = 0;  // in the table of resonators
     std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
     std::optional<Eigen::Isometry3d> stands;  // T_world_body of one that never moves
   };
@@ -72,6 +75,7 @@ class Impacts {
   std::vector<Elastic> materials_;
   std::vector<Voice> voices_;
   Voice unknown_;
+  std::shared_ptr<const ResonatorTable> resonators_;
 };
 
 }  // namespace tactus::audio

@@ -21,8 +21,8 @@ void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& ve
     before = weight;
   }
   const Push push{side.gains.data(), force.data()};
-  const int modes = (side.resonators.count + kModeGroup - 1) / kModeGroup * kModeGroup;
-  ring(Instructions::kSse2)({side.resonators.damping.data(), side.resonators.stiffness.data(), velocity.data(),
+  const int modes = (side.resonators->count + kModeGroup - 1) / kModeGroup * kModeGroup;
+  ring(Instructions::kSse2)({side.resonators->damping.data(), side.resonators->stiffness.data(), velocity.data(),
                              displacement.data(), modes},
                             &push, 1, kMaxBlock, out.data());
 }

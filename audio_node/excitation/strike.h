@@ -1,8 +1,9 @@
-// What crosses into the audio callback: one impact, by value, with all that is needed to sound it.
+// What crosses into the audio callback: one impact, by value. It refers to the modes of its bodies (mixer/strike_line.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "audio_node/modal/bank/ring.h"
 #include "audio_node/excitation/force_pulse.h"
@@ -30,11 +31,14 @@ struct Resonators {
     damping[i] = step.damping, stiffness[i] = step.stiffness;
   }
 };
+inline const Resonators kNoModes{};
+// Of all bodies of a scene.
+using ResonatorTable = std::vector<Resonators>;
 
 // One of the two bodies of an impact.
 struct StrikeSide {
   std::int64_t voice = -1;  // the same for the same body: it is excited again without losing its state; -1: none
-  Resonators resonators;
+  const Resonators* resonators = &kNoModes;  // never null; lives while a strike of its scene is held
   PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
   float impulse = 0;  // N s, scaled to full scale per Pa
   float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
@@ -43,6 +47,7 @@ struct StrikeSide {
 
 struct Strike {
   std::int64_t event_id = 0;
+  std::int64_t scene = 0;  // number of the table that the sides refer to
   sync::HostTime scheduled{};
   ForcePulse pulse = one_hump(1);
   float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction

@@ -59,6 +59,7 @@ Renderer::Renderer(CallbackQueues& crossing, const RendererDef& def)
       delay_(def.space.latency() + Limiter::kDelay),
       silent_(def.silent),
       late_(def.late),
+      newest_scene_(crossing.strikes_let_go.load(std::memory_order_relaxed)),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
       scrapes_(def.rate_Hz),
       recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
@@ -117,22 +118,29 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
   recorded_.take_databases();
   adapt(frames, time.used);
   Strike strike;
-  while (crossing_.strikes.pop(strike))
+  while (crossing_.strikes.pop(strike)) {
+    newest_scene_ = std::max(newest_scene_, strike.scene);
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
+  }
   for (int done = 0; done < frames;) {
     const int some = next_block(frames - done);
     render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
     done += some;
   }
+  let_go_of_strikes();
   let_go_of_scrapes();
   recorded_.let_go(scheduler_);
 }
 
 void Renderer::abandon() {
   const auto drop = [&](const Strike& s) { report(s, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0)); };
-  for (Strike strike; crossing_.strikes.pop(strike);) drop(strike);
+  for (Strike strike; crossing_.strikes.pop(strike);) {
+    newest_scene_ = std::max(newest_scene_, strike.scene);
+    drop(strike);
+  }
   while (const Strike* strike = scheduler_.pop_before(sync::HostTime::max())) drop(*strike);
   for (Scrape s; crossing_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
+  let_go_of_strikes();
   next_scrape_.reset();
   scrapes_.clear();
   let_go_of_scrapes();
@@ -189,6 +197,14 @@ void Renderer::take_scrapes(sync::HostTime until) {
     }
     scrapes_.take(s);
   }
+}
+
+// Strikes that are still in the queue are of the newest scene or of a later one. Voices keep a copy of their modes.
+void Renderer::let_go_of_strikes() {
+  if (crossing_.strikes_let_go.load(std::memory_order_relaxed) == newest_scene_) return;
+  std::int64_t held = newest_scene_;
+  scheduler_.for_each([&](const Strike& s) { held = std::min(held, s.scene); });
+  crossing_.strikes_let_go.store(held, std::memory_order_release);
 }
 
 // What is still in the queue has larger numbers than all that were taken out of it.

@@ -54,6 +54,8 @@ struct ExposureMeter {
 // What crosses between the node's loop and the callback.
 struct CallbackQueues {
   Spsc<Strike> strikes{512};
+  // The callback holds no strike of a scene of a number below this, and will never again: its table may go.
+  std::atomic<std::int64_t> strikes_let_go{0};
   Spsc<RenderCommand> orders{16};
   Spsc<Listener> listeners{64};  // the newest counts
   Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMax};
@@ -116,6 +118,7 @@ class Renderer {
   void render_some(float* out, int frames, const BlockTime& time);
   void sound_some(float* out, int frames, sync::HostTime leaving);
   void take_scrapes(sync::HostTime until);
+  void let_go_of_strikes();
   void let_go_of_scrapes();
   void limit(float* out, int frames);
   void begin(const Strike& strike, int frames, const BlockTime& time);
@@ -130,6 +133,7 @@ class Renderer {
   bool silent_;
   sync::LatePolicy late_;
   Scheduler scheduler_{512};
+  std::int64_t newest_scene_;  // of the strikes that were taken out of the queue
   Voices voices_;
   Scrapes scrapes_;
   Recorded recorded_;

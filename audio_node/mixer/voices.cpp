@@ -127,7 +127,7 @@ void Voices::join(Voice& v, const Pulse& blow) {
 
 void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset) {
   if (side.voice < 0) return;
-  Voice& v = voice_of(side.voice, side.resonators, side.place);
+  Voice& v = voice_of(side.voice, *side.resonators, side.place);
   v.place = side.place;
   bring_back(v);
   const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), [](const Pulse& p) { return p.on; });

@@ -113,9 +113,9 @@ void Surfaces::leave(Surface& s) {
   if (s.leaves_in_s_ < 0) s.leaves_in_s_ = limits_.recovery_time_s;
 }
 
-std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
+std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const TouchModelView& model, const Eigen::Vector3d& proxy,
                                                     std::size_t at_most) const {
-  const std::size_t offered = std::min(model.planes.size(), kMaxOffered);
+  const std::size_t offered = std::min(model.plane_count(), kMaxOffered);
   std::bitset<kMaxOffered> chosen;
   if (offered <= std::min(at_most, kMaxPresent)) {  // as nearly always: no choice
     for (std::size_t i = 0; i < offered; ++i) chosen.set(i);
@@ -130,7 +130,7 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
   };
   std::array<Rank, kMaxOffered> ranks;
   for (std::size_t i = 0; i < offered; ++i) {
-    const touch_plane_t& p = model.planes[i];
+    const touch_plane_t& p = model.plane(i);
     const Surface* known = find(p.contact_id, i);
     const bool pressed = known && known->depth_m > 0;
     ranks[i] = {!pressed,
@@ -145,13 +145,12 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const touch_model_t& model, 
   return chosen;
 }
 
-void Surfaces::take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
+void Surfaces::take(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
   const auto chosen = choose(model, proxy, at_most);
   for (Surface& s : list_) s.taken_ = false;
   // The list is in the order of the planes where no message changed it: each is looked for at its own place first.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
-    if (chosen[i] && makes_sense(model.planes[i]))
-      take(model.planes[i], sync::sim_time(model.header.sim_time_ns), proxy, i);
+    if (chosen[i] && makes_sense(model.plane(i))) take(model.plane(i), sync::sim_time(model.header().sim_time_ns), proxy, i);
   for (Surface& s : list_)
     if (!s.taken_) leave(s);
 }
@@ -186,11 +185,11 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
   if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());
 }
 
-void Surfaces::step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
+void Surfaces::step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
                     double dt, std::size_t at_most) {
   now_ = now;
   forget_the_gone();
-  if (fresh) take(*fresh, proxy, at_most);
+  if (fresh) take(fresh, proxy, at_most);
   forget_the_gone();
   for (Surface& s : list_) render(s, proxy, dt);
 }

@@ -9,12 +9,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <tactus/touch_model_t.hpp>
 #include <vector>
 #include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/closest_point.h"
 #include "haptic_node/contact/mapped_place.h"
+#include "haptic_node/contact/touch_model_view.h"
 #include "sync/time/time.h"
 
 namespace tactus::haptic {
@@ -90,10 +90,10 @@ class Surfaces {
     list_.reserve(kMaxHalfSpaces + kMaxPresent);
   }
 
-  // One tick. fresh: a touch model that has just arrived, or null. now: the simulated instant, nothing when the
+  // One tick. fresh: a touch model that has just arrived, or none. now: the simulated instant, nothing when the
   // map is not known. proxy: where the tool's centre is. at_most: so many planes are taken, those under pressure,
   // deepest first, then the nearest; the others count as left out. Realtime-safe: yes.
-  void step(const touch_model_t* fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
+  void step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
             std::size_t at_most = kMaxPresent);
   void clear() { list_.clear(); }
   // How the tool is turned from now on; without word, not at all.
@@ -116,9 +116,9 @@ class Surfaces {
   Eigen::Vector3d place_of(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
     return proxy + turned_ * tool_point;
   }
-  std::bitset<kMaxOffered> choose(const touch_model_t& model, const Eigen::Vector3d& proxy,
+  std::bitset<kMaxOffered> choose(const TouchModelView& model, const Eigen::Vector3d& proxy,
                                   std::size_t at_most) const;
-  void take(const touch_model_t& model, const Eigen::Vector3d& proxy, std::size_t at_most);
+  void take(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t at_most);
   void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy, std::size_t expected);
   void leave(Surface& s);
   void forget_the_gone();

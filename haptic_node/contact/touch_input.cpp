@@ -1,8 +1,10 @@
 #include "haptic_node/contact/touch_input.h"
 
+#include <utility>
+
 namespace tactus::haptic {
 
-void TouchInput::push(const touch_model_t& page, sync::HostTime arrival) {
+void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   if (page.tool != tool_) return;
   const sync::TrackResult verdict = simulation_.follow(page.header, page.clock, arrival);
   if (verdict == sync::TrackResult::kIgnore) return;
@@ -14,14 +16,14 @@ void TouchInput::push(const touch_model_t& page, sync::HostTime arrival) {
   if (page.header.sim_time_ns > latest_ns) return;
   // A false first one may lie so far ahead that nothing would ever replace it.
   const bool overtaken =
-      newest_ && page.header.sim_time_ns < newest_->header.sim_time_ns && newest_->header.sim_time_ns <= latest_ns;
+      newest_ && page.header.sim_time_ns < newest_.header().sim_time_ns && newest_.header().sim_time_ns <= latest_ns;
   if (!began_anew_ && overtaken) return;
-  const touch_model_t* whole = pages_.add(page);
+  const TouchModelView whole = pages_.add(std::move(page));
   if (!whole) {
     if (!unfinished_since_ && !pages_.repeated()) unfinished_since_ = arrival;
     return;
   }
-  newest_ = *whole;
+  newest_ = whole;
   arrival_ = arrival;
   unfinished_since_.reset();
   fresh_ = true;

@@ -20,9 +20,9 @@ class TouchInput {
 
   // A page. Those of other tools, of a simulation that has been replaced, older ones, and those of a future that
   // nobody can know are ignored.
-  void push(const touch_model_t& page, sync::HostTime arrival);
-  // The newest if it has not been taken yet, else null.
-  const touch_model_t* take() { return std::exchange(fresh_, false) ? &*newest_ : nullptr; }
+  void push(touch_model_t page, sync::HostTime arrival);
+  // The newest if it has not been taken yet, else none. Valid until the next push.
+  TouchModelView take() { return std::exchange(fresh_, false) ? newest_ : TouchModelView{}; }
   // When the newest arrived, with its last page; nothing: none yet.
   std::optional<sync::HostTime> arrival() const { return arrival_; }
   // Since when newer pages have been arriving of which none made a whole model; nothing: the newest page did. A
@@ -34,7 +34,7 @@ class TouchInput {
   int tool_;
   sync::SimClockTracker simulation_;
   TouchPages pages_;
-  std::optional<touch_model_t> newest_;
+  TouchModelView newest_;
   std::optional<sync::HostTime> arrival_, unfinished_since_;
   bool fresh_ = false;
   bool began_anew_ = false;  // and none of the new life is whole yet: older instants are newer then

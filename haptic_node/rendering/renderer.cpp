@@ -137,7 +137,7 @@ void Renderer::take_touch(const TickInput& in, double dt) {
     surfaces_.clear();
     rendering_.reset(device_);
   }
-  if (in.fresh) model_time_ = sync::sim_time(in.fresh->header.sim_time_ns);
+  if (in.fresh) model_time_ = sync::sim_time(in.fresh.header().sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   model_age_s_ = age_s;
   // Else a hand would feel for seconds a delay that a profile has ended.
@@ -146,7 +146,7 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   loop_delay_.pass(age_s, dt);
   if (in.fresh) {
     loop_delay_.observe(age_s);
-    passivity_.hear(*in.fresh);
+    passivity_.hear(in.fresh);
   }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   if (in.fresh) rendering_.renew(device_);

@@ -8,7 +8,6 @@
 #include <tactus/presentation_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_state_t.hpp>
-#include <tactus/touch_model_t.hpp>
 #include <vector>
 
 #include "haptic_node/contact/contact_impulses.h"
@@ -22,6 +21,7 @@
 #include "haptic_node/safety/safety.h"
 #include "haptic_node/settings.gen.h"
 #include "haptic_node/contact/surfaces.h"
+#include "haptic_node/contact/touch_model_view.h"
 #include "haptic_node/rendering/transient.h"
 #include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
@@ -32,7 +32,7 @@ struct TickInput {
   sync::HostTime now{};
   DeviceState device;
   // A touch model of this tool that has not been given before; null: none.
-  const touch_model_t* fresh = nullptr;
+  TouchModelView fresh;
   // When the newest touch model arrived, raw; nothing: none yet.
   std::optional<sync::HostTime> touch_arrival;
   // Between simulated time and the host clock; nothing: not known.

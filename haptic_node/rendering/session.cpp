@@ -43,13 +43,13 @@ void Session::change(const Settings& settings) {
 // The path of the device begins with the world: at the instant of the first touch model, to which simulated time
 // gives the same place in every run. One that is held back on purpose is not seen yet; then it is the arrival that
 // counts.
-void Session::begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded) {
+void Session::begin_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded) {
   if (!since_) since_ = now;
   const bool arrived = degraded.touch_arrival && *degraded.touch_arrival >= *since_;
   if (path_begun_ || (!fresh && !arrived)) return;
   path_begun_ = true;
   const auto map = touch_.map(now);
-  const sync::HostTime at = fresh && map ? map->to_host(sync::sim_time(fresh->header.sim_time_ns)) : now;
+  const sync::HostTime at = fresh && map ? map->to_host(sync::sim_time(fresh.header().sim_time_ns)) : now;
   device_->begin(std::clamp(at, now - kLongestWay, now));
 }
 

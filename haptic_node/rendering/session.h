@@ -9,6 +9,7 @@
 #include <tactus/device_state_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <utility>
 
 #include "haptic_node/devices/selection/node_config.h"
 #include "haptic_node/devices/selection/make_device.h"
@@ -38,8 +39,8 @@ class Session {
   Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
           Safety& safety);
 
-  void push(const touch_model_t& model, sync::HostTime arrival) {
-    if (!over_) touch_.push(model, arrival);
+  void push(touch_model_t page, sync::HostTime arrival) {
+    if (!over_) touch_.push(std::move(page), arrival);
   }
   void push(const contact_events_t& events, sync::HostTime arrival) {
     if (!over_) events_.push(events, arrival);
@@ -70,7 +71,7 @@ class Session {
   bool device_lost() const { return renderer_.device_lost(); }
 
  private:
-  void begin_path(sync::HostTime now, const touch_model_t* fresh, const Degraded& degraded);
+  void begin_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded);
 
   std::unique_ptr<Device> device_;
   Safety& safety_;

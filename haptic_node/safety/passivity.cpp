@@ -54,32 +54,35 @@ Passivity::Book& Passivity::add(std::int64_t contact_id) {
   return b;
 }
 
-void Passivity::hear(const touch_model_t& fresh) {
-  for (const touch_applied_t& a : fresh.applied) {
-    if (!finite(a)) continue;
-    Book* b = find(a.contact_id);
-    if (!b) b = &add(a.contact_id);
-    const Eigen::Vector3d impulse_N_s = to_eigen(a.impulse_N_s);
-    if (!b->told) {
-      b->told = true;
-      // More than can have been given since it was first felt here: the simulation knows it from before.
-      if (impulse_N_s.norm() > 1.5 * b->unseen.given_N_s().norm()) {
-        b->before_J = a.energy_J;
-        b->unseen.settle(impulse_N_s);
-      }
+void Passivity::hear(const TouchModelView& fresh) {
+  fresh.each_book([&](const touch_applied_t& a) {
+    if (finite(a)) hear(a, fresh);
+  });
+}
+
+void Passivity::hear(const touch_applied_t& a, const TouchModelView& fresh) {
+  Book* b = find(a.contact_id);
+  if (!b) b = &add(a.contact_id);
+  const Eigen::Vector3d impulse_N_s = to_eigen(a.impulse_N_s);
+  if (!b->told) {
+    b->told = true;
+    // More than can have been given since it was first felt here: the simulation knows it from before.
+    if (impulse_N_s.norm() > 1.5 * b->unseen.given_N_s().norm()) {
+      b->before_J = a.energy_J;
+      b->unseen.settle(impulse_N_s);
     }
-    b->energy_J = a.energy_J;
-    // Told twice, the last counts, as for the surfaces.
-    const auto plane = std::find_if(fresh.planes.rbegin(), fresh.planes.rend(), [&](const touch_plane_t& p) {
-      return p.contact_id == a.contact_id && finite(p);
-    });
-    if (plane == fresh.planes.rend())
-      b->unseen.tell(impulse_N_s);
-    else
-      b->unseen.tell({fresh.header.sim_time_ns, plane->effective_mass_kg, to_eigen(plane->normal),
-                      slow_enough(to_eigen(plane->velocity_m_s), limits_.speed_m_s), impulse_N_s},
-                     limits_.force_N);
   }
+  b->energy_J = a.energy_J;
+  // Told twice, the last counts, as for the surfaces.
+  for (std::size_t i = fresh.plane_count(); i-- > 0;) {
+    const touch_plane_t& p = fresh.plane(i);
+    if (p.contact_id != a.contact_id || !finite(p)) continue;
+    b->unseen.tell({fresh.header().sim_time_ns, p.effective_mass_kg, to_eigen(p.normal),
+                    slow_enough(to_eigen(p.velocity_m_s), limits_.speed_m_s), impulse_N_s},
+                   limits_.force_N);
+    return;
+  }
+  b->unseen.tell(impulse_N_s);
 }
 
 void Passivity::note(std::span<const FeltForce> forces, std::span<const Surface> surfaces,

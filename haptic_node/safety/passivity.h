@@ -18,8 +18,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <tactus/touch_model_t.hpp>
 #include <vector>
+#include <tactus/touch_applied_t.hpp>
 
 #include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/contact/surfaces.h"
@@ -49,7 +49,7 @@ class Passivity {
 
   // What the simulation did and how the bodies move, from a touch model that has just arrived. Numbers that are
   // not finite are ignored.
-  void hear(const touch_model_t& fresh);
+  void hear(const TouchModelView& fresh);
   // One tick, once the coupling knows how far it is stretched. moved_m, turned_rad: how far the device moved and
   // turned under the forces that were noted last; age_s: of the touch model in use. Realtime-safe: yes.
   void observe(const Stored& coupling, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
@@ -66,6 +66,7 @@ class Passivity {
   double generated_J() const { return std::clamp(-credit_J_, 0.0, kMaxTold_J); }
 
  private:
+  void hear(const touch_applied_t& book, const TouchModelView& fresh);
   static constexpr double kMaxTold_J = 1e6;
   struct Book {
     std::int64_t contact_id = 0;

@@ -101,18 +101,15 @@ void slide_loss(XMLElement& root, const std::string& sense, double loss) {
       loss > 0 ? number(loss * 100) + "%" + (fits ? " burst=" + number(old.mean_burst) : "") : "");
 }
 
-void parse(tinyxml2::XMLDocument& document, const std::string& profile) {
+// The name of the profile.
+std::string parse(tinyxml2::XMLDocument& document, const std::string& profile) {
   const std::string& text = or_empty(profile);
-  sync::parse_profile(text, "the profile in force");
+  const std::string name = sync::parse_profile(text, "the profile in force").name;
   document.Parse(text.data(), text.size());
+  return name;
 }
 
-}  // namespace
-
-std::map<std::string, Shown> shown_of(const std::string& profile) {
-  tinyxml2::XMLDocument document;
-  parse(document, profile);
-  XMLElement& root = *document.RootElement();
+std::map<std::string, Shown> shown_of(XMLElement& root) {
   std::map<std::string, int> elements;
   std::map<std::string, Shown> out;
   for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade")) {
@@ -133,15 +130,24 @@ std::map<std::string, Shown> shown_of(const std::string& profile) {
   return out;
 }
 
+}  // namespace
+
+std::map<std::string, Shown> shown_of(const std::string& profile) {
+  tinyxml2::XMLDocument document;
+  parse(document, profile);
+  return shown_of(*document.RootElement());
+}
+
 nlohmann::json told_of(const std::string& profile) {
+  tinyxml2::XMLDocument document;
+  const std::string name = parse(document, profile);
   nlohmann::json senses = nlohmann::json::object();
-  for (const auto& [sense, s] : shown_of(profile))
+  for (const auto& [sense, s] : shown_of(*document.RootElement()))
     senses[sync::printable(sense)] = {{"delay_ms", s.sliders.delay_ms},
                                       {"rate_Hz", s.sliders.rate_Hz},
                                       {"loss", s.sliders.loss},
                                       {"more", s.more}};
-  const std::string name = profile.empty() ? "" : sync::parse_profile(profile, "the profile in force").name;
-  return {{"name", sync::printable(name)}, {"senses", senses}};
+  return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}};
 }
 
 std::string slid(const std::string& profile, const std::map<std::string, Sliders>& senses) {

@@ -138,10 +138,7 @@ class Conductor {
 
   void obey(const ProfileOrder& o, sync::HostTime now) {
     if (o.text.size() > sync::kMaxProfileBytes) throw std::invalid_argument("the profile is longer than 64 KiB");
-    sync::parse_profile(o.text, "profile");
-    sync::ProfileInForce profile;
-    profile.text = o.text;
-    profile.hash = sync::fnv1a_64(o.text.data(), o.text.size());
+    sync::ProfileInForce profile = sync::read_profile(o.text, "profile");
     profile.generation = realtime_ns();
     if (const auto map = simulation_.map(now)) profile.start = std::max(sync::SimTime{}, map->to_sim(now));
     enforcement_.begin(std::move(profile));

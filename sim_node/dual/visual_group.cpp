@@ -117,11 +117,11 @@ void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
   for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
   world_->set_active(enters.units);
   read_motions();
-  newcomers_.insert(enters.contacts);
-  sub_steps(newcomers_, now_ - task.missed, task.missed, out, false);
+  entering_tracker_.insert(enters.contacts);
+  sub_steps(entering_tracker_, now_ - task.missed, task.missed, out, false);
   moved_.clear();
   std::fill(mask_.begin(), mask_.end(), 1);
-  newcomers_.extract(mask_, moved_);
+  entering_tracker_.extract(mask_, moved_);
   std::fill(mask_.begin(), mask_.end(), 0);
   tracker_.insert(moved_);
   units_.insert(units_.end(), enters.units.begin(), enters.units.end());

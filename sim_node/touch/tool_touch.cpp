@@ -298,7 +298,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     if (n.last_seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
-    touch_plane_t p{};
+    touch_plane_t& p = model_.planes.emplace_back();
     p.contact_id = n.contact_id;
     p.body = s.traits.body;
     p.material = s.traits.material;
@@ -318,7 +318,6 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.friction_dynamic = static_cast<float>(s.friction_dynamic);
     p.bump_asset = s.bump_asset;
     if (s.mapped) p.bump_u = to_vec3f(body.orientation * Vector3d::Unit(bump_axes(normal_body).u));
-    model_.planes.push_back(p);
   }
   model_.plane_count = static_cast<std::int8_t>(model_.planes.size());
 }

@@ -10,6 +10,7 @@
 #include <tactus/contact_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <utility>
 #include <vector>
 
 #include "sim_node/model/body_motion.h"
@@ -48,6 +49,8 @@ class ToolTouch {
   // All planes, nearest first; the publisher adds pages, header and clock. Tool -1: the tool only points and no model
   // is sent.
   const touch_model_t& model() const { return model_; }
+  // Exchanges the model for another of the same tool, which the next step overwrites. Nothing is copied.
+  void exchange_model(touch_model_t& other) { std::swap(model_, other); }
   // The proxy position in the newest message.
   const Eigen::Vector3d& proxy() const { return proxy_; }
   const Eigen::Vector3d& proxy_velocity() const { return proxy_velocity_; }

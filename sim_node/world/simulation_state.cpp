@@ -2,6 +2,7 @@
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/archive_motion.h"
@@ -73,7 +74,9 @@ void Simulation::begin_life(std::int64_t incarnation) {
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].touch.rename();
     tools_[i].push.reset();
-    models_[i] = tools_[i].touch.model();
+    for (touch_plane_t& p : models_[i].planes) p.contact_id = ids_.renamed(p.contact_id);
+    models_[i].applied.clear();
+    models_[i].applied_count = 0;
   }
 }
 

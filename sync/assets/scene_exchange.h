@@ -17,6 +17,7 @@
 
 #include "sync/assets/asset.h"
 #include "sync/bus/bus.h"
+#include "sync/bus/page_assembler.h"
 
 namespace tactus::sync {
 
@@ -115,7 +116,7 @@ class SceneReceiver {
   HostTime heard_{};                // of it
   std::int64_t given_up_ = 0;       // incarnation that is not listened to
   HostTime given_up_until_{};
-  std::map<int, std::vector<asset_ref_t>> pages_;
+  PageGroup<std::vector<asset_ref_t>> pages_;
   bool pages_new_ = false;
   std::vector<asset_ref_t> refs_;
   std::map<std::int64_t, Incoming> incoming_;

@@ -96,11 +96,10 @@ void SceneReceiver::take(const scene_manifest_t& page) {
     ++refused_;
     return;
   }
-  if (!pages_.empty() && pages_.rbegin()->first >= page.pages) pages_.clear();
-  auto& refs = pages_[page.page];
-  if (refs.empty() || !same(refs, page.assets)) pages_new_ = true;
-  refs = page.assets;
-  if (static_cast<int>(pages_.size()) != page.pages) pages_new_ = false;
+  const std::vector<asset_ref_t>* known = pages_.find(page.page);
+  if (!known || !same(*known, page.assets)) pages_new_ = true;
+  pages_.put(page.page, page.pages, page.assets);
+  if (!pages_.complete()) pages_new_ = false;
 }
 
 void SceneReceiver::expect() {
@@ -108,7 +107,7 @@ void SceneReceiver::expect() {
   std::vector<asset_ref_t> manifest;
   std::set<std::int64_t> named;
   std::size_t total = 0, assets = 0;
-  for (const auto& [index, refs] : pages_)
+  for (const auto& [number, refs] : pages_)
     for (const asset_ref_t& ref : refs) {
       const std::size_t size = static_cast<std::size_t>(ref.size);
       total += size;

@@ -22,20 +22,17 @@ StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime 
 
 }  // namespace
 
-bool DegradedEvents::first_heard(std::int64_t id) {
-  if (!seen_.insert(id).second) return false;
-  order_.push_back(id);
-  if (order_.size() > kRemembered) {
-    seen_.erase(order_.front());
-    order_.pop_front();
-  }
-  return true;
+// Whether the event is to be decided on: true once.
+bool DegradedEvents::decides(std::int64_t id) {
+  return !std::exchange(memory_.try_emplace(id).first.decided, true);
 }
 
 void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
   const bool replaced = m.header.incarnation != newest_.header.incarnation ||
                         m.header.publish_time_ns < newest_.header.publish_time_ns - 1'000'000'000;
-  if (replaced) seen_.clear(), order_.clear();  // a log that is played anew brings the same ids
+  if (replaced)
+    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again brings the same ids
+  for (const contact_event_t& e : m.events) memory_.try_emplace(e.event_id, {arrival, false});
   if (replaced || m.header.publish_time_ns >= newest_.header.publish_time_ns) {
     newest_.header = m.header;
     newest_arrival_ = arrival;
@@ -43,13 +40,13 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorC
     newest_.pages = 1;
   }
   if (stack.empty()) {
-    for (const contact_event_t& e : m.events) first_heard(e.event_id);
+    for (const contact_event_t& e : m.events) decides(e.event_id);
     return waiting_.push(arrival, m, arrival);
   }
   if (stack.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns))) return;
   waiting_.push(arrival, newest_, arrival);
   for (const contact_event_t& heard : m.events) {
-    if (!first_heard(heard.event_id)) continue;
+    if (!decides(heard.event_id)) continue;
     const Decision v = stack.decide(item_of(heard, m.header.incarnation, arrival));
     const bool later = stack.presentation_delay(sim_time(heard.time_ns)) > Nanoseconds(0);
     if (decisions && (v.touched || later))

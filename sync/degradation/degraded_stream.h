@@ -18,9 +18,11 @@
 #include <utility>
 #include <vector>
 
-#include "sync/random/keyed_random.h"
-#include "sync/degradation/snapshot.h"
+#include "sync/bus/page_assembler.h"
+#include "sync/bus/recent_map.h"
 #include "sync/degradation/operator_chain.h"
+#include "sync/degradation/snapshot.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
 
@@ -82,7 +84,7 @@ class DegradedSnapshots {
     if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
     if (stack.lost_on_wire(wire_key(m), time)) return;
     if constexpr (requires { m.pages; })
-      if (stack.compares() && m.pages > 1 && !verdicts_.contains(snapshot_key(m)))
+      if (stack.compares() && m.pages > 1 && !verdicts_.find(snapshot_key(m)))
         return gather(std::move(m), arrival, stack, decisions);
     const Decision v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
@@ -102,9 +104,10 @@ class DegradedSnapshots {
 
  private:
   static constexpr std::size_t kRemembered = 256;
-  // Pages of a snapshot are told within the time to the next; of so many some may be on their way at once.
-  static constexpr std::size_t kGathering = 4;
-  using Gathered = std::map<std::int32_t, std::pair<Message, HostTime>>;  // by page
+  // Pages of a snapshot are sent within the time to the next; four may be on their way at once. 2,000 pages of 18
+  // bodies are the largest.
+  static constexpr PageLimits kGathering{.groups = 4, .pages = 4096};
+  using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 
   // The pages of the snapshot of a stream that arrived last.
   struct Arriving {
@@ -140,30 +143,24 @@ class DegradedSnapshots {
 
   void gather(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    auto it = std::find_if(gathering_.begin(), gathering_.end(), [&](const auto& g) { return g.first == key; });
-    if (it == gathering_.end()) it = gathering_.insert(it, {key, {}});
-    const auto pages = static_cast<std::size_t>(m.pages);
-    it->second.insert_or_assign(m.page, std::make_pair(std::move(m), arrival));
+    const int number = m.page, count = m.pages;
+    const auto judge = [&](typename Pages::Group& group) {
+      std::vector<Signal> signals;
+      for (const auto& [number, page] : group.pages) {
+        const std::vector<Signal> more = signals_of(page.first);
+        signals.insert(signals.end(), more.begin(), more.end());
+      }
+      const Decision v = verdict_on(group.pages.begin()->page.first, arrival, signals, stack, decisions);
+      for (auto& [number, page] : group.pages) put(std::move(page.first), page.second, v, stack);
+    };
     // One that newer ones have overtaken is judged by what came of it: what is missing counts as a change.
-    if (it->second.size() < pages) {
-      if (gathering_.size() <= kGathering) return;
-      it = gathering_.begin();
-    }
-    const Gathered whole = std::move(it->second);
-    gathering_.erase(it);
-    std::vector<Signal> signals;
-    for (const auto& [number, page] : whole) {
-      const std::vector<Signal> more = signals_of(page.first);
-      signals.insert(signals.end(), more.begin(), more.end());
-    }
-    const Decision v = verdict_on(whole.begin()->second.first, arrival, signals, stack, decisions);
-    for (const auto& [number, page] : whole) put(page.first, page.second, v, stack);
+    if (auto* whole = gathering_.add(key, number, count, {std::move(m), arrival}, judge)) judge(*whole);
   }
 
   Decision verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& stack,
                      Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    if (const auto it = verdicts_.find(key); it != verdicts_.end()) return it->second;
+    if (const Decision* known = verdicts_.find(key)) return *known;
     StreamItem item{.key = key,
               .stream = stream_of(m),
               .incarnation = m.header.incarnation,
@@ -173,12 +170,7 @@ class DegradedSnapshots {
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
     const Decision v = stack.decide(item);
-    verdicts_.emplace(key, v);
-    order_.push_back(key);
-    if (order_.size() > kRemembered) {
-      verdicts_.erase(order_.front());
-      order_.pop_front();
-    }
+    verdicts_.try_emplace(key, v);
     if (decisions && v.touched) decisions->push_back({key, false, item.time, v, arrival});
     return v;
   }
@@ -199,10 +191,9 @@ class DegradedSnapshots {
   }
 
   DelayQueue<Message> waiting_;
-  std::deque<std::pair<std::uint64_t, Gathered>> gathering_;  // in order of their first pages
+  Pages gathering_{kGathering};
   std::map<std::uint64_t, Arriving> arriving_;                // by stream
-  std::map<std::uint64_t, Decision> verdicts_;
-  std::deque<std::uint64_t> order_;
+  RecentMap<std::uint64_t, Decision> verdicts_{kRemembered};
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};
@@ -215,19 +206,25 @@ class DegradedEvents {
   // The next message that is let through by now, and when its events arrived: one with only its header and clock
   // comes through at once.
   std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);
+  // When each event arrived first, by its id, also one that was lost on the wire on purpose.
+  struct Known {
+    HostTime arrival{};
+    bool decided = false;  // in this life of the simulation
+  };
+  using Memory = RecentMap<std::int64_t, Known>;
+  const Memory& memory() const { return memory_; }
   // Events that the profile dropped since the last call; whoever owes them says so.
   std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
 
  private:
   static constexpr std::size_t kRemembered = 8192;  // as sync/resampling/contact_stream.cpp
   static constexpr std::size_t kMaxDropped = 4096;
-  bool first_heard(std::int64_t id);
+  bool decides(std::int64_t id);
 
   DelayQueue<contact_events_t> waiting_;
   contact_events_t newest_{};  // header and clock
   HostTime newest_arrival_{};  // of that
-  std::set<std::int64_t> seen_;
-  std::deque<std::int64_t> order_;
+  Memory memory_{kRemembered};
   std::vector<contact_event_t> dropped_;
 };
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "sync/degradation/deadband.h"
 #include "sync/random/jitter.h"
 #include "sync/random/loss.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 
@@ -99,6 +101,18 @@ struct Profile {
 // Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is wrong; then nothing is changed.
 // file: the name for messages. No rules: a profile that degrades nothing.
 Profile parse_profile(const std::string& xml, const std::string& file);
+
+// A profile that is in force, and since when. Its text is parsed once in a process.
+struct ProfileInForce {
+  std::string text;  // XML; empty: none
+  std::int64_t hash = 0;
+  std::int64_t generation = 0;  // larger is newer
+  SimTime start{};
+  std::shared_ptr<const Profile> parsed;  // null: nobody in this process needs what it says
+};
+
+// Parses the text: generation 0, in force from the start. Throws as parse_profile does.
+ProfileInForce read_profile(std::string xml, const std::string& file);
 
 // The names of the attributes that ask something of the output itself.
 std::vector<std::string> output_operators(const OutputDef& output);

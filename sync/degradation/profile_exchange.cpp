@@ -12,7 +12,9 @@
 namespace tactus::sync {
 namespace {
 constexpr std::size_t kPageBytes = 1200;
+static_assert(ProfileReceiver::kMaxPages == kMaxProfileBytes / kPageBytes + 1);
 constexpr const char* kFile = "profile.in_force";
+constexpr const char* kFreshFile = "profile.in_force.new";
 }  // namespace
 
 void send_profile(Bus& bus, const ProfileInForce& profile) {
@@ -33,27 +35,15 @@ void send_profile(Bus& bus, const ProfileInForce& profile) {
 
 std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
   if (page.generation <= generation_) return std::nullopt;
-  if (static_cast<std::size_t>(page.pages) > kMaxProfileBytes / kPageBytes + 1) return std::nullopt;
-  const auto same = [&](const Partial& p) { return p.generation == page.generation && p.hash == page.hash; };
-  const auto known = std::find_if(partials_.begin(), partials_.end(), same);
-  Partial partial{page.generation, page.hash, {}};
-  if (known != partials_.end()) {
-    partial = std::move(*known);
-    partials_.erase(known);
-  }
-  partial.pages[page.page] = page.text;
-  if (static_cast<int>(partial.pages.size()) < page.pages) {
-    partials_.push_back(std::move(partial));
-    if (partials_.size() > kMaxOnTheirWay) partials_.pop_front();
-    return std::nullopt;
-  }
-  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns)};
-  for (const auto& [number, text] : partial.pages) whole.text += text;
+  const auto* pages = pages_.add({page.generation, page.hash}, page.page, page.pages, page.text);
+  if (!pages) return std::nullopt;
+  ProfileInForce whole{{}, page.hash, page.generation, sim_time(page.start_sim_ns), {}};
+  for (const auto& [number, text] : pages->pages) whole.text += text;
   if (static_cast<int>(whole.text.size()) != page.size ||
       fnv1a_64(whole.text.data(), whole.text.size()) != page.hash)
     return std::nullopt;
   try {
-    parse_profile(whole.text, "profile");
+    whole.parsed = std::make_shared<const Profile>(parse_profile(whole.text, "profile"));
   } catch (const std::invalid_argument& e) {
     refusal_ = e.what();
     return std::nullopt;
@@ -63,7 +53,7 @@ std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
 }
 
 void keep_profile(const std::filesystem::path& folder, const ProfileInForce& p, std::int64_t run_id) {
-  const std::filesystem::path file = folder / kFile, fresh = folder / (std::string(kFile) + ".new");
+  const std::filesystem::path file = folder / kFile, fresh = folder / kFreshFile;
   std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
   out << run_id << " " << p.generation << " " << to_ns(p.start) << " " << p.hash << "\n" << p.text;
   out.close();
@@ -82,22 +72,29 @@ std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, 
   p.start = sim_time(start_ns);
   if (fnv1a_64(p.text.data(), p.text.size()) != p.hash) return std::nullopt;
   try {
-    parse_profile(p.text, "profile");
+    p.parsed = std::make_shared<const Profile>(parse_profile(p.text, "profile"));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
   return p;
 }
 
-std::string read_profile_file(const std::string& path) {
+ProfileInForce read_profile(std::string xml, const std::string& file) {
+  ProfileInForce p;
+  p.parsed = std::make_shared<const Profile>(parse_profile(xml, file));
+  p.hash = fnv1a_64(xml.data(), xml.size());
+  p.text = std::move(xml);
+  return p;
+}
+
+ProfileInForce read_profile_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   if (!file || !(text << file.rdbuf()))
     throw std::invalid_argument("the profile " + path + " cannot be read; give the path of an XML file");
   if (text.str().size() > kMaxProfileBytes)
     throw std::invalid_argument("the profile " + path + " is larger than 64 kB; leave out what it does not need");
-  parse_profile(text.str(), path);
-  return text.str();
+  return read_profile(text.str(), path);
 }
 
 }  // namespace tactus::sync

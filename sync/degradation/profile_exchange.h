@@ -3,27 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <tactus/degradation_t.hpp>
 #include <utility>
 
+#include "sync/bus/page_assembler.h"
 #include "sync/degradation/profile.h"
 
 namespace tactus::sync {
 
 class Bus;
-
-// A profile that is in force, and since when.
-struct ProfileInForce {
-  std::string text;  // XML
-  std::int64_t hash = 0;
-  std::int64_t generation = 0;  // larger is newer
-  SimTime start{};
-};
 
 // Longest profile, bytes.
 inline constexpr std::size_t kMaxProfileBytes = 65536;
@@ -39,8 +30,10 @@ std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, 
 // Puts the pages together. Pure.
 class ProfileReceiver {
  public:
-  // So many profiles may be on their way at once; the pages of the one heard of least lately are forgotten.
+  // Profiles that may be on their way at once; the one whose newest page is the oldest is forgotten.
   static constexpr std::size_t kMaxOnTheirWay = 4;
+  // Of one profile.
+  static constexpr int kMaxPages = 55;
 
   // The profile, when this page has made one whole that is newer than the one before. One whose hash does not fit,
   // or that is no profile, is refused whole: nothing changes.
@@ -54,16 +47,14 @@ class ProfileReceiver {
 
  private:
   std::int64_t generation_ = -1;
-  struct Partial {
-    std::int64_t generation, hash;
-    std::map<int, std::string> pages;
-  };
-  std::deque<Partial> partials_;  // the one heard of most lately last
+  // By generation and hash.
+  PageAssembler<std::string, std::pair<std::int64_t, std::int64_t>> pages_{{.groups = kMaxOnTheirWay, .pages = kMaxPages},
+                                                                           PageOrder::kNewestPage};
   std::string refusal_;
 };
 
-// The XML of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
+// The profile of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
 // profile.
-std::string read_profile_file(const std::string& path);
+ProfileInForce read_profile_file(const std::string& path);
 
 }  // namespace tactus::sync

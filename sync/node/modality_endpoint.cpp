@@ -21,7 +21,6 @@ constexpr std::size_t kMaxDecisions = 8192;
 constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
 constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
 constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as PresentationMatcher::kReportsWithin
-constexpr std::size_t kRememberedArrivals = 8192;    // as sync/resampling/contact_stream.cpp remembers ids
 
 // Operators on the output that the profile asks of this sense and that it does not have.
 std::vector<std::string> not_declared(const Profile& profile, const NodeDescriptor& d) {
@@ -47,9 +46,8 @@ ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor of)
       simulation_(node.bus().clocks()),
       playout_(descriptor_.modality),
       reporter_(descriptor_.modality) {
-  if (node.options().profile.empty()) return;
-  const std::string& text = node.options().profile;
-  put_in_force({text, fnv1a_64(text.data(), text.size()), 0, SimTime{}});
+  if (node.options().profile.text.empty()) return;
+  put_in_force(node.options().profile);
   receiver_.set_generation(0);
 }
 
@@ -62,33 +60,34 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   stack_.set_scene(names_);
   tool_ = tool;
   // What was said on the command line or since then holds.
-  if (!node_.options().profile.empty() || receiver_.generation() > 0) return;
+  if (!node_.options().profile.text.empty() || receiver_.generation() > 0) return;
   // A scene that brings none takes away that of the scene before.
   if (scene.profile.empty() && profile_hash_ == 0) return;
   const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
   const std::int64_t hash = fnv1a_64(text.data(), text.size());
-  if (hash != profile_hash_) put_in_force({text, hash, 0, SimTime{}});
+  if (hash == profile_hash_) return;
+  try {
+    put_in_force(read_profile(text, "profile"));
+  } catch (const std::invalid_argument& e) {
+    std::cerr << node_.descriptor().name << ": refused: " << e.what() << std::endl;
+  }
 }
 
 void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   const NodeDescriptor& d = descriptor_;
-  try {
-    const Profile parsed = parse_profile(profile.text, "profile");
-    stack_ = OperatorChain(parsed, d.modality, profile.start);
-    stack_.set_scene(names_);
-    for (const auto& stream : streams_) stream->change_profile();
-    profile_hash_ = profile.hash;
-    profile_name_ = parsed.name;
-    node_.set_profile(profile.hash);
-    if (profile.generation > 0 || !parsed.rules.empty())
-      std::cerr << d.name << ": profile \"" << parsed.name << "\", "
-                << (stack_.empty() ? "nothing" : "degrades this sense") << std::endl;
-    for (const std::string& name : not_declared(parsed, d))
-      std::cerr << d.name << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
-                << std::endl;
-  } catch (const std::invalid_argument& e) {
-    std::cerr << node_.descriptor().name << ": refused: " << e.what() << std::endl;
-  }
+  const Profile& parsed = *profile.parsed;
+  stack_ = OperatorChain(parsed, d.modality, profile.start);
+  stack_.set_scene(names_);
+  for (const auto& stream : streams_) stream->change_profile();
+  profile_hash_ = profile.hash;
+  profile_name_ = parsed.name;
+  node_.set_profile(profile.hash);
+  if (profile.generation > 0 || !parsed.rules.empty())
+    std::cerr << d.name << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
+              << std::endl;
+  for (const std::string& name : not_declared(parsed, d))
+    std::cerr << d.name << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
+              << std::endl;
 }
 
 void ModalityEndpoint::take_control(HostTime) {
@@ -119,23 +118,24 @@ void ModalityEndpoint::step(HostTime now) {
 
 void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
   const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
-  for (auto id = arrivals_order_.rbegin(); id != arrivals_order_.rend(); ++id) {
-    const HostTime arrived = arrivals_.at(*id);
-    if (arrived < since) break;
+  if (!events_) return;
+  events_->memory().each_newest_first([&](std::int64_t id, const DegradedEvents::Known& known) {
+    if (known.arrival < since) return false;
     DecisionRecord d;
-    d.key = static_cast<std::uint64_t>(*id);
+    d.key = static_cast<std::uint64_t>(id);
     d.is_event = true;
-    d.time = sim_now - (now - arrived);
-    d.verdict.release = d.arrival = arrived;
+    d.time = sim_now - (now - known.arrival);
+    d.verdict.release = d.arrival = known.arrival;
     decisions_.push_back(d);
-  }
+    return true;
+  });
 }
 
 HostTime ModalityEndpoint::schedule(std::int64_t event_id, HostTime happened) const {
   if (lockstep_) return lockstep_->next_turn(happened) + serial_delay_;
   if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
-  const auto arrived = arrivals_.find(event_id);
-  const HostTime ready = arrived == arrivals_.end() ? happened : arrived->second + output_latency_;
+  const auto arrived = arrival_of(event_id);
+  const HostTime ready = arrived ? *arrived + output_latency_ : happened;
   return std::max(happened, ready) + profile_delay_;
 }
 
@@ -145,15 +145,9 @@ HostTime ModalityEndpoint::newest_arrival() const {
   return newest;
 }
 
-void ModalityEndpoint::note_arrivals(const contact_events_t& m, HostTime arrival) {
-  for (const contact_event_t& e : m.events) {
-    if (!arrivals_.try_emplace(e.event_id, arrival).second) continue;
-    arrivals_order_.push_back(e.event_id);
-    if (arrivals_order_.size() > kRememberedArrivals) {
-      arrivals_.erase(arrivals_order_.front());
-      arrivals_order_.pop_front();
-    }
-  }
+std::optional<HostTime> ModalityEndpoint::arrival_of(std::int64_t event_id) const {
+  const auto* known = events_ ? events_->memory().find(event_id) : nullptr;
+  return known ? std::optional(known->arrival) : std::nullopt;
 }
 
 bool ModalityEndpoint::owes(const contact_event_t& e) const {
@@ -177,8 +171,8 @@ void ModalityEndpoint::report_dropped(const std::vector<contact_event_t>& droppe
 
 void ModalityEndpoint::report(const presentation_t& report) {
   presentation_t r = report;
-  const auto arrived = arrivals_.find(r.event_id);
-  r.ready_ns = arrived == arrivals_.end() ? -1 : to_ns(arrived->second + output_latency_);
+  const auto arrived = arrival_of(r.event_id);
+  r.ready_ns = arrived ? to_ns(*arrived + output_latency_) : -1;
   reporter_.report(r);
   if (tell_) tell_(r);
 }

@@ -137,6 +137,8 @@ class ModalityEndpoint {
   Stream<Message>& add(const char* channel, std::size_t capacity) {
     auto held = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
     auto& stream = held->stream;
+    if constexpr (std::is_same_v<Message, contact_events_t>)
+      if (!events_) events_ = &stream.degraded_;
     streams_.push_back(std::move(held));
     return stream;
   }
@@ -145,7 +147,8 @@ class ModalityEndpoint {
   void log_in_flight_delays(HostTime now, SimTime sim_now);
   void take_control(HostTime now);
   void put_in_force(const ProfileInForce& profile);
-  void note_arrivals(const contact_events_t& m, HostTime arrival);
+  // When an event really arrived first; nothing: it did not, or long ago.
+  std::optional<HostTime> arrival_of(std::int64_t event_id) const;
   void report_dropped(const std::vector<contact_event_t>& dropped);
   bool owes(const contact_event_t& event) const;
   void publish_decisions();
@@ -171,8 +174,7 @@ class ModalityEndpoint {
   OutputDef output_;
   PresentationReporter reporter_;
   std::function<void(const presentation_t&)> tell_;
-  std::map<std::int64_t, HostTime> arrivals_;  // of events, raw
-  std::deque<std::int64_t> arrivals_order_;
+  const DegradedEvents* events_ = nullptr;  // of the first stream of events; null: there is none
 };
 
 template <class Message>
@@ -183,7 +185,6 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTi
     heard = std::max(heard, m->arrival);
     if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
     if constexpr (std::is_same_v<Message, contact_events_t>) {
-      sense.note_arrivals(m->message, m->arrival);
       stream.degraded_.push(m->message, m->arrival, sense.stack_, &sense.decisions_);
     } else {
       stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);

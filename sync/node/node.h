@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sync/bus/bus.h"
+#include "sync/degradation/profile.h"
 #include "sync/node/node_descriptor.h"
 #include "sync/time/histogram.h"
 #include "sync/clocks/pacing.h"
@@ -40,7 +41,7 @@ struct NodeOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> set;  // name=value
   std::string degrade;           // file of a degradation profile; empty: none
-  std::string profile;           // its XML, once read
+  ProfileInForce profile;        // what it holds, once read
   double load = 0;               // for measurements: so much of its period is wasted
   bool check = false;            // leave, with success, where the bus would be joined
 

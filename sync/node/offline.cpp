@@ -53,7 +53,7 @@ void Offline::adapt(NodeOptions& options) {
   if (as_recorded_) return;
   feed_.leave_out(channels::kDegradation);
   // That of the scene is a profile of the run too.
-  if (options.degrade.empty()) options.profile = "<profile/>";
+  if (options.degrade.empty()) options.profile = read_profile("<profile/>", "profile");
 }
 
 HostTime Offline::next(Bus& bus) {

@@ -73,18 +73,17 @@ std::optional<sync_report_t> SyncReportReader::take(const sync_report_t& page) {
   if (page.header.incarnation != incarnation_ || first != first_seq_) pages_.clear();
   incarnation_ = page.header.incarnation;
   first_seq_ = first;
-  pages_[page.page] = page;
-  if (static_cast<std::int32_t>(pages_.size()) < page.pages) return std::nullopt;
+  const auto* group = pages_.add(first, page.page, page.pages, page);
+  if (!group) return std::nullopt;
   sync_report_t whole = page;
   whole.page = 0, whole.pages = 1;
   whole.modalities.clear(), whole.pairs.clear();
-  for (const auto& [number, part] : pages_) {
+  for (const auto& [number, part] : group->pages) {
     whole.modalities.insert(whole.modalities.end(), part.modalities.begin(), part.modalities.end());
     whole.pairs.insert(whole.pairs.end(), part.pairs.begin(), part.pairs.end());
   }
   whole.modality_count = static_cast<std::int32_t>(whole.modalities.size());
   whole.pair_count = static_cast<std::int32_t>(whole.pairs.size());
-  pages_.clear();
   return whole;
 }
 

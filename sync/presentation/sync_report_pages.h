@@ -1,11 +1,11 @@
 // SYNC_REPORT in pages that fit a datagram, and pages put together again. Pure.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <tactus/sync_report_t.hpp>
 #include <vector>
 
+#include "sync/bus/page_assembler.h"
 #include "sync/presentation/presentation_matcher.h"
 
 namespace tactus::sync {
@@ -23,7 +23,7 @@ class SyncReportReader {
 
  private:
   std::int64_t incarnation_ = 0, first_seq_ = -1;
-  std::map<std::int32_t, sync_report_t> pages_;
+  PageAssembler<sync_report_t, std::int64_t> pages_{{.groups = 1}};  // by the number of the first
 };
 
 }  // namespace tactus::sync

@@ -63,9 +63,9 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
   Parts parts;
 
   const auto add = [&](const contact_t& c, SimTime begin, SimTime end) {
-    const auto life = lives_.find(c.contact_id);
-    if (life != lives_.end() && life->second.begin) begin = std::max(begin, sim_time(life->second.begin->time_ns));
-    if (life != lives_.end() && life->second.end) end = std::min(end, *life->second.end);
+    const Life* life = lives_.find(c.contact_id);
+    if (life && life->begin) begin = std::max(begin, sim_time(life->begin->time_ns));
+    if (life && life->end) end = std::min(end, *life->end);
     begin = std::max(begin, t0);
     end = std::min(end, t1);
     if (c.tool != tool || end <= begin) return;
@@ -95,8 +95,8 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     for (const contact_t& c : group[i + 1].contacts) {
       const auto& now = group[i].contacts;
       const bool was_there = std::any_of(now.begin(), now.end(), [&](const contact_t& x) { return x.contact_id == c.contact_id; });
-      const auto life = lives_.find(c.contact_id);
-      if (!was_there && life != lives_.end() && life->second.begin) add(c, group[i].time, group[i + 1].time);
+      const Life* life = lives_.find(c.contact_id);
+      if (!was_there && life && life->begin) add(c, group[i].time, group[i + 1].time);
     }
   }
 

@@ -10,15 +10,12 @@
 namespace tactus::sync {
 namespace {
 
-// Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
-constexpr std::size_t kRememberedIds = 8192;
-constexpr std::size_t kRememberedLives = 8192;
 // At the least, however old.
 constexpr std::size_t kSnapshots = 128;
 // Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
 // kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
-constexpr std::size_t kPartialSnapshots = 64;
-constexpr std::size_t kPartialPages = 8 * ContactStream::kMaxPages;
+constexpr PageLimits kPartial{
+    .groups = 64, .pages = ContactStream::kMaxPages, .total = 8 * static_cast<std::size_t>(ContactStream::kMaxPages)};
 
 float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
 
@@ -37,6 +34,9 @@ Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
 
 }  // namespace
 
+ContactStream::ContactStream(OwnClock own)
+    : follower_(own), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
+
 bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
   const std::int64_t before = follower_.incarnation();
   const TrackResult verdict = follower_.follow(header, clock, arrival);
@@ -44,10 +44,8 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
   if (verdict == TrackResult::kRestart) {
     if (before != 0) ++restarts_;
     pending_.clear();
-    seen_.clear();
-    seen_order_.clear();
+    received_.clear();
     lives_.clear();
-    lives_order_.clear();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
     for (auto& kept : contacts_kept_) kept = 0;
@@ -60,7 +58,7 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
 void ContactStream::forget_after(SimTime latest) {
   pending_.erase(pending_.upper_bound(latest), pending_.end());
   for (std::size_t group = 0; group < kGroups; ++group) {
-    partial_[group].erase(partial_[group].upper_bound(latest), partial_[group].end());
+    partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
     while (!snapshots.empty() && snapshots.back().time > latest) {
       contacts_kept_[group] -= snapshots.back().contacts.size();
@@ -77,14 +75,9 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
       ++refused_;
       continue;
     }
-    if (!seen_.insert(event.event_id).second) {
+    if (!received_.try_emplace(event.event_id).second) {
       ++duplicates_;
       continue;
-    }
-    seen_order_.push_back(event.event_id);
-    if (seen_order_.size() > kRememberedIds) {
-      seen_.erase(seen_order_.front());
-      seen_order_.pop_front();
     }
     note_event(event);
     pending_.emplace(sim_time(event.time_ns), event);
@@ -96,16 +89,9 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
 }
 
 void ContactStream::note_event(const contact_event_t& event) {
-  const auto [it, fresh] = lives_.try_emplace(event.contact_id);
-  if (fresh) {
-    lives_order_.push_back(event.contact_id);
-    if (lives_order_.size() > kRememberedLives) {
-      lives_.erase(lives_order_.front());
-      lives_order_.pop_front();
-    }
-  }
-  if (event.kind == contact_event_t::BEGIN) it->second.begin = event;
-  if (event.kind == contact_event_t::END) it->second.end = sim_time(event.time_ns);
+  Life& life = lives_.try_emplace(event.contact_id).first;
+  if (event.kind == contact_event_t::BEGIN) life.begin = event;
+  if (event.kind == contact_event_t::END) life.end = sim_time(event.time_ns);
 }
 
 void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
@@ -121,32 +107,16 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
   const auto at = std::lower_bound(snapshots.begin(), snapshots.end(), time, [](const Snapshot& s, SimTime t) { return s.time < t; });
   if (at != snapshots.end() && at->time == time) return;
-  Pages& pages = partial_[group][time];
-  pages.pages = m.pages;
-  pages.arrived[m.page] = {m.contacts, m.header.seq};
-  if (static_cast<int>(pages.arrived.size()) < pages.pages) {
-    bound_partial(group);
-    return;
-  }
+  const Pages::Group* whole = partial_[group].add(time, m.page, m.pages, {m.contacts, m.header.seq});
+  if (!whole) return;
   Snapshot snapshot{time, {}, {}};
-  for (auto& [number, page] : pages.arrived) {
+  for (const auto& [number, page] : whole->pages) {
     snapshot.contacts.insert(snapshot.contacts.end(), page.contacts.begin(), page.contacts.end());
     snapshot.seqs.resize(snapshot.contacts.size(), page.seq);
   }
-  partial_[group].erase(time);
   // One that was overtaken may still become whole, unless it is too old to matter.
-  partial_[group].erase(partial_[group].begin(), partial_[group].lower_bound(time - kStaleAfter));
+  partial_[group].drop_if([&](SimTime t) { return t < time - kStaleAfter; });
   insert(group, std::move(snapshot));
-}
-
-void ContactStream::bound_partial(std::size_t group) {
-  auto& partial = partial_[group];
-  std::size_t pages = 0;
-  for (const auto& [time, p] : partial) pages += p.arrived.size();
-  while (partial.size() > kPartialSnapshots || (pages > kPartialPages && partial.size() > 1)) {
-    pages -= partial.begin()->second.arrived.size();
-    partial.erase(partial.begin());
-  }
 }
 
 // One that was overtaken finds its place: the newest alone never decides that those after it are of no use.
@@ -171,10 +141,9 @@ std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
 }
 
 bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
-  const auto it = lives_.find(contact_id);
-  if (it == lives_.end()) return true;  // joined late: its begin was not heard
-  const Life& life = it->second;
-  return (!life.begin || sim_time(life.begin->time_ns) <= t) && (!life.end || *life.end > t);
+  const Life* life = lives_.find(contact_id);
+  if (!life) return true;  // joined late: its begin was not received
+  return (!life->begin || sim_time(life->begin->time_ns) <= t) && (!life->end || *life->end > t);
 }
 
 SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t) const {
@@ -188,8 +157,8 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
 // It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
 bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
-  const auto life = lives_.find(id);
-  if (life != lives_.end() && life->second.begin) return false;
+  const Life* life = lives_.find(id);
+  if (life && life->begin) return false;
   return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
 }
 
@@ -212,8 +181,8 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
   for (std::size_t i = 0; i < after->contacts.size(); ++i) {
     const contact_t& c = after->contacts[i];
-    const auto life = lives_.find(c.contact_id);
-    const bool begun = life != lives_.end() && life->second.begin && sim_time(life->second.begin->time_ns) <= t;
+    const Life* life = lives_.find(c.contact_id);
+    const bool begun = life && life->begin && sim_time(life->begin->time_ns) <= t;
     if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
       out.push_back({c, after->seqs[i], false});
   }

@@ -50,9 +50,7 @@ int main(int argc, char** argv) try {
 
   if (file.empty()) throw std::runtime_error("name the profile to put in force, or off; see degrade --help");
 
-  sync::ProfileInForce profile;
-  profile.text = file == "off" ? "<profile name=\"off\"/>" : sync::read_profile_file(file);
-  profile.hash = sync::fnv1a_64(profile.text.data(), profile.text.size());
+  auto profile = file == "off" ? sync::read_profile("<profile name=\"off\"/>", file) : sync::read_profile_file(file);
   profile.generation = realtime_ns();
 
   sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
@@ -72,7 +70,7 @@ int main(int argc, char** argv) try {
   if (modalities.empty())
     throw std::runtime_error(
         "no sense is heard on this bus, nothing was changed; run it inside the cluster: tactus degrade");
-  for (const sync::Rule& rule : sync::parse_profile(profile.text, file).rules)
+  for (const sync::Rule& rule : profile.parsed->rules)
     if (!modalities.contains(rule.modality))
       throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
                                sync::printable(rule.modality) + "\" is heard in this cluster, only " + joined(modalities) +

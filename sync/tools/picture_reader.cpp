@@ -9,7 +9,7 @@ constexpr std::int32_t kChunkBytes = 1024;
 
 std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
   const bool last = m.chunk == m.chunks - 1;
-  if (m.chunks < 1 || m.chunks > kMaxChunks || m.chunk < 0 || m.chunk >= m.chunks ||
+  if (m.chunks > kMaxChunks || m.chunk < 0 || m.chunk >= m.chunks ||
       m.size != static_cast<std::int32_t>(m.data.size()) || m.size < 1 || m.size > kChunkBytes ||
       (!last && m.size != kChunkBytes))
     return std::nullopt;
@@ -21,19 +21,16 @@ std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
   p.heard = ++messages_;
   const bool another_life = p.incarnation != m.header.incarnation;
   if (!another_life && m.picture < p.picture) return std::nullopt;  // overtaken by the next
-  if (another_life || m.picture > p.picture || static_cast<std::int32_t>(p.chunks.size()) != m.chunks) {
-    skipped_ += p.missing > 0;
+  if (another_life || m.picture > p.picture) {
+    skipped_ += static_cast<std::int64_t>(p.chunks.size());
+    p.chunks.clear();
     p.incarnation = m.header.incarnation;
     p.picture = m.picture;
-    p.missing = m.chunks;
-    p.chunks.assign(static_cast<std::size_t>(m.chunks), {});
   }
-  auto& chunk = p.chunks[static_cast<std::size_t>(m.chunk)];
-  if (!chunk.empty() || p.missing == 0) return std::nullopt;  // again
-  chunk = m.data;
-  if (--p.missing > 0) return std::nullopt;
+  const auto* group = p.chunks.add({p.incarnation, p.picture}, m.chunk, m.chunks, m.data);
+  if (!group) return std::nullopt;
   StreamedPicture whole{m.header.source, m.picture, m.header.sim_time_ns, m.presented_ns, m.width, m.height, {}};
-  for (auto& c : p.chunks) whole.jpeg.insert(whole.jpeg.end(), c.begin(), c.end());
+  for (const auto& [number, c] : group->pages) whole.jpeg.insert(whole.jpeg.end(), c.begin(), c.end());
   return whole;
 }
 

@@ -6,7 +6,10 @@
 #include <map>
 #include <optional>
 #include <tactus/picture_chunk_t.hpp>
+#include <utility>
 #include <vector>
+
+#include "sync/bus/page_assembler.h"
 
 namespace tactus::sync {
 
@@ -33,8 +36,9 @@ class PictureReader {
  private:
   struct Partial {
     std::int64_t incarnation = 0, picture = -1, heard = 0;
-    std::int32_t missing = 0;
-    std::vector<std::vector<std::uint8_t>> chunks;
+    // By incarnation and number of the picture.
+    PageAssembler<std::vector<std::uint8_t>, std::pair<std::int64_t, std::int64_t>> chunks{
+        {.groups = 1, .pages = kMaxChunks, .remembered = 1}};
   };
   std::map<std::int32_t, Partial> partials_;
   std::int64_t skipped_ = 0, messages_ = 0;

@@ -112,8 +112,8 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile;
-  if (const std::string& text = node.options().profile; !text.empty()) {
-    profile = {text, sync::fnv1a_64(text.data(), text.size()), 0, sync::SimTime{}};
+  if (!node.options().profile.text.empty()) {
+    profile = node.options().profile;
     profiles.set_generation(0);
   }
   if (auto kept = sync::kept_profile(options.out, options.run_id)) {

@@ -16,12 +16,13 @@ constexpr std::size_t kFade = 240;  // 5 ms
 // A body of `modes` modes, 200 Hz apart; the lowest group of four sounds with a quarter of them.
 StrikeSide body(std::int64_t voice, int modes, float impulse) {
   StrikeSide side = strike_of(0, voice, 200, 2, 0, impulse).sides[0];
-  side.resonators = {};
+  Resonators resonators;
   for (int i = 0; i < modes; ++i) {
     const ModeStep step = mode_step(200 * (i + 1), 2, kRate);
-    side.resonators.add(step);
+    resonators.add(step);
     side.gains[static_cast<std::size_t>(i)] = step.unit_gain / static_cast<float>(i + 1);
   }
+  side.resonators = kept(resonators);
   return side;
 }
 

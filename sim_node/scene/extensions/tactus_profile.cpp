@@ -80,9 +80,9 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
   if (element->GetFirstElement())
     context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
   try {
-    const std::string text = sync::read_profile_file(file.string());
-    check_names(context, *element, sync::parse_profile(text, file.string()), file.filename().string());
-    return text;
+    const sync::ProfileInForce profile = sync::read_profile_file(file.string());
+    check_names(context, *element, *profile.parsed, file.filename().string());
+    return profile.text;
   } catch (const std::invalid_argument& e) {
     context.refuse(*element, std::string("is invalid: ") + e.what());
   }

@@ -72,7 +72,7 @@ Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* sur
   s.slide = s.roll = 1e-4f, s.cutoff_Hz = 1000;
   s.place = of.sides[1].place;
   ScrapeSide& side = s.sides[0];
-  side.voice = of.sides[1].voice, side.resonators = of.sides[1].resonators, side.gains = of.sides[1].gains;
+  side.voice = of.sides[1].voice, side.resonators = *of.sides[1].resonators, side.gains = of.sides[1].gains;
   side.known = true;
   side.beyond = 0.1f, side.beyond_Hz = 5000;
   if (surface) side.relief = surface->relief.get(), side.friction = surface->friction.get();

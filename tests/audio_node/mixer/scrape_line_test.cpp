@@ -44,7 +44,7 @@ Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, flo
   const Strike struck = strike_of(0, 0, 300, 50, 0);
   ScrapeSide& side = s.sides[0];
   side.voice = id;
-  side.resonators = struck.sides[0].resonators, side.gains = struck.sides[0].gains;
+  side.resonators = *struck.sides[0].resonators, side.gains = struck.sides[0].gains;
   side.known = true;
   side.relief = relief;
   side.velocity_m_s.x() = 0.1, side.slides.x() = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <tactus/presentation_t.hpp>
 #include <vector>
@@ -15,6 +16,12 @@ inline constexpr double kRate = 48000;
 inline const Ring kRing = ring(Instructions::kSse2);
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
+// Of the modes of a body, for as long as the test runs.
+inline const Resonators* kept(const Resonators& resonators) {
+  static std::deque<Resonators> all;
+  return &all.emplace_back(resonators);
+}
+
 inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz, double damping_1_s,
                         std::int64_t at_ns, float impulse = 0.1f) {
   Strike s;
@@ -23,7 +30,9 @@ inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz
   StrikeSide& side = s.sides[0];
   side.voice = voice;
   const ModeStep step = mode_step(frequency_Hz, damping_1_s, kRate);
-  side.resonators.add(step);
+  Resonators resonators;
+  resonators.add(step);
+  side.resonators = kept(resonators);
   side.gains[0] = step.unit_gain;
   side.impulse = impulse;
   side.place.direction = Eigen::Vector3f::UnitY();  // all of it to the left

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,12 @@ namespace {
 constexpr double kRate_Hz = 48000;
 constexpr double kStrikes_Hz = 200;  // of all bodies together
 
+// Of the modes of a body, for as long as the program runs.
+const Resonators* kept(const Resonators& resonators) {
+  static std::deque<Resonators> all;
+  return &all.emplace_back(resonators);
+}
+
 Strike strike_of(int body, int modes, sync::HostTime at, std::mt19937& random) {
   std::uniform_real_distribution<float> any(0, 1);
   Strike s;
@@ -36,11 +43,13 @@ Strike strike_of(int body, int modes, sync::HostTime at, std::mt19937& random) {
   s.pulse = one_hump(20);
   StrikeSide& side = s.sides[0];
   side.voice = body;
+  Resonators resonators;
   for (int i = 0; i < modes; ++i) {
     const ModeStep step = mode_step(100 + 15000.0 * i / modes + body, 0.5, kRate_Hz);
-    side.resonators.add(step);
+    resonators.add(step);
     side.gains[static_cast<std::size_t>(i)] = step.unit_gain;
   }
+  side.resonators = kept(resonators);
   side.impulse = 1e-4f;
   const float angle = 2 * std::numbers::pi_v<float> * any(random);
   side.place = {{std::cos(angle), std::sin(angle), 0}, 1 + any(random)};

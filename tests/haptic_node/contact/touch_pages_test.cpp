@@ -22,14 +22,14 @@ TEST_CASE("Every page of a touch model fits a datagram, and together they are th
     for (const std::size_t books : {0u, 7u, 14u}) {
       const touch_model_t whole = whole_model(9, planes, books);
       TouchPages gatherer;
-      const touch_model_t* out = nullptr;
+      TouchModelView out;
       for (const touch_model_t& page : pages_of(whole, seq)) {
         CHECK(sync::encode(page).size() <= 1400);
-        CHECK(out == nullptr);
+        CHECK_FALSE(out);
         out = gatherer.add(page);
       }
       REQUIRE(out);
-      CHECK(is_whole(*out, 9, planes, books));
+      CHECK(is_whole(out, 9, planes, books));
     }
 }
 
@@ -66,10 +66,10 @@ TEST_CASE("Whatever the wire does to pages, each whole model comes out once and 
     TouchPages gatherer;
     std::vector<int> came(40, 0);
     for (const Sent& s : wire) {
-      const touch_model_t* out = gatherer.add(s.page);
+      const TouchModelView out = gatherer.add(s.page);
       if (!out) continue;
-      const std::int64_t step = out->header.sim_time_ns / kMs;
-      REQUIRE(is_whole(*out, step, planes[static_cast<std::size_t>(step)], 3));
+      const std::int64_t step = out.header().sim_time_ns / kMs;
+      REQUIRE(is_whole(out, step, planes[static_cast<std::size_t>(step)], 3));
       ++came[static_cast<std::size_t>(step)];
     }
     for (std::size_t step = 0; step < 40; ++step) {
@@ -92,9 +92,9 @@ TEST_CASE("While the world stands still, pages of two looks at the same instant 
   CHECK_FALSE(gatherer.add(a[0]));
   CHECK_FALSE(gatherer.add(b[1]));
   CHECK_FALSE(gatherer.add(b[2]));
-  const touch_model_t* out = gatherer.add(b[0]);
+  const TouchModelView out = gatherer.add(b[0]);
   REQUIRE(out);
-  for (const touch_plane_t& p : out->planes) CHECK(p.body == 1);
+  for (std::size_t i = 0; i < out.plane_count(); ++i) CHECK(out.plane(i).body == 1);
 }
 
 TEST_CASE("An older set that becomes whole after a newer one is not taken") {
@@ -105,9 +105,9 @@ TEST_CASE("An older set that becomes whole after a newer one is not taken") {
   input.push(old_pages[0], now);
   input.push(old_pages[1], now);
   for (const touch_model_t& page : new_pages) input.push(page, now);
-  const touch_model_t* taken = input.take();
+  const TouchModelView taken = input.take();
   REQUIRE(taken);
-  CHECK(taken->header.sim_time_ns == 2 * kMs);
+  CHECK(taken.header().sim_time_ns == 2 * kMs);
   input.push(old_pages[2], now);
   CHECK_FALSE(input.take());
 }

@@ -7,6 +7,7 @@
 #include <tactus/touch_plane_t.hpp>
 #include <vector>
 
+#include "haptic_node/contact/touch_model_view.h"
 #include "sim_node/publish/touch_pages.h"
 
 namespace tactus::haptic::test {
@@ -34,7 +35,7 @@ inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::siz
 }
 
 // As the publisher numbers them.
-inline std::vector<touch_model_t> pages_of(const touch_model_t& whole, std::int64_t& seq) {
+inline std::vector<touch_model_t> pages_of(touch_model_t whole, std::int64_t& seq) {
   std::vector<touch_model_t> out;
   touch_model_t scratch{};
   sim::each_touch_page(whole, scratch, [&](touch_model_t& page) {
@@ -44,14 +45,13 @@ inline std::vector<touch_model_t> pages_of(const touch_model_t& whole, std::int6
   return out;
 }
 
-inline bool is_whole(const touch_model_t& m, std::int64_t step, std::size_t planes, std::size_t books) {
-  bool good = m.page == 0 && m.pages == 1 && m.planes.size() == planes && m.applied.size() == books &&
-              m.plane_count == static_cast<int>(planes) && m.applied_count == static_cast<int>(books);
+inline bool is_whole(const TouchModelView& m, std::int64_t step, std::size_t planes, std::size_t books) {
+  bool good = m.plane_count() == planes;
   for (std::size_t i = 0; good && i < planes; ++i)
-    good = m.planes[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
-  for (std::size_t i = 0; good && i < books; ++i)
-    good = m.applied[i].contact_id == step * 1000 + static_cast<std::int64_t>(i);
-  return good;
+    good = m.plane(i).contact_id == step * 1000 + static_cast<std::int64_t>(i);
+  std::size_t book = 0;
+  m.each_book([&](const touch_applied_t& a) { good = good && a.contact_id == step * 1000 + static_cast<std::int64_t>(book++); });
+  return good && book == books;
 }
 
 }  // namespace tactus::haptic::test

@@ -1,0 +1,24 @@
+#include "audio_node/mixer/strike_line.h"
+
+#include <utility>
+
+namespace tactus::audio {
+
+// A scene whose strikes do not fit keeps nothing, so that the tables that are kept are no more than the strikes that are held.
+bool StrikeLine::submit(Strike strike, const Table& table) {
+  const bool another = table != now_;
+  strike.scene = another ? scene_ + 1 : scene_;
+  if (!crossing_.strikes.push(strike)) return false;
+  if (!another) return true;
+  if (now_) kept_.push_back({scene_, std::move(now_)});
+  now_ = table;
+  ++scene_;
+  return true;
+}
+
+void StrikeLine::free_unread() {
+  const std::int64_t let_go = crossing_.strikes_let_go.load(std::memory_order_acquire);
+  while (!kept_.empty() && kept_.front().scene < let_go) kept_.pop_front();
+}
+
+}  // namespace tactus::audio

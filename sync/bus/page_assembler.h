@@ -1,0 +1,162 @@
+// Reassembles messages that are sent in pages. Pure. Bounded, also when pages are lost, repeated, reordered or forged.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace tactus::sync {
+
+// The pages of one message.
+template <class Page>
+class PageGroup {
+ public:
+  struct Numbered {
+    int number;
+    Page page;
+  };
+
+  // Stores page `number` of `count`. A page of the same number is replaced; a page that gives another count starts the
+  // group again. False, and nothing changes, when there is no such page.
+  bool put(int number, int count, Page page) {
+    if (number < 0 || number >= count) return false;
+    if (count != count_) pages_.clear();
+    count_ = count;
+    const auto before = [](const Numbered& p, int n) { return p.number < n; };
+    const auto at = std::lower_bound(pages_.begin(), pages_.end(), number, before);
+    if (at != pages_.end() && at->number == number)
+      at->page = std::move(page);
+    else
+      pages_.insert(at, {number, std::move(page)});
+    return true;
+  }
+  bool complete() const { return count_ > 0 && pages_.size() == static_cast<std::size_t>(count_); }
+  // Null: it has not arrived.
+  const Page* find(int number) const {
+    for (const Numbered& p : pages_)
+      if (p.number == number) return &p.page;
+    return nullptr;
+  }
+  std::size_t size() const { return pages_.size(); }
+  // In order of their numbers.
+  auto begin() { return pages_.begin(); }
+  auto end() { return pages_.end(); }
+  auto begin() const { return pages_.begin(); }
+  auto end() const { return pages_.end(); }
+  // Keeps its memory.
+  void clear() {
+    pages_.clear();
+    count_ = 0;
+  }
+
+ private:
+  std::vector<Numbered> pages_;
+  int count_ = 0;
+};
+
+struct PageLimits {
+  std::size_t groups = 4;             // incomplete ones
+  int pages = 1024;                   // of one message; a page of a larger one is ignored
+  std::size_t total = SIZE_MAX;       // pages of all incomplete groups, while there are two or more
+  std::size_t remembered = 0;         // complete groups whose repeated pages are ignored
+};
+
+// Which incomplete group is given up when there are too many: the one whose first page came first, the one whose newest
+// page came first, or the one of the smallest key.
+enum class PageOrder : std::uint8_t { kFirstPage, kNewestPage, kKey };
+
+// Key: all pages of one message have it in common, and no page of another message has it.
+// Realtime-safe: once its memory has grown, as far as Page is.
+template <class Page, class Key>
+class PageAssembler {
+ public:
+  struct Group {
+    Key key{};
+    PageGroup<Page> pages;
+  };
+
+  explicit PageAssembler(const PageLimits& limits, PageOrder order = PageOrder::kFirstPage) : limits_(limits), order_(order) {}
+
+  // Stores a page. The group, when this page completes it, valid until the next call; else null. given_up(Group&): for
+  // each incomplete group that is dropped to keep the limits.
+  template <class GivenUp>
+  Group* add(const Key& key, int number, int count, Page page, GivenUp&& given_up) {
+    repeated_ = std::find(done_.begin(), done_.end(), key) != done_.end();
+    if (repeated_ || count > limits_.pages || number < 0 || number >= count) return nullptr;
+    const auto at = group_of(key);
+    at->pages.put(number, count, std::move(page));
+    if (at->pages.complete()) return finish(at);
+    while (groups_.size() > limits_.groups || (groups_.size() > 1 && too_many_pages())) {
+      given_up(groups_.front());
+      recycle(groups_.begin());
+    }
+    return nullptr;
+  }
+  Group* add(const Key& key, int number, int count, Page page) {
+    return add(key, number, count, std::move(page), [](Group&) {});
+  }
+  // Whether the page that was added last was of a group that is remembered as complete.
+  bool repeated() const { return repeated_; }
+  // Incomplete groups.
+  std::size_t size() const { return groups_.size(); }
+  // Drops the incomplete groups for which which(key) is true.
+  template <class Which>
+  void drop_if(Which&& which) {
+    std::erase_if(groups_, [&](const Group& g) { return which(g.key); });
+  }
+  void clear() { groups_.clear(); }
+
+ private:
+  using Place = typename std::vector<Group>::iterator;
+
+  Place group_of(const Key& key) {
+    const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.key == key; });
+    if (known != groups_.end()) {
+      if (order_ != PageOrder::kNewestPage) return known;
+      std::rotate(known, known + 1, groups_.end());
+      return groups_.end() - 1;
+    }
+    auto at = groups_.end();
+    if constexpr (requires { key < key; })
+      if (order_ == PageOrder::kKey)
+        at = std::upper_bound(groups_.begin(), at, key, [](const Key& k, const Group& g) { return k < g.key; });
+    Group fresh;
+    if (!spare_.empty()) {
+      fresh = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    fresh.key = key;
+    return groups_.insert(at, std::move(fresh));
+  }
+  Group* finish(Place at) {
+    std::swap(whole_, *at);
+    recycle(at);
+    if (limits_.remembered == 0) return &whole_;
+    done_.push_back(whole_.key);
+    if (done_.size() > limits_.remembered) done_.pop_front();
+    return &whole_;
+  }
+  void recycle(Place at) {
+    at->pages.clear();
+    spare_.push_back(std::move(*at));
+    groups_.erase(at);
+  }
+  bool too_many_pages() const {
+    if (limits_.total == SIZE_MAX) return false;
+    std::size_t pages = 0;
+    for (const Group& g : groups_) pages += g.pages.size();
+    return pages > limits_.total;
+  }
+
+  PageLimits limits_;
+  PageOrder order_;
+  std::vector<Group> groups_, spare_;  // in the order in which they are given up
+  Group whole_;
+  std::deque<Key> done_;
+  bool repeated_ = false;
+};
+
+}  // namespace tactus::sync
