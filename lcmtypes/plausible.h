@@ -14,7 +14,12 @@ inline constexpr double kMaxMagnitude = 1e9;
 inline constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
 
 inline bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
+inline bool sane_not_negative(double x) { return sane(x) && x >= 0; }
 inline bool between(long value, long low, long high) { return value >= low && value <= high; }
+
+// 36 years of uptime: sums and differences of such times cannot overflow.
+inline constexpr long kLatestClockTime = 1L << 60;
+inline bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
 
 // The name of a node or modality becomes a key, a column of a file and a line on a terminal.
 inline bool printable(const std::string& text) {

@@ -15,7 +15,6 @@ using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-
 constexpr Nanoseconds kTick{1'000'000};
 const HostTime kNow = host_time(900'000'000'000);
 
