@@ -38,7 +38,7 @@ void NodeRenderer::add_tags() {
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   const scene_t& scene = *scenes.scene();
-  choice_ = choose(scene, settings, tool_name_);
+  choice_ = resolve_config(scene, settings, tool_name_);
   if (log_) log_->run().expect_rate(settings.rate_Hz);
   quality_ = Quality(settings);
   if (renderer_) dwell_ = renderer_->dwell();
