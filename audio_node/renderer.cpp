@@ -3,6 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "audio_node/devices/file_output.h"
 #include "audio_node/excitation/mesh_extent.h"

@@ -5,7 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/due_hits.h"
 #include "audio_node/spatial/ear.h"

@@ -12,6 +12,7 @@
 #include "audio_node/run.h"
 
 #include <CLI/CLI.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "audio_node/renderer.h"
 #include "sync/node/run_renderer.h"

@@ -6,7 +6,7 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 function(tactus_node_settings target)
   get_filename_component(node ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   set(out ${CMAKE_BINARY_DIR}/generated/${node})
-  set(tool ${PROJECT_SOURCE_DIR}/scripts/generate_settings)
+  set(tool ${PROJECT_SOURCE_DIR}/cmake/generate_settings.py)
   add_custom_command(OUTPUT ${out}/settings.gen.h
     COMMAND ${Python3_EXECUTABLE} ${tool} header ${CMAKE_CURRENT_SOURCE_DIR}/settings.csv ${out}/settings.gen.h
     DEPENDS settings.csv ${tool} VERBATIM COMMENT "settings of ${node}")

@@ -3,6 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/rendering/tagged.h"
 #include "lcmtypes/pointing.h"

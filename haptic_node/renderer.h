@@ -4,8 +4,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/offline.h"
 #include "haptic_node/rendering/quality.h"

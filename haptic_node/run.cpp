@@ -17,6 +17,7 @@
 #include "haptic_node/run.h"
 
 #include <CLI/CLI.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "haptic_node/renderer.h"
 #include "sync/node/run_renderer.h"

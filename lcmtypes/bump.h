@@ -1,5 +1,5 @@
-// The relief of a surface: where a point of it lies in the height map of its material. Defined here once for every
-// sense, so that a hand feels the groove that an eye sees; docs/scene_format.md says it in words.
+// Surface relief: maps a point of a surface to the height map of its material. Defined here once for all
+// modalities, so that haptics and vision agree on the place of a groove; docs/scene_format.md describes it.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,12 +7,14 @@
 
 namespace tactus {
 
-// Extent of one repetition and height of a relief, m. Design: a fingertip's ridges are 0.5 mm apart and it feels
-// steps of about a micrometre, with room below; what is higher than 0.1 m belongs into the shape.
+// Range of the extent of one repetition and of the height of a relief, m. Design: the ridges of a fingertip are 0.5
+// mm apart and it feels steps of about a micrometre, with margin below; features higher than 0.1 m belong to the
+// shape.
 inline constexpr double kMinBumpSize_m = 1e-4, kMaxBumpSize_m = 100;
 inline constexpr double kMinBumpHeight_m = 1e-7, kMaxBumpHeight_m = 0.1;
 
-// Largest factor of a friction map. Design: from ice (0.02 to 0.05) to rubber (about 1) it is some twenty times.
+// Largest factor of a friction map. Design: from ice (0.02 to 0.05) to rubber (about 1) friction grows about
+// twentyfold.
 inline constexpr double kMaxFrictionFactor = 20;
 
 // Axes of the body frame, 0 .. 2: the one nearest to a normal, and those along which u and v grow.
@@ -21,16 +23,15 @@ struct BumpAxes {
 };
 
 // Projection along the dominant axis of the normal, which is in the body frame: z -> (x, y), x -> (y, z), y -> (z,
-// x). Of equals z goes before x before y. shaders/surface.frag does the same.
+// x). Ties prefer z over x over y. shaders/shade.glsl does the same.
 inline BumpAxes bump_axes(const Eigen::Vector3d& normal_body) {
   const Eigen::Vector3d n = normal_body.cwiseAbs();
   const int across = n.z() >= n.x() && n.z() >= n.y() ? 2 : n.x() >= n.y() ? 0 : 1;
   return {across, (across + 1) % 3, (across + 2) % 3};
 }
 
-// Where a point of the body frame lies, in repetitions of the map: whole parts are to be dropped. u grows to the
-// right of the picture and v upwards; its lower left corner is at (0, 0), so the middle of pixel i is at (i + 1/2)
-// / columns.
+// Place of a point of the body frame in the map, in repetitions; drop the integer part. u grows to the right of the
+// picture and v upwards; its lower left corner is at (0, 0), so the centre of pixel i is at (i + 1/2) / columns.
 inline Eigen::Vector2d bump_at(const material_def_t& material, const BumpAxes& axes,
                                const Eigen::Vector3d& point_body_m) {
   return {point_body_m[axes.u] / material.bump_size_u_m, point_body_m[axes.v] / material.bump_size_v_m};

@@ -1,11 +1,11 @@
-// The channels of the bus: their names and their port. README.md says who publishes and who subscribes.
+// The channels of the bus: names and ports. README.md lists publishers and subscribers.
 #pragma once
 
 #include <cstddef>
 
 namespace tactus::channels {
 
-// Real-time port. No message is larger than kMaxMessageBytes: state is paged.
+// Real-time port. No message is larger than kMaxMessageBytes: large snapshots are split into pages.
 inline constexpr const char* kTouchModel = "TOUCH_MODEL";        // touch_model_t
 inline constexpr const char* kContactEvents = "CONTACT_EVENTS";  // contact_events_t
 inline constexpr const char* kContacts = "CONTACTS";             // contact_frame_t
@@ -38,16 +38,16 @@ inline constexpr const char* kTagValues = "TAG_VALUES";          // tag_values_t
 inline constexpr const char* kGameState = "GAME_STATE";          // game_state_t
 inline constexpr const char* kLogInfo = "LOG_INFO";              // log_info_t, only in logs
 
-// Bulk port, so that assets never queue before a force. Receivers listen on both ports: a replayed log has one.
+// Bulk port, so that assets never delay a force. Receivers listen on both ports: a replayed log has only one.
 inline constexpr const char* kSceneManifest = "SCENE_MANIFEST";  // scene_manifest_t
 inline constexpr const char* kAssetRequest = "ASSET_REQUEST";    // asset_request_t
 inline constexpr const char* kAssetChunk = "ASSET_CHUNK";        // asset_chunk_t
 inline constexpr const char* kPictureChunk = "PICTURE_CHUNK";    // picture_chunk_t
 
-// One Ethernet frame less the headers of IP, UDP and LCM: nothing is fragmented, nothing half lost.
+// One Ethernet frame minus the headers of IP, UDP and LCM: messages are never fragmented, so never partly lost.
 inline constexpr std::size_t kMaxMessageBytes = 1400;
 
-// Multicast group, real-time port and its bulk port (the next one), unless the command line says otherwise.
+// Multicast group, real-time port and its bulk port (the next one), unless the command line sets others.
 inline constexpr const char* kGroup = "239.255.76.67";
 inline constexpr int kDefaultPort = 7667;
 

@@ -11,7 +11,7 @@
 namespace tactus {
 namespace {
 
-// Of a number on the wire; 0: text or a type of our own.
+// Bytes of a number on the wire; 0: text or a struct.
 std::size_t width(std::string_view type) {
   if (type == "int8_t" || type == "byte" || type == "boolean") return 1;
   if (type == "int16_t") return 2;
@@ -27,7 +27,7 @@ std::optional<std::int64_t> whole(std::string_view text) {
   return value;
 }
 
-// Reads forward through the bytes; once they end too early it stands still and says so.
+// Reads forward through the bytes; at a premature end it stops and reports failure.
 class Walk {
  public:
   explicit Walk(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -54,7 +54,7 @@ class Walk {
     if (type == "double") return std::bit_cast<double>(take(8));
     return static_cast<double>(take_whole(width(type)));
   }
-  // Its length with the final zero comes first.
+  // The length, including the final zero, comes first.
   std::string text(bool wanted) {
     const std::int64_t size = take_whole(4);
     if (!good_ || size < 1 || static_cast<std::size_t>(size) > left()) return fail(), "";
@@ -73,12 +73,12 @@ class Walk {
 
 using Counts = std::map<std::string_view, std::int64_t>;
 
-// How many there are; every one has at least a byte on the wire, so that more than bytes left is a lie.
+// Number of elements. Each has at least one byte on the wire, so a length above the remaining bytes is invalid.
 std::int64_t length(const Field& field, const Counts& counts, Walk& walk) {
   if (field.count.empty()) return 1;
   const auto fixed = whole(field.count);
-  const auto told = counts.find(field.count);
-  const std::int64_t n = fixed ? *fixed : told == counts.end() ? -1 : told->second;
+  const auto found = counts.find(field.count);
+  const std::int64_t n = fixed ? *fixed : found == counts.end() ? -1 : found->second;
   if (n < 0 || static_cast<std::uint64_t>(n) > walk.left()) return walk.fail(), 0;
   return n;
 }
@@ -117,7 +117,7 @@ struct Visit {
   Walk& walk;
   const std::function<void(const std::string&, const Field&, const Leaf&)>& leaf;
 
-  // prefix: with the dot behind it.
+  // prefix: including its final dot.
   void fields(const MessageType& type, const std::string& prefix) {
     Counts counts;
     for (const Field& field : type.fields) {
@@ -211,18 +211,18 @@ FieldPath::FieldPath(const MessageType& type, std::string_view path) : type_(&ty
     if (it == in->fields.end()) unknown(*in, name);
     if (it->count.empty() == index.has_value())
       throw std::invalid_argument(std::string(it->name) +
-                                  (index ? " is no list; leave [] out" : " is a list; say which, as in ") +
+                                  (index ? " is not a list; leave out []" : " is a list; say which, as in ") +
                                   (index ? "" : std::string(it->name) + "[0]"));
     last_ = &*it;
     steps_.push_back({static_cast<std::size_t>(it - in->fields.begin()), index.value_or(0)});
     in = message_type(it->type);
   }
   if (!last_)
-    throw std::invalid_argument("which field of " + std::string(type.name) + "? It has none without a name");
+    throw std::invalid_argument("which field of " + std::string(type.name) + "? Give the name of a field");
   if (in) {
     std::string names;
     for (const Field& f : in->fields) names += (names.empty() ? "" : ", ") + std::string(f.name);
-    throw std::invalid_argument(std::string(last_->name) + " is no number; it has " + names);
+    throw std::invalid_argument(std::string(last_->name) + " is not a number; it has " + names);
   }
 }
 
@@ -262,7 +262,7 @@ std::string unit_of(std::string_view name) {
       {"_Pa", "Pa"},       {"_m2", "m2"},       {"_ns", "ns"},       {"_N", "N"},       {"_J", "J"},
       {"_K", "K"},         {"_W", "W"},         {"_A", "A"},         {"_V", "V"},       {"_m", "m"},
       {"_s", "s"}};
-  // A stiffness is in N/m, where a torque is in N m.
+  // A stiffness is in N/m, a torque in N m.
   if (name.starts_with("stiffness") && name.ends_with("_N_m")) return "N/m";
   for (const auto& [suffix, unit] : kUnits)
     if (name.ends_with(suffix)) return std::string(unit);

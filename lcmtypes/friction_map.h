@@ -1,5 +1,5 @@
-// Where a surface is slippery and where it is rough: the factor of a material's friction map at a place. Defined
-// here once for simulation, touch and sound, so that a boundary is crossed by all at the same place. Pure.
+// Friction map: the factor on friction at a place of a surface. Defined here once for simulation, haptics and
+// sound, so that all cross a boundary at the same place. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,9 +16,9 @@ class FrictionMap {
  public:
   FrictionMap(const HeightMap& map, const material_def_t& material);
 
-  // Factor on the friction of the surface, >= 0, at a point of the body frame where the outward normal is so: at
-  // the middle of a pixel that of its grey, linear between. It lies on the surface as a relief does (bump.h), with
-  // extents of its own. Realtime-safe: yes.
+  // Factor on the friction of the surface, >= 0, at a point of the body frame with this outward normal: that of
+  // the grey at a pixel centre, bilinear in between. Placed like a relief (bump.h), with its own extents.
+  // Realtime-safe: yes.
   double factor(const Eigen::Vector3d& normal_body, const Eigen::Vector3d& point_body_m) const;
 
  private:
@@ -27,8 +27,8 @@ class FrictionMap {
   std::vector<float> factors_;
 };
 
-// A pair takes the geometric mean of the coefficients of its two surfaces (material_def_t), so of a factor on one
-// of them it takes the root.
+// Factor on the friction of a pair: the coefficient is the geometric mean of both surfaces (material_def_t), so a
+// factor on one of them counts with its square root.
 inline double pair_factor(double factor_of_one) { return std::sqrt(factor_of_one); }
 
 }  // namespace tactus

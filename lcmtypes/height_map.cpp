@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-// More samples a side cost more memory than a scene should; 2^n + 1 is what tools write for ground.
+// Memory limit; 2^n + 1 is the usual size of terrain tools.
 constexpr png_uint_32 kMaxSide = 4097;
 
 [[noreturn]] void on_error(png_structp, png_const_charp message) { throw std::runtime_error(message); }
@@ -33,7 +33,7 @@ void on_read(png_structp png, png_bytep to, std::size_t count) {
 HeightMap read_height_map(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) throw std::runtime_error("it is no PNG file");
   Reader reader;
-  if (!reader.info) throw std::runtime_error("libpng cannot be started");
+  if (!reader.info) throw std::runtime_error("libpng cannot start");
   png_set_read_fn(reader.png, &bytes, on_read);
   png_read_info(reader.png, reader.info);
   const png_uint_32 columns = png_get_image_width(reader.png, reader.info);

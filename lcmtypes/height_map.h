@@ -1,4 +1,4 @@
-// The heights in a grey PNG of 8 or 16 bits: ground and relief alike.
+// Height map: reads heights from a grey PNG of 8 or 16 bits, for ground and surface relief.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace tactus {
 
 struct HeightMap {
   int columns = 0, rows = 0;
-  int white = 255;                    // the level of height 1; black is 0
+  int white = 255;                    // level of height 1; black is 0
   std::vector<std::uint16_t> levels;  // row-major, the lowest row of the picture first
 
   // 0 .. 1.
@@ -18,7 +18,7 @@ struct HeightMap {
   }
 };
 
-// Throws std::runtime_error with one clause when the bytes are no such picture, are damaged, or are too many.
+// Throws std::runtime_error with one clause when the bytes are another format, damaged, or too many.
 HeightMap read_height_map(std::span<const std::uint8_t> png);
 
 }  // namespace tactus

@@ -1,4 +1,4 @@
-// Ranges that hold for a number, a text and a header of whatever message. Only valid*.cpp include it.
+// Plausible ranges of numbers, texts and headers of any message. Only valid*.cpp include it.
 #pragma once
 
 #include <algorithm>
@@ -8,15 +8,20 @@
 
 namespace tactus {
 
-// Farther than any scene and faster than any body: beyond this a number is garbage, though finite.
+// Limit of magnitudes: larger than any scene or speed, so a larger finite number is garbage.
 inline constexpr double kMaxMagnitude = 1e9;
-// 31 years since a machine or a world began: differences of such times do not overflow.
+// 31 years since the start of a machine or a world: differences of such times do not overflow.
 inline constexpr long kMaxTime_ns = 1'000'000'000'000'000'000;
 
 inline bool sane(double x) { return std::isfinite(x) && std::abs(x) <= kMaxMagnitude; }
+inline bool sane_not_negative(double x) { return sane(x) && x >= 0; }
 inline bool between(long value, long low, long high) { return value >= low && value <= high; }
 
-// Of a node or a modality: it becomes a key, a file's column and a line on a terminal.
+// 36 years of uptime: sums and differences of such times cannot overflow.
+inline constexpr long kLatestClockTime = 1L << 60;
+inline bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
+
+// The name of a node or modality becomes a key, a column of a file and a line on a terminal.
 inline bool printable(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }

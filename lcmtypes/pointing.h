@@ -1,5 +1,5 @@
-// Tools that only point, and what they steer. One that bears the name of a spot light is a wand: the light shines
-// at where it is. One named "head" is the view: eye and ear go where it goes. Neither touches nor feels.
+// Pointing tools, which neither touch nor feel: a tool with the name of a spot light aims that light, and a tool
+// named "head" moves the view, eye and ear.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -33,15 +33,15 @@ inline int head_of(const scene_t& scene) {
   return tool == scene.tools.end() ? -1 : static_cast<int>(tool - scene.tools.begin());
 }
 
-// T_world_view of a head whose device is at a pose in the world. It is where the device is; it looks where the
-// scene's camera looks, turned by as much as the device: a mouse, which does not turn, looks at what the scene
-// shows, and with a camera that looks along +x, level, the device's own orientation is that of the view.
+// T_world_view of a head with this device pose in the world. The position is that of the device. The direction is
+// that of the scene's camera, rotated by the device orientation: with a mouse, which does not rotate, it is the
+// camera's direction, and with a level camera along +x it is the orientation of the device.
 inline Eigen::Isometry3d view_of(const scene_t& scene, const Eigen::Vector3d& position_m,
                                  const Eigen::Quaterniond& orientation) {
   return Eigen::Translation3d(position_m) * (orientation * to_eigen(scene.camera.orientation));
 }
 
-// T_world_listener of such a view: the ear keeps its place beside the eye.
+// T_world_listener of such a view: the ear keeps its pose relative to the eye.
 inline Eigen::Isometry3d listener_of(const scene_t& scene, const Eigen::Isometry3d& view) {
   return view * to_eigen(scene.camera).inverse() * to_eigen(scene.listener);
 }

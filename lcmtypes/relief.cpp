@@ -13,15 +13,16 @@ float slope_of(double rise) { return static_cast<float>(std::clamp(rise, -kSteep
 
 int wrapped(int i, int n) { return ((i % n) + n) % n; }
 
-// The pixel whose middle is at or before a place, in repetitions, and the share of the way to the next.
+// The pixel whose centre is at or before a place, in repetitions, and the share of the way to the next.
 int pixel(double at, int n, double& share) {
   const double x = (at - std::floor(at)) * n - 0.5, whole = std::floor(x);
   share = x - whole;
   return wrapped(static_cast<int>(whole), n);
 }
 
-// Of four neighbours, from the one before the left: the spline of second order whose control points are the means
-// of neighbours. Its derivative goes linearly from the central difference at the left to that at the right.
+// Weights of four neighbours, from the one before the left: the spline of second order whose control points are the
+// means of neighbours. Its derivative changes linearly from the central difference at the left to that at the
+// right.
 std::array<double, 4> spline(double f) {
   const double before = (1 - f) * (1 - f) / 4, middle = (1 + 2 * f - 2 * f * f) / 4, after = f * f / 4;
   return {before, before + middle, middle + after, after};
@@ -68,7 +69,7 @@ Relief make_relief(const HeightMap& map, const material_def_t& material) {
   relief.columns = map.columns, relief.rows = map.rows;
   relief.slopes.reserve(map.levels.size());
   relief.heights_m.reserve(map.levels.size());
-  // Height over the two pixels between the neighbours.
+  // Height over the distance of the two neighbours.
   const double along_u = material.bump_height_m * map.columns / (2 * material.bump_size_u_m);
   const double along_v = material.bump_height_m * map.rows / (2 * material.bump_size_v_m);
   for (int row = 0; row < map.rows; ++row) {

@@ -8,7 +8,7 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kMax = 5;
-constexpr std::size_t kLongest = 64;  // of what is compared: names are no longer
+constexpr std::size_t kMaxCompared = 64;  // limit of the compared text: names are not longer
 
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -26,11 +26,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string spelling_suggestions(std::string_view written, const std::vector<std::string>& names) {
-  written = written.substr(0, kLongest);
+  written = written.substr(0, kMaxCompared);
   std::vector<std::pair<std::size_t, std::string_view>> near;
   for (const std::string& name : names) {
     const bool holds = !written.empty() && name.find(written) != std::string::npos;
-    near.emplace_back(holds ? 0 : distance(written, std::string_view(name).substr(0, kLongest)), name);
+    near.emplace_back(holds ? 0 : distance(written, std::string_view(name).substr(0, kMaxCompared)), name);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   near.resize(std::min(near.size(), kMax));

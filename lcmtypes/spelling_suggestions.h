@@ -1,4 +1,4 @@
-// The names that somebody may have meant who wrote another.
+// Suggestions for a misspelled name.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace tactus {
 
-// Up to five of them, nearest first, "a, b or c". A name is the nearer, the fewer letters it takes to change, add
-// or leave out (Levenshtein 1966); one that begins with what was written, or holds it, comes before.
+// Up to five names, nearest first, "a, b or c". The distance is the number of letters to change, add or leave out
+// (Levenshtein 1966); names that begin with or contain the written text come first.
 std::string spelling_suggestions(std::string_view written, const std::vector<std::string>& names);
 
 }  // namespace tactus

@@ -15,7 +15,7 @@ double number(std::string_view word, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
-    refuse(text, '"' + std::string(word) + "\" is no number");
+    refuse(text, '"' + std::string(word) + "\" is not a number");
   return value;
 }
 
@@ -66,8 +66,8 @@ ToolDevice parse_tool_device(const std::string& text) {
     refuse(text, std::string("unknown; use ") + kForms);
   if (colon == std::string::npos) {
     if (out.kind == Kind::kPlayback) refuse(text, "name the file to play: playback:FILE");
-    if (out.kind == Kind::kSpidar) refuse(text, "name its frame: spidar:desktop, or a JSON file");
-    if (out.kind == Kind::kExternal) refuse(text, "give it the name that its driver has: external:NAME");
+    if (out.kind == Kind::kSpidar) refuse(text, "name the frame: spidar:desktop, or a JSON file");
+    if (out.kind == Kind::kExternal) refuse(text, "give the name of its driver: external:NAME");
     return out;
   }
   std::string_view rest = std::string_view(text).substr(colon + 1);

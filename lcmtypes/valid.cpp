@@ -3,6 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/clock_probe_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/measured_modes.h"
@@ -11,17 +41,16 @@
 namespace tactus {
 namespace {
 
-using tactus::sane;  // of plausible.h, beside those of here
+using tactus::sane;  // from plausible.h, in addition to the overloads here
 
-// A minute: what is presented later than that is another event.
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
+// A minute: a later presentation cannot belong to the event.
 constexpr long kMaxDelay_ns = 60'000'000'000;
-constexpr double kMaxPush = 1e6;  // N or N m: beyond it nothing of a room withstands
-// No simulation runs faster: at this rate a second of it lies between two pictures.
+constexpr double kMaxPush = 1e6;  // N or N m: no object of a room withstands more
+// Limit of the real-time factor: at this rate 1.7 s of simulated time pass between two pictures.
 constexpr double kMaxSimRate = 100;
 
-bool sane_not_negative(double x) { return sane(x) && x >= 0; }
-bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // masses of fixed bodies are huge
+bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // the masses of fixed bodies are huge
 bool sane(const vec3_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
 bool sane(const vec3f_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
 
@@ -39,10 +68,6 @@ bool unit(const V& v) {
 
 bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
 bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
-
-// 36 years of uptime: sums and differences of such times cannot overflow.
-constexpr long kLatestClockTime = 1L << 60;
-bool clock_time(long ns) { return between(ns, 0, kLatestClockTime); }
 
 bool sane(const sim_clock_t& c) {
   return between(c.sim_ns, 0, kMaxTime_ns) && between(c.host_ns, 0, kMaxTime_ns) && sane_not_negative(c.rate) &&
@@ -138,7 +163,7 @@ bool sane(const measured_mode_t& m) {
          m.damping_1_s < 2 * std::numbers::pi * m.frequency_Hz && finite_positive(m.amplitude);
 }
 bool sane(const material_def_t& m) {
-  // Young's modulus of diamond is 1.2e12 Pa, beyond the magnitude of all else.
+  // Young's modulus of diamond is 1.2e12 Pa, above the general limit of magnitudes.
   return finite_positive(m.youngs_modulus_Pa) && sane(m.poissons_ratio) && sane_not_negative(m.density_kg_m3) &&
          sane_not_negative(m.rayleigh_alpha_1_s) && sane_not_negative(m.rayleigh_beta_s) &&
          sane_not_negative(m.friction_static) && sane_not_negative(m.friction_dynamic) &&
@@ -189,7 +214,7 @@ bool all_sane(const List& list) {
     if (!sane(item)) return false;
   return true;
 }
-// Of a request and of its answer.
+// Common to a request and its answer.
 bool sane_policy(const auto& m) {
   return m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
          between(m.aligner, playout_t::FIXED, playout_t::VIRTUAL_TIME) && between(m.base_ns, 0, kMaxDelay_ns) &&
@@ -242,38 +267,10 @@ bool valid(const degradation_t& m) {
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
-  // A turn takes a minute at the most.
+  // A lock-step period is at most a minute.
   return sane(m.header) && sane_policy(m) && (m.lockstep_Hz == 0 || (m.lockstep_Hz >= 1.0 / 60 && m.lockstep_Hz <= 1e4));
 }
 bool valid(const playout_request_t& m) { return sane(m.header) && sane_policy(m); }
-bool valid(const setting_change_t& m) {
-  return sane(m.header) && m.id > 0 && name(m.node) && name(m.name) && m.value.size() <= 256 && printable(m.value);
-}
-bool valid(const setting_reply_t& m) {
-  return sane(m.header) && m.id > 0 && between(m.done, 0, 1) && m.text.size() <= 512;
-}
-bool valid(const tag_list_t& m) {
-  const auto tag = [](const tag_def_t& t) {
-    return name(t.name) && t.name.size() <= 48 && name(t.unit) && t.unit.size() <= 16 &&
-           sane_not_negative(t.rate_Hz);
-  };
-  return sane(m.header) && name(m.node) && m.list > 0 && between(m.total, 0, 1024) && m.first >= 0 &&
-         m.tag_count >= 0 && m.first + m.tag_count <= m.total && std::all_of(m.tags.begin(), m.tags.end(), tag);
-}
-bool valid(const tag_request_t& m) {
-  const auto pattern = [](const std::string& p) { return !p.empty() && p.size() <= 128 && printable(p); };
-  return sane(m.header) && between(m.pattern_count, 0, 16) &&
-         std::all_of(m.patterns.begin(), m.patterns.end(), pattern);
-}
-bool valid(const tag_values_t& m) {
-  const auto finite = [](double x) { return std::isfinite(x); };
-  return sane(m.header) && name(m.node) && m.list > 0 && between(m.column_count, 1, 128) &&
-         between(m.row_count, 1, 128) && m.value_count == m.column_count * m.row_count &&
-         std::all_of(m.columns.begin(), m.columns.end(), [](int c) { return between(c, 0, 1023); }) &&
-         std::all_of(m.times_ns.begin(), m.times_ns.end(), [](long t) { return clock_time(t); }) &&
-         std::is_sorted(m.times_ns.begin(), m.times_ns.end()) &&
-         std::all_of(m.values.begin(), m.values.end(), finite);
-}
 bool valid(const sim_command_t& m) {
   const auto within = [](const vec3_t& v) {
     return sane(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= kMaxPush;

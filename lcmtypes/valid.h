@@ -1,46 +1,46 @@
-// What a message must satisfy to be let in: finite numbers, counts and enumerations in range. A renderer behind this
-// border never meets a NaN. Sizes are checked before, by sync/bus/decode.h.
+// Validation of received messages: finite numbers, counts and enumerations in range. Code behind this border never
+// receives a NaN. sync/bus/decode.h checks the sizes first.
 #pragma once
 
-#include <tactus/answer_t.hpp>
-#include <tactus/asset_chunk_t.hpp>
-#include <tactus/asset_request_t.hpp>
-#include <tactus/clock_map_t.hpp>
-#include <tactus/clock_probe_t.hpp>
-#include <tactus/contact_events_t.hpp>
-#include <tactus/contact_frame_t.hpp>
-#include <tactus/degradation_t.hpp>
-#include <tactus/degraded_t.hpp>
-#include <tactus/device_force_t.hpp>
-#include <tactus/device_state_t.hpp>
-#include <tactus/frame_shown_t.hpp>
-#include <tactus/game_state_t.hpp>
-#include <tactus/log_info_t.hpp>
-#include <tactus/media_clock_t.hpp>
-#include <tactus/mesh_t.hpp>
-#include <tactus/node_health_t.hpp>
-#include <tactus/picture_chunk_t.hpp>
-#include <tactus/playout_request_t.hpp>
-#include <tactus/playout_t.hpp>
-#include <tactus/presented_t.hpp>
-#include <tactus/question_t.hpp>
-#include <tactus/scene_manifest_t.hpp>
-#include <tactus/scene_t.hpp>
-#include <tactus/setting_change_t.hpp>
-#include <tactus/setting_reply_t.hpp>
-#include <tactus/sim_command_t.hpp>
-#include <tactus/sim_reply_t.hpp>
-#include <tactus/sync_report_t.hpp>
-#include <tactus/tag_list_t.hpp>
-#include <tactus/tag_request_t.hpp>
-#include <tactus/tag_values_t.hpp>
-#include <tactus/thermal_device_t.hpp>
-#include <tactus/thermal_state_t.hpp>
-#include <tactus/tool_state_t.hpp>
-#include <tactus/touch_model_t.hpp>
-#include <tactus/world_state_t.hpp>
-
 namespace tactus {
+
+class answer_t;
+class asset_chunk_t;
+class asset_request_t;
+class clock_map_t;
+class clock_probe_t;
+class contact_events_t;
+class contact_frame_t;
+class degradation_t;
+class degraded_t;
+class device_force_t;
+class device_state_t;
+class frame_shown_t;
+class game_state_t;
+class log_info_t;
+class media_clock_t;
+class mesh_t;
+class node_health_t;
+class picture_chunk_t;
+class playout_request_t;
+class playout_t;
+class presented_t;
+class question_t;
+class scene_manifest_t;
+class scene_t;
+class setting_change_t;
+class setting_reply_t;
+class sim_command_t;
+class sim_reply_t;
+class sync_report_t;
+class tag_list_t;
+class tag_request_t;
+class tag_values_t;
+class thermal_device_t;
+class thermal_state_t;
+class tool_state_t;
+class touch_model_t;
+class world_state_t;
 
 // True when every field is in the range that its comment in the .lcm file gives.
 bool valid(const answer_t&);

@@ -1,9 +1,11 @@
-// Conversions between the wire's vectors and Eigen's.
+// Conversions between wire vectors and Eigen.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <tactus/pose_t.hpp>
+#include <tactus/quat_t.hpp>
 #include <tactus/quatf_t.hpp>
+#include <tactus/vec3_t.hpp>
 #include <tactus/vec3f_t.hpp>
 
 namespace tactus {

@@ -16,6 +16,11 @@
 #include <iostream>
 #include <optional>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/tool_state_t.hpp>
 #include <utility>
 
 #include "sim_node/world/simulation.h"

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 #include <tactus/degradation_t.hpp>
+#include <tactus/header_t.hpp>
 #include <vector>
 
 #include "lcmtypes/channels.h"

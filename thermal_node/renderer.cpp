@@ -1,5 +1,10 @@
 #include "thermal_node/renderer.h"
 
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
 #include <utility>
 
 #include "sync/time/phases.h"

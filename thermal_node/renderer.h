@@ -4,7 +4,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/renderer.h"

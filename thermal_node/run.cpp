@@ -13,6 +13,7 @@
 #include "thermal_node/run.h"
 
 #include <CLI/CLI.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/node/run_renderer.h"
 #include "thermal_node/renderer.h"

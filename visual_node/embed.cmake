@@ -1,4 +1,4 @@
-# Writes a C++ file with a function that returns the text of each of the files by its name.
+# Writes a C++ file with a function that returns the text of an embedded file by its name.
 set(text "#include \"${HEADER}\"\nnamespace tactus::visual {\nstd::string_view ${FUNCTION}(std::string_view file) {\n")
 foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)

@@ -2,6 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <utility>
 
 #include "sync/time/phases.h"

@@ -5,6 +5,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "sync/node/renderer.h"

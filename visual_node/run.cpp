@@ -13,6 +13,7 @@
 #include "visual_node/run.h"
 
 #include <iostream>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/node/run_renderer.h"
 #include "visual_node/renderer.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <exception>
+#include <tactus/presentation_t.hpp>
 #include <utility>
 
 #include "audio_node/signal/sound_dose.h"

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <tactus/presentation_t.hpp>
 #include <vector>
 
 #include "audio_node/devices/stream.h"

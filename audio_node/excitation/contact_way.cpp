@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/contact_point_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

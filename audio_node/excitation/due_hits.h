@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <utility>
 
 #include "sync/presentation/late.h"

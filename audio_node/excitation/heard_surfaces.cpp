@@ -2,6 +2,7 @@
 
 #include <map>
 #include <stdexcept>
+#include <tactus/material_def_t.hpp>
 #include <tuple>
 
 namespace tactus::audio {

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/body_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "audio_node/excitation/contact_patch.h"
 #include "audio_node/signal/loudness.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/contact_t.hpp>
+#include <tactus/material_def_t.hpp>
 
 #include "audio_node/signal/plausible.h"
 #include "audio_node/samples/loops.h"

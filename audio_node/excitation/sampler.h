@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <utility>
 #include <vector>

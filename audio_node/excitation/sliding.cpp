@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/body_def_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <utility>
 
 #include "audio_node/excitation/contact_patch.h"

@@ -9,6 +9,7 @@
 #include <tactus/contact_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
+#include <tactus/material_def_t.hpp>
 
 #include "audio_node/excitation/contact_way.h"
 #include "audio_node/excitation/heard_surfaces.h"

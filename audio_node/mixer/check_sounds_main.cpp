@@ -1,5 +1,5 @@
 // check_sounds: what is in a folder of recordings, what of it is broken, and what contacts of given materials fall
-// back to. scripts/check_sounds calls it.
+// back to. tactus check-sounds calls it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>

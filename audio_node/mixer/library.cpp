@@ -35,7 +35,7 @@ void Library::use(Shared database) {
   for (std::size_t i = 0; i < database->faults.size(); ++i) {
     if (i == kMaxSaid) {
       news_.push_back("and " + std::to_string(database->faults.size() - i) +
-                      " faults more; scripts/check_sounds names them all");
+                      " faults more; tactus check-sounds names them all");
       break;
     }
     news_.push_back(database->faults[i].path + " " + database->faults[i].what);

@@ -11,6 +11,11 @@
 #include <functional>
 #include <set>
 #include <sstream>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/excitation/roughness.h"

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/vec3_t.hpp>
 
 #include "audio_node/modal/solid.h"
 #include "lcmtypes/vectors.h"

@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <tactus/body_def_t.hpp>
+#include <tactus/material_def_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <vector>
 
 #include "audio_node/modal/modal.h"

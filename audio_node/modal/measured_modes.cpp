@@ -1,6 +1,7 @@
 #include "audio_node/modal/measured_modes.h"
 
 #include <algorithm>
+#include <tactus/measured_mode_t.hpp>
 
 namespace tactus::audio {
 

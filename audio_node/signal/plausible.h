@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_point_t.hpp>
 #include <tactus/contact_t.hpp>
 
 namespace tactus::audio {

@@ -20,7 +20,7 @@ std::size_t first_heard(std::span<const float> samples);
 inline constexpr double kOnset = 0.2;
 
 // -34 dB: what comes so much weaker, less than a millisecond before the rest, is part of its beginning (design; as
-// scripts/measure_onsets reads a recording).
+// tests/measure/measure_onsets reads a recording).
 inline constexpr double kHeard = 0.02;
 
 }  // namespace tactus::audio

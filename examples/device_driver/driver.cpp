@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   if (argument(1, "").starts_with("-")) {
     std::cout << "Usage: device_driver [NAME [GROUP [PORT [RUN]]]]\nDrives the device NAME (arm) for haptic_node "
                  "--device "
-                 "external:NAME until it is ended; inside a running cluster: scripts/attach device_driver NAME\n";
+                 "external:NAME until it is ended; inside a running cluster: tactus attach device_driver NAME\n";
     return argument(1, "") == "--help" ? 0 : 1;
   }
   Forces forces{argument(1, "arm")};

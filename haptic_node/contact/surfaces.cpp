@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <vector>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/closest_point.h"
 #include "haptic_node/contact/mapped_place.h"

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <tactus/header_t.hpp>
+#include <tactus/touch_applied_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 namespace tactus::haptic {
 

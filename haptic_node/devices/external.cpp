@@ -1,6 +1,8 @@
 #include "haptic_node/devices/external.h"
 
 #include <algorithm>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

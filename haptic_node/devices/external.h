@@ -5,6 +5,8 @@
 
 #include <optional>
 #include <string>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 
 #include "haptic_node/devices/device.h"
 

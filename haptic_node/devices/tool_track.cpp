@@ -1,5 +1,6 @@
 #include "haptic_node/devices/tool_track.h"
 
+#include <tactus/header_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
 #include "lcmtypes/channels.h"

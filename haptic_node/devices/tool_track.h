@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <tactus/header_t.hpp>
 #include <tactus/tool_state_t.hpp>
 
 #include "haptic_node/devices/device.h"

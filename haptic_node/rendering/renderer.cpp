@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <tactus/material_def_t.hpp>
 #include <utility>
 
 #include "haptic_node/contact/rotation_math.h"

@@ -5,6 +5,10 @@
 #include <memory>
 #include <optional>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/touch_model_t.hpp>
 #include <utility>
 
 #include "haptic_node/devices/selection/node_config.h"

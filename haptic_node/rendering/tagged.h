@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <tactus/tool_state_t.hpp>
+#include <tactus/vec3_t.hpp>
 
 #include "sync/node/tags.h"
 

@@ -1,6 +1,8 @@
 #include "haptic_node/safety/passivity.h"
 
 #include <cmath>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

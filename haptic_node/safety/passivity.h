@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <span>
 #include <vector>
+#include <tactus/touch_applied_t.hpp>
 
 #include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/contact/surfaces.h"

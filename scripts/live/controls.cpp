@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <tactus/header_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "scripts/live/sliders.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 constexpr sync::Nanoseconds kPatience{3'000'000'000};  // an answer comes with the next step
-constexpr sync::Nanoseconds kProfile{2'000'000'000};   // as scripts/degrade; sync_node repeats it then
+constexpr sync::Nanoseconds kProfile{2'000'000'000};   // as tactus degrade; sync_node repeats it then
 constexpr sync::Nanoseconds kTags{1'000'000'000};      // as TAG_REQUEST says
 
 header_t unstamped() {

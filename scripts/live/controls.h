@@ -1,4 +1,4 @@
-// What pages do to the cluster, as scripts/simulation, degrade and set do it, but without waiting: each order is repeated until
+// What pages do to the cluster, as tactus simulation, degrade and set do it, but without waiting: each order is repeated until
 // it is answered or has been sent for long enough. Bounded: a new order of a kind takes the place of the one before.
 #pragma once
 
@@ -8,8 +8,10 @@
 #include <string>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/degradation_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <tactus/setting_change_t.hpp>
 #include <tactus/setting_reply_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/tag_request_t.hpp>

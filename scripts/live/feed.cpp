@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/pair_report_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/text/printable.h"

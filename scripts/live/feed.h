@@ -12,7 +12,10 @@
 #include <string>
 #include <string_view>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/modality_report_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/sync_report_t.hpp>
 #include <tuple>

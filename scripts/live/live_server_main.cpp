@@ -14,6 +14,9 @@
 #include <random>
 #include <sstream>
 #include <stdexcept>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "scripts/live/controls.h"
 #include "scripts/live/log_player.h"

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/question_t.hpp>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <utility>
 
 #include "scripts/live/catalog.h"

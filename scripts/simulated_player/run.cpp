@@ -13,6 +13,8 @@
 #include <optional>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 
 #include "scripts/simulated_player/arm.h"
 #include "scripts/simulated_player/senses.h"

@@ -1,5 +1,9 @@
 #include "scripts/simulated_player/senses.h"
 
+#include <tactus/contact_event_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <utility>
 
 #include "sync/random/keyed_random.h"

@@ -6,6 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "scripts/simulated_player/player.h"

@@ -1,6 +1,8 @@
 #include "scripts/simulated_player/setup.h"
 
 #include <algorithm>
+#include <tactus/body_def_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/random/keyed_random.h"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tactus/scene_t.hpp>
 #include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 #include <vector>
 
 #include "scripts/simulated_player/rules.h"

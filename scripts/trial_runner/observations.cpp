@@ -2,6 +2,10 @@
 
 #include <cmath>
 #include <string_view>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/hole_state_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <utility>
 
 namespace tactus::conductor {

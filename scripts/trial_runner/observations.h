@@ -7,6 +7,7 @@
 #include <set>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/game_state_t.hpp>
+#include <tactus/header_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/picture_chunk_t.hpp>

@@ -26,6 +26,16 @@
 #include <tactus/sim_command_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/tool_state_t.hpp>
+#include <tactus/answer_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/question_t.hpp>
 
 #include "scripts/trial_runner/enforcement.h"
 #include "scripts/trial_runner/hand.h"

@@ -9,7 +9,7 @@
 namespace tactus::sim {
 namespace {
 
-// Points that may press on a body in one direction: a ball has one, a face four.
+// Number of points that may press on a body in one direction: one for a ball, four for a face.
 int points_of(const WorldDef& world, int body) {
   for (const ShapeDef& s : world.shapes)
     if (s.body == body && s.kind != ShapeKind::kSphere) return kMaxManifoldPoints;
@@ -24,7 +24,7 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
     const double most = impulse::stiffest_explicit(mobility, s.penalty_damping_Ns_m, s.step_s);
     if (s.penalty_stiffness_N_m < most) continue;
     char numbers[160];
-    std::snprintf(numbers, sizeof numbers, "%.3g kg bear at most %.3g N/m at a step of %.3g ms, not %.3g",
+    std::snprintf(numbers, sizeof numbers, "mass of %.3g kg allows at most %.3g N/m at a step of %.3g ms, not %.3g",
                   b.mass_kg, std::max(0.0, most), 1e3 * s.step_s, s.penalty_stiffness_N_m);
     return "sim_node: the solver \"penalty_explicit\" is unstable for the body \"" + b.name + "\", whose " +
            numbers + "; lower penalty_stiffness or choose \"penalty\"";
@@ -37,8 +37,8 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
 std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector) {
   if (!model.needs_gaps || detector.separation) return "";
   return "sim_node: the solver \"" + std::string(model.name) +
-         "\" acts before surfaces meet, which the detector \"" + std::string(detector.name) +
-         "\" does not see; choose a detector that sees gaps, as \"gaps\" does, or the solver \"quick\" or \"step\"";
+         "\" needs contacts with gaps, which the detector \"" + std::string(detector.name) +
+         "\" does not report; choose a detector that reports gaps, such as \"gaps\", or the solver \"quick\" or \"step\"";
 }
 
 std::string refusal(const WorldDef& world, const Settings& settings) {
@@ -46,7 +46,7 @@ std::string refusal(const WorldDef& world, const Settings& settings) {
   if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
     return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
            std::string(model.name) +
-           "\"; choose solver = impulse, or penalty_explicit for springs of the start of the step near the tools, or "
+           "\"; choose solver = impulse, or penalty_explicit for explicit springs near the tools, or "
            "groups = single";
   if (model.needs_gaps) {
     const std::string blind = refusal(model, make_detector(settings.detector)->abilities());

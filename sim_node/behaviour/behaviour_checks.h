@@ -1,5 +1,5 @@
-// Checks that a scene, its detector and its behaviour model work together. Throws nothing; a pairing that cannot work is refused
-// before anything starts.
+// Start-up checks of the compatibility of scene, detector and behaviour model. They return a reason instead of
+// throwing.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace tactus::sim {
 
-// Empty when this detector serves the model; else one sentence with what to choose instead.
+// Returns an empty string when the detector supports the model, else one sentence that names an alternative.
 std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector);
-// Empty when the model of these settings can move the bodies of this scene; else one sentence with what to do.
-// Loops of joints are found by the builder of the systems.
+// Returns an empty string when the model of these settings can simulate this scene, else one sentence with the
+// remedy. The builder of the systems detects loops of joints.
 std::string refusal(const WorldDef& world, const Settings& settings);
 
 }  // namespace tactus::sim

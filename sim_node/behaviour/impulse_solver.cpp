@@ -10,10 +10,11 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// Contacts that a state may hold: more than a step ever has.
+// Maximum number of contacts in a state: more than any step has.
 constexpr std::size_t kMaxContacts = 1 << 16;
 
-// Of a shape, from the origin of its own frame: all of it, and what turning about the z axis moves.
+// Bounding radius of a shape about the origin of its frame, and the lever arm of the points that rotation about its z
+// axis moves.
 double bound_of(const ShapeDef& s, const WorldDef& world) {
   switch (s.kind) {
     case ShapeKind::kSphere: return s.size_m.x();
@@ -68,7 +69,7 @@ void ImpulseSolver::read() {
     bodies_[index(body)] = source_.frames().motion(body, world_->motions()[index(body)]);
 }
 
-// After something was set: the motions and contacts of now.
+// Updates motions and contacts after a change.
 void ImpulseSolver::detect_contacts() {
   read();
   source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, step_s_), contacts_);

@@ -1,5 +1,5 @@
-// The bodies and joints of a scene, moved by impulses in one world, with contacts that see gaps: nothing of ODE.
-// What Solver does when the setting `solver` is impulse.
+// The bodies and joints of a scene in one impulse world, with contacts that have gaps; without ODE. Implements Solver
+// for the setting `solver` = impulse.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@
 
 namespace tactus::sim {
 
-// How far each body reaches from its centre of mass.
+// Extent of each body from its centre of mass.
 std::vector<impulse::Extent> extents_of(const WorldDef& world);
 
-// Contacts of the shapes of a scene, for bodies as an impulse world moves them.
+// Contacts of the shapes of a scene, for body motions of an impulse world.
 class SceneContacts : public impulse::ContactSource {
  public:
   SceneContacts(const WorldDef& world, const Settings& settings, const std::shared_ptr<MeshTrees>& trees = nullptr)
@@ -30,7 +30,7 @@ class SceneContacts : public impulse::ContactSource {
             std::vector<Manifold>& out) override;
   const impulse::BodyFrames& frames() const { return frames_; }
   std::size_t shapes() const { return finder_.shapes(); }
-  // Of every body, as it was when contacts were last sought.
+  // Motions of all bodies at the last contact search.
   std::span<const BodyMotion> bodies() const { return bodies_; }
 
  private:
@@ -41,20 +41,20 @@ class SceneContacts : public impulse::ContactSource {
 
 class ImpulseSolver {
  public:
-  // Throws std::runtime_error with one sentence when the scene cannot be simulated so.
+  // Throws std::runtime_error with one sentence when the scene cannot be simulated this way.
   ImpulseSolver(const WorldDef& world, const Settings& settings);
 
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
     world_->add_force(body, force_N, point_m);
   }
   void add_torque(int body, const Eigen::Vector3d& torque_N_m) { world_->add_torque(body, torque_N_m); }
-  // Everything is as Solver has it. Realtime-safe once its lists have grown.
+  // The same interface as Solver. Real-time safe once its lists have grown.
   void step(double h_s);
   std::span<const BodyMotion> bodies() const { return bodies_; }
   std::span<const Manifold> contacts() const { return contacts_; }
   std::span<const Manifold> solved() const { return solved_; }
   const impulse::StepReport& report() const { return report_; }
-  // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
+  // Speed of the point along n per unit impulse along n at the point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) {
     return world_->mobility(body, point_m, n);
   }

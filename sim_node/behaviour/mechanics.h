@@ -1,5 +1,5 @@
-// What moves the bodies of a world and follows their contacts, one tick at a time: all bodies in one world, or in
-// two groups.
+// Interface for the motion of all bodies of a world and their contacts, one tick at a time: in one world or in two
+// groups.
 #pragma once
 
 #include <functional>
@@ -28,46 +28,49 @@ class Mechanics {
  public:
   virtual ~Mechanics() = default;
 
-  // The world at its first instant: appends the events of what touches then. Once, before the first tick.
+  // Appends the events of the contacts at the start. Call it once, before the first tick.
   virtual void start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
 
-  // Act during the next tick: N at a point of the world, m; N and N m at the centre of mass. What never moves ignores it.
+  // Act during the next tick. Force N at a world point, m; or N and N m at the centre of mass. Static bodies ignore
+  // them.
   virtual void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) = 0;
   virtual void add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) = 0;
 
-  // One tick, from `now` on; appends the events that it reached, in any order. tools: as they are now.
-  // Deterministic, but for when what is computed ahead is there. Realtime-safe once the lists have grown.
+  // Computes one tick from `now` on and appends its events, in any order. tools: current state. Deterministic, except
+  // for the time at which look-ahead results are ready. Real-time safe once the lists have grown.
   virtual void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
 
-  // Of every body. The entries of tools are the caller's to write.
+  // Of every body. The caller writes the entries of tools.
   virtual std::span<BodyMotion> motions() = 0;
-  // Bodies that move and that a tool may touch, ascending; none: any may be.
+  // Moving bodies within reach of a tool, ascending; nullopt: any body may be.
   virtual std::optional<std::span<const int>> near_tools() const { return std::nullopt; }
-  // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
-  // solve.
+  // Speed of the point along n per unit impulse along n at the point, 1/kg. Joints of a link are included where
+  // impulses solve.
   virtual double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) = 0;
-  // Contacts between bodies that are told of at the present instant; clears the list.
+  // Contacts between bodies to be published now; clears the list first.
   virtual void contacts(std::vector<contact_t>& out) = 0;
-  // Of the bodies that are computed ahead; null: none ever are.
+  // State of the bodies computed ahead; null: not supported.
   virtual const Ahead* ahead() { return nullptr; }
 
-  // Steps of what is computed ahead, a second; nothing where nothing is.
+  // Rate of the look-ahead steps, Hz; ignored without look-ahead.
   virtual void set_visual_rate(double) {}
 
-  // What may be set while the world runs; each holds from the next tick on. Values are not checked here. False: it
-  // has none, as a body that does not move has no velocity, and one on a joint no pose and no mass.
+  // Changes while the world runs, in force from the next tick on. Values are not checked here. Returns false when the
+  // property does not exist: a static body has no velocity, and a jointed body has no pose and no mass.
   virtual bool apply(const impulse::SceneChange& change) = 0;
   virtual bool set_pose(int body, const Eigen::Isometry3d& pose) = 0;
   virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
   virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
 
-  // All that the next ticks depend on. Throws BadState when what is read does not fit; this is then half changed.
+  // Archives all state of the next ticks. Throws BadState when the data does not fit; the world is then partly
+  // changed.
   virtual void archive(StateArchive& a) = 0;
-  // The ids of contacts and events go by another incarnation, under which `ids` go already.
+  // Renames the ids of contacts and events to another incarnation, after `ids` has been renamed.
   virtual void rename(std::int64_t incarnation) = 0;
 };
 
-// As the settings say. trees: of this world. Throws std::runtime_error with one sentence when the world cannot be simulated.
+// Creates the implementation that the settings select. trees: of this world. Throws std::runtime_error with one
+// sentence when the world cannot be simulated.
 std::unique_ptr<Mechanics> make_mechanics(const WorldDef& world, const Settings& settings, Ids& ids,
                                           const std::shared_ptr<MeshTrees>& trees);
 

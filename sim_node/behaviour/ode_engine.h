@@ -1,4 +1,4 @@
-// What Solver keeps of ODE: for its own files alone.
+// ODE objects of Solver, for its own source files only.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace tactus::sim {
 
-// Contacts that one step may solve, and storage for their feedback: it must outlive the step.
+// Maximum number of contact points per step, and storage for their feedback, which must outlive the step.
 inline constexpr std::size_t kMaxPoints = 16384;
 
 struct Solver::Engine {
   ode::Library library;
   ode::Owned<dWorldID> world;
   dJointGroupID contact_joints;
-  std::vector<dBodyID> bodies;  // null: never moves
+  std::vector<dBodyID> bodies;  // null: static
   std::vector<bool> jointed;
   std::unique_ptr<ode::Joints> joints;
   std::unique_ptr<ode::Shapes> shapes;
@@ -29,7 +29,7 @@ struct Solver::Engine {
   std::vector<Joined> joined;
   std::vector<dJointFeedback> feedback;
   bool exact = false;
-  long long said_before = 0;  // messages up to the end of the construction
+  long long messages_before = 0;  // number of messages up to the end of the construction
 
   Engine() : world(dWorldCreate()), contact_joints(dJointGroupCreate(0)) {}
   ~Engine() {
@@ -39,7 +39,7 @@ struct Solver::Engine {
   }
 
   static void archive(StateArchive& a, dBodyID id);
-  // Null for what never moves. Throws std::runtime_error with one sentence.
+  // Returns null for a static body. Throws std::runtime_error with one sentence.
   dBodyID make_body(const BodyDef& def, const Eigen::Vector3d& gravity_m_s2, double step_s);
 };
 

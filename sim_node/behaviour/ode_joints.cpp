@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNoLimit = 1e15;
 
-// Parameter group of an axis as ODE numbers them: the same names with 0x100 for the second axis.
+// Parameter of an axis in ODE's numbering: the second axis has 0x100 added.
 int group(int param, int axis) { return param + axis * dParamGroup; }
 
 void set_param(dJointID id, JointKind kind, int param, double value) {
@@ -32,8 +32,8 @@ int axis_count(JointKind kind) {
   return 0;
 }
 
-// ODE's number of our axis. A universal joint's first axis belongs to ODE's first body, which is our child, and our
-// first axis to the parent: so angles count as in SDF, the child's against the parent.
+// ODE's index of our axis. In ODE the first axis of a universal joint belongs to the first body, which is our child;
+// our first axis belongs to the parent. Angles then count as in SDF, child relative to parent.
 int ode_axis(JointKind kind, int axis) { return kind == JointKind::kUniversal ? 1 - axis : axis; }
 
 void set_axis_params(dJointID id, const JointDef& def, int axis, double erp, double cfm) {
@@ -41,7 +41,7 @@ void set_axis_params(dJointID id, const JointDef& def, int axis, double erp, dou
   const int g = ode_axis(def.kind, axis);
   const auto set = [&](int param, double value) { set_param(id, def.kind, group(param, g), value); };
   const double low = a.lower < -kNoLimit ? -dInfinity : a.lower, high = a.upper > kNoLimit ? dInfinity : a.upper;
-  // Twice: ODE refuses a lower stop above the present upper one.
+  // Set twice: ODE rejects a lower stop above the current upper one.
   for (int twice = 0; twice < 2; ++twice) {
     set(dParamLoStop, low);
     set(dParamHiStop, high);
@@ -51,7 +51,7 @@ void set_axis_params(dJointID id, const JointDef& def, int axis, double erp, dou
   set(dParamBounce, 0);
 }
 
-// Coulomb friction is a motor that wants to stand still; a motor has that much less to give.
+// Coulomb friction is a motor with target speed zero. A motor's available effort is reduced by it.
 void set_motor_params(dJointID id, const JointDef& def, int axis) {
   const JointAxis& a = def.axes[axis];
   const int g = ode_axis(def.kind, axis);
@@ -60,7 +60,7 @@ void set_motor_params(dJointID id, const JointDef& def, int axis) {
   set_param(id, def.kind, group(dParamFMax, g), motor ? std::max(0.0, a.motor_effort - a.friction) : a.friction);
 }
 
-// Of a body about a line through the anchor, kg m^2; of one that never moves, infinite.
+// Inertia of a body about a line through the anchor, kg m^2; infinite for a static body.
 double inverse_inertia_about(dBodyID body, const Eigen::Vector3d& anchor, const Eigen::Vector3d& axis) {
   if (!body) return 0;
   dMass mass;
@@ -149,8 +149,8 @@ Joints::Joints(const WorldDef& world, dWorldID ode, const std::vector<dBodyID>& 
   }
 }
 
-// The implicit step needs the rate that the joint would have without its spring and damper: what all else did to it in
-// the step before is taken to go on.
+// The implicit step needs the joint rate without spring and damper. The other effects of the previous step are
+// assumed to continue.
 void Joints::apply(Joint& j, double h) {
   const JointAxis* a = j.def.axes;
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();

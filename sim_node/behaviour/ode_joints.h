@@ -1,4 +1,4 @@
-// The joints of a world in ODE, and the springs and dampers in them, which ODE does not have.
+// The joints of a world in ODE, with springs and dampers, which ODE lacks.
 #pragma once
 
 #include <string>
@@ -14,15 +14,15 @@ class Joints {
  public:
   Joints(const WorldDef& world, dWorldID ode, const std::vector<dBodyID>& bodies, double erp, double cfm);
 
-  // Adds the torques and forces of springs and dampers for the next step. Realtime-safe: yes.
+  // Adds the torques and forces of springs and dampers to the next step. Real-time safe: yes.
   void apply_passive(double step_s);
-  // Of a joint with axes, by its name: a constant torque or force up to a speed, and dry friction. False: there is no such
-  // joint or axis.
+  // Sets the motor (constant torque or force up to a speed) or the dry friction of a named joint. Returns false when
+  // there is no such joint or axis.
   bool set_motor(const std::string& name, int axis, double effort, double velocity);
   bool set_friction(const std::string& name, int axis, double friction);
   void archive(StateArchive& a);
 
-  // Largest distance between the two images of an anchor, m: how far the joints have come apart.
+  // Largest distance between the two images of an anchor, m: the joint error.
   double largest_gap_m() const;
 
  private:
@@ -30,8 +30,8 @@ class Joints {
     dJointID id;
     JointDef def;
     dBodyID child, parent;
-    double inertia[2];  // about each axis, of the two bodies against each other; kg m^2, or kg for a slider
-    // Rates and passive forces of the step before: along the axes, or of a ball joint as vectors of the world.
+    double inertia[2];  // effective inertia about each axis between the two bodies; kg m^2, or kg for a slider
+    // Rates and passive forces of the previous step: along the axes; as world vectors for a ball joint.
     Eigen::Vector3d last_rate, last_force;
     bool begun = false;
   };
@@ -41,8 +41,8 @@ class Joints {
   std::vector<Joint> joints_;
 };
 
-// Force of a spring and damper at the end of a step, so that it cannot explode however stiff it is: the implicit Euler
-// step of I q'' = -k (q - q0) - d q' (Baraff and Witkin 1998, equation 6, for one coordinate).
+// Force of a spring and damper at the end of a step, stable for any stiffness: the implicit Euler step of I q'' = -k
+// (q - q0) - d q' (Baraff and Witkin 1998, equation 6, for one coordinate).
 double passive_force(double position, double rate, double stiffness, double reference, double damping, double inertia,
                      double step_s);
 

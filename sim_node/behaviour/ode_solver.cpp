@@ -13,7 +13,7 @@ namespace {
 
 using ode::to_eigen;
 
-// Below this a tangential speed has no direction, m/s.
+// A tangential speed below this has no direction, m/s.
 constexpr double kStill_m_s = 1e-9;
 
 dMass mass_of(const BodyDef& body) {
@@ -27,7 +27,7 @@ dMass mass_of(const BodyDef& body) {
   return mass;
 }
 
-// From the world to the frame of a body.
+// Transform from the world to the frame of a body.
 Eigen::Isometry3d to_body(const BodyMotion& m) {
   return (Eigen::Translation3d(m.position_m) * m.orientation).inverse();
 }
@@ -44,8 +44,8 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
   dQuaternion q;
   ode::set_quaternion(Eigen::Quaterniond(def.pose.linear()).normalized(), q);
   dBodySetQuaternion(id, q);
-  // ODE's step, v += g h then x += v h, lies exactly on the parabola when the speed belongs to the middle of the step
-  // before: half a step of gravity earlier.
+  // ODE's step, v += g h then x += v h, follows the parabola exactly when the speed belongs to the middle of the
+  // previous step: half a step of gravity earlier.
   Eigen::Vector3d v = def.velocity_m_s;
   if (def.gravity) v -= gravity_m_s2 * (step_s / 2);
   dBodySetLinearVel(id, v.x(), v.y(), v.z());
@@ -113,7 +113,7 @@ void Solver::start(const WorldDef& world) {
   shift_m_.resize(world.bodies.size());
   read_bodies();
   engine_->shapes->collide(contacts_);
-  engine_->said_before = ode::message_count();
+  engine_->messages_before = ode::message_count();
 }
 
 Solver::~Solver() = default;
@@ -147,8 +147,8 @@ void Solver::add_torque(int body, const Eigen::Vector3d& t) {
   if (const dBodyID id = engine_->bodies[static_cast<std::size_t>(body)]) dBodyAddTorque(id, t.x(), t.y(), t.z());
 }
 
-// A body that has just arrived overshot the surface within the step. It is put back to where it met it, so that it
-// bounces from there and is not thrown out later. Jointed bodies are left to their joints.
+// A newly arrived body overshot the surface within the step. It is moved back to the surface, so that it bounces from
+// there and gets no later correction impulse. Jointed bodies are left to their joints.
 void Solver::back_off(Manifold& c, bool is_new) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
   for (ManifoldPoint& p : c.used()) p.depth_m -= p.normal.dot(shift_m_[b] - shift_m_[a]);
@@ -173,14 +173,14 @@ void Solver::back_off(Manifold& c, bool is_new) {
 
 void Solver::join(Manifold& c) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
-  if (friction_maps_->concern(c.shape_a, c.shape_b)) friction_maps_->detect_contacts(to_body(motions_[a]), to_body(motions_[b]), c);
+  if (friction_maps_->applies(c.shape_a, c.shape_b)) friction_maps_->detect_contacts(to_body(motions_[a]), to_body(motions_[b]), c);
   const auto sa = static_cast<std::size_t>(c.shape_a), sb = static_cast<std::size_t>(c.shape_b);
   const bool first_is_b = engine_->bodies[a] == nullptr;
   const dBodyID first = engine_->bodies[first_is_b ? b : a], second = first_is_b ? nullptr : engine_->bodies[b];
   dContact contact{};
   dSurfaceParameters& s = contact.surface;
   s.mode = dContactApprox1 | dContactFDir1 | dContactSoftERP | dContactSoftCFM | dContactBounce;
-  // A pair takes the geometric mean of friction and the smaller restitution, as scene.lcm says.
+  // A pair uses the geometric mean of friction and the smaller restitution, as scene.lcm specifies.
   const double friction = std::sqrt(friction_[sa] * friction_[sb]);
   s.bounce = std::min(restitution_[sa], restitution_[sb]);
   s.bounce_vel = settings_.bounce_speed_m_s;
@@ -189,8 +189,8 @@ void Solver::join(Manifold& c) {
   for (ManifoldPoint& p : c.used()) {
     if (engine_->joined.size() >= kMaxPoints) return;
     s.mu = friction * p.friction;
-    // ODE bounds friction by a pyramid; turned so that one of its sides faces the motion to be, it is as wide as the
-    // cone. At 45 degrees it would be 41 % too wide.
+    // ODE bounds friction by a pyramid. With one side aligned to the expected sliding direction it is as wide as the
+    // cone; at 45 degrees it would be 41 % too wide.
     Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + fall_m_s_[b] - motions_[a].velocity_at(p.point_m) - fall_m_s_[a];
     sliding -= sliding.dot(p.normal) * p.normal;
     const Eigen::Vector3d along = sliding.norm() > kStill_m_s ? sliding.normalized() : p.normal.unitOrthogonal();
@@ -210,8 +210,9 @@ void Solver::join(Manifold& c) {
 
 void Solver::step() {
   if (impulse_) return impulse_->step(settings_.step_s);
-  const sync::ScopedPhaseTimer phase(sync::Phase::kSolve);  // which integrates, too
-  // ODE shuffles its rows with a global generator: seeded by the step, so that a run can be repeated from any step on.
+  const sync::ScopedPhaseTimer phase(sync::Phase::kSolve);  // includes integration
+  // ODE shuffles its rows with a global random generator. Seeding it by the step makes a run repeatable from any
+  // step.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
   std::fill(shift_m_.begin(), shift_m_.end(), Eigen::Vector3d::Zero());
@@ -243,7 +244,7 @@ std::span<const BodyMotion> Solver::bodies() const { return impulse_ ? impulse_-
 std::span<const Manifold> Solver::contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
 std::span<const Manifold> Solver::solved() const { return impulse_ ? impulse_->solved() : solved_; }
 const impulse::StepReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
-std::int64_t Solver::complaints() const { return engine_ ? ode::message_count() - engine_->said_before : 0; }
+std::int64_t Solver::solver_failures() const { return engine_ ? ode::message_count() - engine_->messages_before : 0; }
 double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
 
 double Solver::mobility(int body, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {

@@ -1,4 +1,4 @@
-// What of Solver may be set while the world runs, and its state as bytes.
+// Changes of Solver while the world runs, and its archive.
 #include <algorithm>
 #include <cmath>
 
@@ -123,11 +123,11 @@ void Solver::Engine::archive(StateArchive& a, dBodyID id) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
   const Eigen::LLT<Eigen::Matrix3d> cholesky(inertia.leftCols<3>());
   a.require(mass.mass > 0 && cholesky.info() == Eigen::Success, "the state holds a mass that is not positive");
-  a.require(std::abs(q.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
+  a.require(std::abs(q.squaredNorm() - 1) < 1e-6, "the state holds an invalid orientation");
   dBodySetMass(id, &mass);
   dBodySetPosition(id, p.x(), p.y(), p.z());
-  // It normalises, which may change the last bit, and tells the shapes that they have moved; they read the numbers
-  // when they are next asked.
+  // dBodySetQuaternion normalises, which may change the last bit, and marks the geoms as moved. They read the pose at
+  // the next query.
   dQuaternion exact;
   ode::set_quaternion(q, exact);
   dBodySetQuaternion(id, exact);

@@ -1,5 +1,8 @@
 #include "sim_node/behaviour/single_group.h"
 
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+
 #include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
@@ -10,7 +13,7 @@ SingleGroup::SingleGroup(const WorldDef& world, const Settings& settings, Ids& i
       tracker_(surface_traits(world, settings), settings, ids),
       motions_(solver_.bodies().begin(), solver_.bodies().end()) {}
 
-// Tools stand where the caller has put them.
+// The caller sets the poses of tools.
 void SingleGroup::read() {
   for (std::size_t i = 0; i < motions_.size(); ++i)
     if (solver_.bodies()[i].moves()) motions_[i] = solver_.bodies()[i];

@@ -1,6 +1,8 @@
-// All bodies in one world, at the rate of the ticks.
+// Mechanics of all bodies in one world, at the tick rate.
 #pragma once
 
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/behaviour/mechanics.h"
@@ -45,7 +47,7 @@ class SingleGroup : public Mechanics {
   const Solver& solver() const { return solver_; }
 
  private:
-  // What has been set is so at once.
+  // Makes a change effective at once.
   bool placed(bool done) {
     read();
     return done;

@@ -1,5 +1,5 @@
-// The bodies of a world and the laws that move them: one step of a world at a time. By impulses, with contacts that see
-// gaps; or by ODE, which stays behind this header.
+// Steps the bodies of a world with one contact law: by impulses, with contacts that have gaps, or by ODE, which is
+// hidden behind this header.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,17 @@ class Solver {
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
 
-  // Acts during the next step, N, at a point of the world, m. Bodies that never move ignore it.
+  // Acts during the next step, N, at a world point, m. Static bodies ignore it.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
 
   // The same for a torque about the centre of mass, N m.
   void add_torque(int body, const Eigen::Vector3d& torque_N_m);
 
-  // What may be set while the world runs; each holds from the next step on. Values are not checked here. A body that does
-  // not move has no mass and no velocity to set, one on a joint no pose and no mass; false: it has none.
-  bool apply(const impulse::SceneChange& change);  // any of them but pose, velocity and spin
+  // Changes while the world runs, in force from the next step on. Values are not checked here. Return false when the
+  // property does not exist: a static body has no mass and no velocity, a jointed body has no pose and no mass.
+  bool apply(const impulse::SceneChange& change);  // any change but pose, velocity and spin
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
-  bool set_mass(int body, double mass_kg);  // the inertia in proportion
+  bool set_mass(int body, double mass_kg);  // scales the inertia
   bool set_pose(int body, const Eigen::Isometry3d& pose);
   bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s);  // of the centre of mass
   bool set_spin(int body, const Eigen::Vector3d& spin_rad_s);
@@ -48,35 +48,35 @@ class Solver {
   bool set_motor(const std::string& joint, int axis, double effort, double velocity);
   bool set_joint_friction(const std::string& joint, int axis, double friction);
 
-  // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
+  // Archives all state of the next steps. Throws BadState when the data does not fit; the solver is then partly
+  // changed.
   void archive(StateArchive& a);
 
-  // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses.
-  // Deterministic: the same steps from the same world are the same to the bit. Not for two threads at once.
-  // Realtime-safe once its lists have grown.
+  // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses. Deterministic:
+  // equal steps from equal worlds are bit-identical. Not thread-safe. Real-time safe once its lists have grown.
   void step();
 
-  // Of every body of the world, tools and fixed bodies included (they stand still).
+  // Of every body of the world, including tools and static bodies, which do not move.
   std::span<const BodyMotion> bodies() const;
-  // Contacts of the present poses, and those of the step before with the force that each point carried; both ordered.
+  // Contacts of the current poses, and contacts of the previous step with the force of each point; both ordered.
   std::span<const Manifold> contacts() const;
   std::span<const Manifold> solved() const;
-  // Speed that a unit impulse along n at the point gives to that point, 1/kg: of a link with its joints, where impulses
-  // solve.
+  // Speed of the point along n per unit impulse along n at the point, 1/kg. Joints of a link are included where
+  // impulses solve.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
-  // What it took that nothing overlaps; of ODE none.
+  // Statistics of the penetration recovery; null for ODE.
   const impulse::StepReport* report() const;
-  // How often the engine said that it could not solve something, since the start.
-  std::int64_t complaints() const;
-  // How far apart the joints have come at most, m.
+  // Number of solver failures that the engine has reported since the start.
+  std::int64_t solver_failures() const;
+  // Largest joint error, m.
   double largest_joint_gap_m() const;
 
  private:
   struct Engine;
-  struct Inert {  // in body axes; zero for what never moves
+  struct Inert {  // in body axes; zero for static bodies
     Eigen::Vector3d centre_in_body_m;
     Eigen::Matrix3d inverse_inertia;
-    Eigen::Vector3d gravity_m_s;  // speed that gravity adds in a step
+    Eigen::Vector3d gravity_m_s;  // speed that gravity adds per step
   };
   void start(const WorldDef& world);
   void read_bodies();
@@ -84,15 +84,15 @@ class Solver {
   void join(Manifold& contact);
 
   std::unique_ptr<ImpulseSolver> impulse_;  // null when ODE solves
-  std::unique_ptr<Engine> engine_;          // null when impulses do
+  std::unique_ptr<Engine> engine_;          // null when impulses solve
   Settings settings_;
   std::vector<double> friction_, restitution_;  // per shape
   std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
-  std::vector<bool> falls_;                     // per body: gravity acts on it
+  std::vector<bool> falls_;                     // per body: affected by gravity
   std::vector<Inert> inert_;
-  std::vector<Eigen::Vector3d> fall_m_s_;  // what gravity and forces add to each body's speed in the next step
-  std::vector<Eigen::Vector3d> shift_m_;   // by which each body was put back in this step
+  std::vector<Eigen::Vector3d> fall_m_s_;  // speed that gravity and forces add to each body in the next step
+  std::vector<Eigen::Vector3d> shift_m_;   // displacement by which each body was moved back in this step
   std::vector<BodyMotion> motions_;
   std::vector<Manifold> contacts_, solved_;
   std::int64_t steps_ = 0;

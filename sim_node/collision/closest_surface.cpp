@@ -12,14 +12,14 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kTiny = 1e-12;  // m
-// How far a nearer plane's point may lie behind a farther plane before that counts as convex, m.
+// Tolerance of the convexity test: how far the point of a nearer plane may lie behind a farther plane, m.
 constexpr double kBehind = 1e-4;
-// Distances that differ by less are equal, and a point so near to a triangle lies on it, m.
+// Distances that differ by less are equal. A point closer than this to a triangle lies on it, m.
 constexpr double kTie = 1e-9;
 
 Vector3d unit_or(const Vector3d& v, const Vector3d& fallback) { return v.norm() > kTiny ? v.normalized() : fallback; }
 
-// A sphere swept along z: sphere (half = 0) and capsule.
+// A sphere swept along z: a sphere (half = 0) or a capsule.
 SurfacePlane swept_sphere(const Vector3d& p, double radius, double half) {
   const Vector3d axis(0, 0, std::clamp(p.z(), -half, half));
   const Vector3d n = unit_or(p - axis, Vector3d::UnitX());
@@ -96,8 +96,8 @@ void ClosestSurface::query(const Vector3d& place, double reach_m, std::vector<Su
   if (plane.distance_m <= reach_m) out.push_back(plane);
 }
 
-// False when the candidate's point also lies on a nearer triangle: then walking there brings one nearer still, and the
-// place is no nearest one of its surroundings. Needs no neighbourhood of triangles, so that any soup will do.
+// Returns false when the candidate's point also lies on a nearer triangle. The point is then no local minimum of the
+// distance. The test needs no adjacency of triangles, so any polygon soup works.
 bool ClosestSurface::nearest_around(std::size_t candidate) const {
   const NearTriangle& c = near_[candidate];
   for (std::size_t i = 0; i < candidate && near_[i].distance_m < c.distance_m - kTie; ++i)
@@ -111,16 +111,17 @@ void ClosestSurface::mesh_planes(const Vector3d& place, double reach_m, std::vec
   if (!tree_) return;
   tree_->near(place, reach_m, kMaxNear, triangles);
   std::sort(triangles.begin(), triangles.end(), nearer);
-  // At an edge or corner several triangles are equally near; the one that faces the place most tells inside from outside.
+  // At an edge or vertex several triangles are equally near. The one that faces the query point most decides between
+  // inside and outside.
   const auto facing = [&](const NearTriangle& t) { return std::abs((place - t.point).dot(t.face_normal)); };
   for (std::size_t i = 1; i < triangles.size() && triangles[i].distance_m < triangles[0].distance_m + kTie; ++i)
     if (facing(triangles[i]) > facing(triangles[0])) std::swap(triangles[0], triangles[i]);
   for (std::size_t i = 0; i < triangles.size() && static_cast<int>(out.size()) < kMaxPlanes; ++i) {
     const NearTriangle& t = triangles[i];
-    // On the outer side the normal points to the place, which is smooth over edges; on the inner side out of the face.
+    // Outside, the normal points to the query point, so it is smooth across edges. Inside, it is the face normal.
     const bool outside = (place - t.point).dot(t.face_normal) >= 0;
     const Vector3d normal = outside ? unit_or(place - t.point, t.face_normal) : t.face_normal;
-    // Inside, only the face nearest of all is meaningful.
+    // Inside, only the nearest face is meaningful.
     if (!outside && i > 0) continue;
     const bool separate = std::all_of(out.begin(), out.end(), [&](const SurfacePlane& kept) {
       return kept.normal.dot(normal) < same_direction_ && (kept.point - t.point).dot(normal) >= -kBehind &&

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kNames{"ode", "ccd", "ccd_mpr", "fcl", "layers", "gaps"};
 
-std::string_view word(ShapeKind kind) {
+std::string_view shape_word(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::kBox: return "box";
     case ShapeKind::kSphere: return "sphere";
@@ -26,8 +26,8 @@ std::string_view word(ShapeKind kind) {
 
 std::string Detector::refusal(ShapeKind a, ShapeKind b) const {
   if (takes(a, b)) return "";
-  return "sim_node: the detector \"" + std::string(abilities().name) + "\" cannot take a " + std::string(word(a)) +
-         " against a " + std::string(word(b)) + "; choose \"ode\", which takes every pair";
+  return "sim_node: the detector \"" + std::string(abilities().name) + "\" does not support a " + std::string(shape_word(a)) +
+         " against a " + std::string(shape_word(b)) + "; choose \"ode\", which supports every pair";
 }
 
 std::span<const std::string_view> detector_names() { return kNames; }

@@ -1,5 +1,5 @@
-// Finds where shapes touch: one interface for every way of doing it. A detector says what it can provide, and what
-// it cannot do it refuses with a sentence before anything starts.
+// Interface of all collision detectors. A detector states its abilities, and rejects unsupported shapes at start-up
+// with one sentence.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim_node/collision/layers/mesh_contact.h"
 #include "sim_node/model/point_pair.h"
 #include "sim_node/model/world_def.h"
 
@@ -18,15 +19,16 @@ class MeshTrees;
 
 struct DetectorAbilities {
   std::string_view name;
-  // Point pairs of surfaces that are apart, up to the reach of the query; else only where they overlap.
+  // Reports point pairs of separated surfaces up to the reach of the query. Without it, reports overlaps only.
   bool separation = false;
-  // Each point lies on its surface; else both are about a place between, half the gap to either side.
+  // Each point lies on its own surface. Without it, both points lie half the gap to either side of one contact
+  // position.
   bool both_surfaces = false;
-  bool overlap_depth = true;   // negative gaps where shapes overlap; else 0 there, marked as pierced
-  bool least_depth = true;   // depth is the shortest way out; else a way out near it, never shorter
-  bool contact_kind = false;   // PointPair::kind is found out; else always kPoint
-  bool one_pair = false;       // never more than the deepest pair
-  bool deterministic = false;  // the same query gives the same pairs to the bit, whatever was asked before
+  bool overlap_depth = true;   // gaps are negative in overlap; without it they are 0 and marked as pierced
+  bool least_depth = true;   // depth is the minimum translation distance; without it, depth may be larger
+  bool contact_kind = false;   // sets PointPair::kind; without it, kind is always kPoint
+  bool one_pair = false;       // reports at most the deepest pair
+  bool deterministic = false;  // equal queries give bit-identical pairs, independent of earlier queries
 };
 
 class Detector {
@@ -34,14 +36,14 @@ class Detector {
   virtual ~Detector() = default;
   virtual DetectorAbilities abilities() const = 0;
 
-  // Empty when such a pair can be queried; else one sentence with what to choose instead.
+  // Returns an empty string when this pair is supported, else one sentence that names an alternative.
   std::string refusal(ShapeKind a, ShapeKind b) const;
-  // Makes a shape ready and returns its number, from 0 on. Throws std::runtime_error with one sentence when this
-  // detector cannot take it. world: for its meshes and heightfields.
+  // Prepares a shape and returns its index, counted from 0. Throws std::runtime_error with one sentence when this
+  // detector does not support the shape. world: source of meshes and heightfields.
   virtual int add(const ShapeDef& shape, const WorldDef& world) = 0;
-  // Pairs of two shapes whose gap is at most `reach_m`, into `out`, cleared first; poses of the shapes in the
-  // world. A detector without separation() finds what overlaps. Realtime-safe as far as the library behind it is.
-  // Not for two threads at once.
+  // Writes the pairs of two shapes with a gap of at most `reach_m` into `out`, after clearing it. Poses map the
+  // frames of the shapes to the world. A detector without separation() reports overlaps only. Real-time safe as far
+  // as the library behind it is. Not thread-safe.
   virtual void query(int a, const Eigen::Isometry3d& pose_a, int b, const Eigen::Isometry3d& pose_b,
                      double reach_m, std::vector<PointPair>& out) = 0;
 
@@ -49,18 +51,18 @@ class Detector {
   virtual bool takes(ShapeKind a, ShapeKind b) const = 0;
 };
 
-// ode: dCollide of ODE. ccd, ccd_mpr: libccd, convex shapes, by GJK and EPA or by MPR. fcl: where it was built in.
-// layers: ours, for meshes, boxes and heightfields as triangles. gaps: ours, for every pair; meshes by the layers.
-// auto: gaps.
+// ode: dCollide of ODE. ccd, ccd_mpr: libccd for convex shapes, by GJK and EPA or by MPR. fcl: FCL, where it was
+// built in. layers: own detector for meshes, boxes and heightfields as triangles. gaps: own detector for every pair;
+// it uses the layers for meshes. auto: gaps.
 std::span<const std::string_view> detector_names();
-// Throws std::runtime_error with one sentence when the name is unknown or that detector was not built in. trees: of
-// the world whose shapes will be added, where others use them too.
+// Throws std::runtime_error with one sentence when the name is unknown or the detector was not built in. trees:
+// shared trees of the world whose shapes will be added; null: the detector makes its own.
 std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers = {},
                                         std::shared_ptr<MeshTrees> trees = nullptr);
 
 std::unique_ptr<Detector> make_ode_detector();
 std::unique_ptr<Detector> make_ccd_detector(bool mpr);
-std::unique_ptr<Detector> make_fcl_detector();  // null: not built in
+std::unique_ptr<Detector> make_fcl_detector();  // null when FCL was not built in
 std::unique_ptr<Detector> make_layers_detector(const MeshContactOptions& options,
                                                std::shared_ptr<MeshTrees> trees = nullptr);
 std::unique_ptr<Detector> make_gaps_detector(const MeshContactOptions& options,

@@ -18,12 +18,12 @@ void nearest_first_of_all(Detector& detector, int a, const Isometry3d& pose_a, i
 }
 
 void prepare_nearest_first(Detector& detector, int a, int b) {
-  if (auto* quicker = dynamic_cast<FindsNearestFirst*>(&detector)) quicker->prepare_nearest_first(a, b);
+  if (auto* quicker = dynamic_cast<NearestFirstDetector*>(&detector)) quicker->prepare_nearest_first(a, b);
 }
 
 void nearest_first(Detector& detector, int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b,
                    double reach_m, NearestFirst& to, std::vector<PointPair>& room) {
-  auto* quicker = dynamic_cast<FindsNearestFirst*>(&detector);
+  auto* quicker = dynamic_cast<NearestFirstDetector*>(&detector);
   if (quicker && quicker->nearest_first(a, pose_a, b, pose_b, reach_m, to, room)) return;
   nearest_first_of_all(detector, a, pose_a, b, pose_b, reach_m, to, room);
 }

@@ -1,5 +1,5 @@
-// Contacts one at a time, nearest first: for who needs the nearest of each place and direction only, as a tool
-// does, which is far less than all of them.
+// Contacts in order of increasing gap. For users that need only the nearest contact of each place and direction, such
+// as a tool, which is much cheaper than all contacts.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,34 +11,34 @@ namespace tactus::sim {
 
 class Detector;
 
-// Who takes them.
+// Receives the contacts.
 struct NearestFirst {
   virtual ~NearestFirst() = default;
-  // Whether the pair tells nothing new; asked before what costs most is found out.
+  // Whether the pair is redundant. Called before the costly part of the narrow phase.
   virtual bool known(const PointPair& pair) const = 0;
-  // A pair that is not known; false: no more are wanted.
+  // Receives a pair that is not redundant. Returns false to stop the search.
   virtual bool take(const PointPair& pair) = 0;
 };
 
-// A detector that has a quicker way to these than to find all.
-struct FindsNearestFirst {
-  virtual ~FindsNearestFirst() = default;
-  // Makes two shapes ready for that; else there is none.
+// A detector with a faster search than finding all pairs.
+struct NearestFirstDetector {
+  virtual ~NearestFirstDetector() = default;
+  // Prepares two shapes for the fast search.
   virtual void prepare_nearest_first(int a, int b) = 0;
-  // False: it has none for this pair of shapes, and has told nothing.
+  // Returns false, without any callback, when there is no fast search for this pair of shapes.
   virtual bool nearest_first(int a, const Eigen::Isometry3d& pose_a, int b, const Eigen::Isometry3d& pose_b,
                              double reach_m, NearestFirst& to, std::vector<PointPair>& room) = 0;
 };
 
-// Before the first search for two shapes, so that it may be quick: makes ready what the detector needs for that.
+// Prepares the fast search of two shapes, if the detector has one. Call it before the first search.
 void prepare_nearest_first(Detector& detector, int a, int b);
-// The pairs of detector.query() to `to`, nearest first, as long as it wants more; by the quicker way when the
-// detector has one, which gives the same to within rounding. `room` is used. Realtime-safe as far as the detector
-// is, where it has a quicker way.
+// Passes the pairs of detector.query() to `to`, nearest first, until it returns false. Uses the detector's fast
+// search where there is one; its results are equal to within rounding. `room` is scratch memory. Real-time safe as
+// far as the detector is, where it has a fast search.
 void nearest_first(Detector& detector, int a, const Eigen::Isometry3d& pose_a, int b,
                    const Eigen::Isometry3d& pose_b, double reach_m, NearestFirst& to,
                    std::vector<PointPair>& room);
-// Without a quicker way.
+// The same without the fast search.
 void nearest_first_of_all(Detector& detector, int a, const Eigen::Isometry3d& pose_a, int b,
                           const Eigen::Isometry3d& pose_b, double reach_m, NearestFirst& to,
                           std::vector<PointPair>& room);

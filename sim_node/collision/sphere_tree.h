@@ -1,4 +1,5 @@
-// Spheres that never move, for those near a place: with a thousand as fast as with ten.
+// A bounding volume hierarchy over static spheres, for those near a point. Query time grows slowly with the number of
+// spheres.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,8 +17,8 @@ class SphereTree {
   SphereTree() = default;
   explicit SphereTree(std::vector<Sphere> spheres);
 
-  // Appends the id of every sphere that is within reach of the place, and of some that are a little further.
-  // Realtime-safe once `out` has grown.
+  // Appends the id of every sphere within reach of the point, and of some that are slightly further. Real-time safe
+  // once `out` has grown.
   void near(const Eigen::Vector3d& place, double reach_m, std::vector<int>& out) const;
 
  private:
@@ -30,7 +31,7 @@ class SphereTree {
 
   std::vector<Sphere> spheres_;
   std::vector<Node> nodes_;
-  std::vector<int> everywhere_;  // without a bound
+  std::vector<int> everywhere_;  // ids of unbounded spheres
 };
 
 }  // namespace tactus::sim

@@ -32,7 +32,7 @@ TriangleTree::TriangleTree(const std::vector<Vector3d>& vertices, const std::vec
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     Triangle t{vertex(i), vertex(i + 1), vertex(i + 2), {}, static_cast<int>(i / 3)};
     const Vector3d n = (t.b - t.a).cross(t.c - t.a);
-    if (n.norm() < 1e-14) continue;  // m^2: an area below that of a square of 0.1 um
+    if (n.norm() < 1e-14) continue;  // m^2: less than the area of a square of 0.1 um
     t.normal = n.normalized();
     triangles_.push_back(t);
   }
@@ -68,21 +68,21 @@ int TriangleTree::build(int first, int count) {
 
 bool TriangleTree::on_triangle(const Vector3d& point, int triangle, double tolerance_m) const {
   const Triangle& t = triangles_[static_cast<std::size_t>(triangle)];
-  // Most are far off: their plane or one of their edges tells at once.
+  // Fast rejection by the distance to the plane.
   if (std::abs((point - t.a).dot(t.normal)) > tolerance_m) return false;
   return (closest_on_triangle(point, t.a, t.b, t.c) - point).squaredNorm() <= tolerance_m * tolerance_m;
 }
 
-void TriangleTree::near(const Vector3d& place, double reach_m, std::size_t most, std::vector<NearTriangle>& out) const {
+void TriangleTree::near(const Vector3d& place, double reach_m, std::size_t max_count, std::vector<NearTriangle>& out) const {
   out.clear();
   if (nodes_.empty()) return;
-  // Keeps the nearest, and looks no further than the last of them from then on.
+  // Keeps the nearest triangles and reduces the reach to the last of them.
   const auto cut = [&] {
-    const auto last = out.begin() + static_cast<std::ptrdiff_t>(most - 1);
+    const auto last = out.begin() + static_cast<std::ptrdiff_t>(max_count - 1);
     std::nth_element(out.begin(), last, out.end(),
                      [](const NearTriangle& a, const NearTriangle& b) { return a.distance_m < b.distance_m; });
     reach_m = last->distance_m;
-    out.resize(most);
+    out.resize(max_count);
   };
   const auto far = [&](int index) { return nodes_[static_cast<std::size_t>(index)].box.squaredExteriorDistance(place); };
   struct Open {
@@ -109,9 +109,9 @@ void TriangleTree::near(const Vector3d& place, double reach_m, std::size_t most,
       const double distance = (place - point).norm();
       if (distance <= reach_m) out.push_back({point, t.normal, distance, i});
     }
-    if (out.size() >= 2 * most) cut();
+    if (out.size() >= 2 * max_count) cut();
   }
-  if (out.size() > most) cut();
+  if (out.size() > max_count) cut();
 }
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-// A tree of boxes over the triangles of a mesh, for the triangles near a place.
+// Tree of axis-aligned boxes over the triangles of a mesh, for the triangles near a point.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,7 +6,8 @@
 
 namespace tactus::sim {
 
-// Point of the triangle nearest to p (Ericson 2005, Real-Time Collision Detection, section 5.1.5: by Voronoi regions).
+// Closest point on the triangle to p (Ericson 2005, Real-Time Collision Detection, section 5.1.5: by Voronoi
+// regions).
 Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& c);
 
@@ -20,29 +21,29 @@ struct NearTriangle {
 class TriangleTree {
  public:
   TriangleTree() = default;
-  // Degenerate triangles are left out.
+  // Ignores degenerate triangles.
   TriangleTree(const std::vector<Eigen::Vector3d>& vertices, const std::vector<int>& indices);
 
-  // The triangles within reach, or the `most` nearest of them, in no order, into `out` (cleared first).
-  void near(const Eigen::Vector3d& place, double reach_m, std::size_t most, std::vector<NearTriangle>& out) const;
-  // Whether that point lies on the triangle, within a tolerance.
+  // Writes the triangles within reach, or the `max_count` nearest of them, unordered, into `out` after clearing it.
+  void near(const Eigen::Vector3d& place, double reach_m, std::size_t max_count, std::vector<NearTriangle>& out) const;
+  // Whether the point lies on the triangle, within a tolerance.
   bool on_triangle(const Eigen::Vector3d& point, int triangle, double tolerance_m) const;
-  // Calls visit(a, b, c, number in the mesh) for each triangle whose box meets that box.
+  // Calls visit(a, b, c, index in the mesh) for each triangle whose box overlaps `box`.
   template <class Visit>
   void each_within(const Eigen::AlignedBox3d& box, Visit&& visit) const;
-  // Calls visit(corner, number of a triangle of it in the mesh) for the corners with n corner <= limit: each as often as
-  // it has triangles.
+  // Calls visit(corner, mesh index of its triangle) for the corners with n . corner <= limit. A corner is visited
+  // once for each of its triangles.
   template <class Visit>
   void each_corner_below(const Eigen::Vector3d& n, double limit_m, Visit&& visit) const;
   bool empty() const { return triangles_.empty(); }
-  // Of a triangle in the mesh, from NearTriangle::triangle.
+  // Mesh index of a triangle, from NearTriangle::triangle.
   int number(int triangle) const { return triangles_[static_cast<std::size_t>(triangle)].number; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
  private:
   struct Triangle {
     Eigen::Vector3d a, b, c, normal;
-    int number = -1;  // in the mesh
+    int number = -1;  // index in the mesh
   };
   struct Node {
     Eigen::AlignedBox3d box;
@@ -51,7 +52,7 @@ class TriangleTree {
   };
   static constexpr int kLeaf = 4;
   int build(int first, int count);
-  // Of the leaves whose boxes `wanted` says yes to, and so to those above them.
+  // Visits the leaves whose boxes, and whose parents' boxes, satisfy `wanted`.
   template <class Wanted, class Visit>
   void each(Wanted&& wanted, Visit&& visit) const;
 

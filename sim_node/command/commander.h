@@ -1,5 +1,5 @@
-// Carries out what is asked of the simulation while it runs, each command once, and says what became of it. Pure
-// but for the files of kept states.
+// Executes commands on the running simulation, each command once, and builds the replies. Pure except for the files
+// of saved states.
 #pragma once
 
 #include <cstdint>
@@ -18,45 +18,45 @@ namespace tactus::sim {
 
 class Commander {
  public:
-  // Answers of so many commands are remembered, for their repetitions.
-  static constexpr std::size_t kRemembered = 256;
+  // Number of replies kept for repeated commands.
+  static constexpr std::size_t kMaxPastReplies = 256;
 
-  // folder: of the files of kept states. All three outlive this.
+  // folder: for the files of saved states. All three arguments must outlive this object.
   Commander(Simulation& simulation, const WorldDef& world, std::filesystem::path folder)
       : simulation_(simulation), world_(world), store_(std::move(folder)) {}
 
-  // A command of this run. A repetition is answered again and has no effect.
+  // Executes a command of this run. A repeated command is replied to again and has no effect.
   void take(const sim_command_t& command);
-  // What is to be answered now; files that have been read or written are seen to here. Once a tick.
+  // The replies to send now; also completes finished file operations. Call once per tick.
   std::vector<sim_reply_t>& answers();
 
-  // Whether this tick is a step of the world; counts those that were asked for. Else it stands still.
+  // Whether this tick is a step of the world; counts down the requested single steps. False: the world is paused.
   bool step_due();
   bool paused() const { return paused_; }
-  // True once after the world was reset or put back: it lives anew.
-  bool take_anew() { return std::exchange(anew_, false); }
+  // True once after the world was reset or restored: a new incarnation must begin.
+  bool take_anew() { return std::exchange(restarted_, false); }
 
  private:
-  struct Waiting {  // for a file
+  struct PendingFile {  // a command that waits for a file
     std::int64_t id = 0;
     bool reads = false;
     std::string name, text;
   };
-  // Why not; empty: done, and text says what.
-  std::string carry_out(const sim_command_t& c, std::string& text);
+  // Returns an error sentence; empty: success, and `text` describes the result.
+  std::string execute(const sim_command_t& c, std::string& text);
   std::string snapshot(const sim_command_t& c, std::string& text);
   std::string restore(const sim_command_t& c, std::string& text);
-  std::string put_back(std::span<const std::uint8_t> bytes, const std::string& name, std::string& text);
-  void answer(std::int64_t id, const std::string& refused, const std::string& text);
+  std::string restore_bytes(std::span<const std::uint8_t> bytes, const std::string& name, std::string& text);
+  void reply(std::int64_t id, const std::string& error, const std::string& text);
 
   Simulation& simulation_;
   const WorldDef& world_;
   StateStore store_;
-  bool paused_ = false, anew_ = false;
+  bool paused_ = false, restarted_ = false;
   std::int64_t steps_left_ = 0;
-  std::deque<sim_reply_t> known_;
-  std::optional<Waiting> waiting_;
-  std::vector<sim_reply_t> answers_, out_;
+  std::deque<sim_reply_t> past_replies_;
+  std::optional<PendingFile> pending_;
+  std::vector<sim_reply_t> replies_, out_;
 };
 
 }  // namespace tactus::sim

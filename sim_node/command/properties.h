@@ -1,4 +1,4 @@
-// What of a world may be set while it runs: named, counted, in range. Pure.
+// Properties of a world that can be set at run time, with their names, counts and ranges. Pure.
 #pragma once
 
 #include <span>
@@ -15,22 +15,22 @@ struct PropertyRow {
   Owner owner;
   const char* name;
   const char* unit;
-  std::size_t count;  // numbers
-  double low, high;   // of each
+  std::size_t count;  // number of values
+  double low, high;   // of each value
   const char* meaning;
 };
 
 std::span<const PropertyRow> properties();
 
-// A body by its name, or by that of its model when it has one link only; -1: there is none.
+// Index of a body by its name, or by the name of its model when the model has one link; -1: not found.
 int find_body(const WorldDef& world, const std::string& name);
 
-// Sets it. Returns why not, in one sentence; then nothing has changed. Empty: it is set.
-// of: a body, a joint, or "world".
+// Sets a property. Returns an error sentence, and then changes nothing; empty: success. of: a body, a joint, or
+// "world".
 std::string set_property(Simulation& simulation, const WorldDef& world, const std::string& of,
                          const std::string& property, std::span<const double> values);
 
-// A push at the centre of mass of a body, likewise.
+// Pushes a body at its centre of mass; returns as set_property().
 std::string push_body(Simulation& simulation, const WorldDef& world, const std::string& body,
                       const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m,
                       sync::Nanoseconds duration);

@@ -9,12 +9,12 @@ namespace tactus::sim {
 namespace {
 
 StateStore::Done write(const std::filesystem::path& file, const StateStore::Bytes& bytes) {
-  const std::filesystem::path fresh = file.string() + ".new";
-  std::ofstream out(fresh, std::ios::binary);
+  const std::filesystem::path temporary = file.string() + ".new";
+  std::ofstream out(temporary, std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   out.close();
   std::error_code error;
-  if (out) std::filesystem::rename(fresh, file, error);
+  if (out) std::filesystem::rename(temporary, file, error);
   if (!out || error) return {{}, "the file " + file.string() + " cannot be written"};
   return {};
 }
@@ -23,8 +23,8 @@ StateStore::Done read(const std::filesystem::path& file) {
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   std::ifstream in(file, std::ios::binary);
-  if (error || !in) return {{}, "nothing is kept under this name, and there is no file " + file.string()};
-  if (size > StateStore::kLargest) return {{}, "the file " + file.string() + " is too large to be a state"};
+  if (error || !in) return {{}, "no state is stored under this name, and there is no file " + file.string()};
+  if (size > StateStore::kMaxBytes) return {{}, "the file " + file.string() + " is too large to be a state"};
   StateStore::Done done;
   done.bytes.resize(size);
   in.read(reinterpret_cast<char*>(done.bytes.data()), static_cast<std::streamsize>(size));
@@ -34,25 +34,25 @@ StateStore::Done read(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool StateStore::good_name(const std::string& name) {
+bool StateStore::valid_name(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
 }
 
-bool StateStore::keep(const std::string& name, Bytes bytes) {
-  if (!kept_.contains(name) && kept_.size() >= kMax) return false;
-  kept_[name] = std::make_shared<const Bytes>(std::move(bytes));
+bool StateStore::add(const std::string& name, Bytes bytes) {
+  if (!states_.contains(name) && states_.size() >= kMax) return false;
+  states_[name] = std::make_shared<const Bytes>(std::move(bytes));
   return true;
 }
 
 const StateStore::Bytes* StateStore::find(const std::string& name) const {
-  const auto it = kept_.find(name);
-  return it == kept_.end() ? nullptr : it->second.get();
+  const auto it = states_.find(name);
+  return it == states_.end() ? nullptr : it->second.get();
 }
 
 void StateStore::begin_write(const std::string& name) {
-  work_.emplace([file = file_of(name), bytes = kept_.at(name)] {
+  work_.emplace([file = file_of(name), bytes = states_.at(name)] {
     sync::leave_realtime();
     return std::make_unique<Done>(write(file, *bytes));
   });

@@ -30,7 +30,7 @@ ManifoldPoint point_of(const PointPair& p) {
   return m;
 }
 
-// Libraries give points without a direction where surfaces just touch.
+// Libraries report points without a normal where surfaces just touch.
 bool is_sound(const PointPair& p) {
   return p.on_a_m.allFinite() && p.on_b_m.allFinite() && std::isfinite(p.gap_m) &&
          std::abs(p.normal.squaredNorm() - 1) < 1e-6;
@@ -49,7 +49,7 @@ ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, st
   const DetectorAbilities can = chosen->abilities();
   if (!can.separation)
     throw std::runtime_error("sim_node: the detector \"" + settings.detector +
-                             "\" sees no gaps, which contacts that are found ahead need; choose auto, gaps, layers, ccd or fcl");
+                             "\" reports no gaps, which the contact search needs; choose auto, gaps, layers, ccd or fcl");
   if (can.name != "gaps") chosen_ = std::move(chosen);
   only_triangles_ = can.name == "layers";
   chosen_takes_.resize(kKinds * kKinds, false);
@@ -66,9 +66,9 @@ ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, st
   }
 }
 
-void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
+void ContactFinder::detect_pair(const NearPair& pair, std::vector<Manifold>& out) {
   const std::size_t a = index(pair.shape_a), b = index(pair.shape_b);
-  const auto ask = [&](Detector& detector, const std::vector<int>& numbers) {
+  const auto query = [&](Detector& detector, const std::vector<int>& numbers) {
     detector.query(numbers[a], near_.pose(pair.shape_a), numbers[b], near_.pose(pair.shape_b), pair.reach_m,
                    pairs_);
   };
@@ -77,11 +77,11 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
   bool found = chosen_ && chosen_number_[a] >= 0 && chosen_number_[b] >= 0 &&
                chosen_takes_[both(kinds_[a], kinds_[b])] && (meshed || !only_triangles_);
   if (found) {
-    ask(*chosen_, chosen_number_);
+    query(*chosen_, chosen_number_);
     std::erase_if(pairs_, [](const PointPair& p) { return !is_sound(p); });
     found = std::none_of(pairs_.begin(), pairs_.end(), [](const PointPair& p) { return p.pierced; });
   }
-  if (!found) ask(*gaps_, number_);
+  if (!found) query(*gaps_, number_);
   if (pairs_.empty()) return;
   points_.clear();
   for (const PointPair& p : pairs_) points_.push_back(point_of(p));
@@ -89,8 +89,8 @@ void ContactFinder::look(const NearPair& pair, std::vector<Manifold>& out) {
   m.shape_a = pair.shape_a, m.shape_b = pair.shape_b;
   m.body_a = body_of_[a], m.body_b = body_of_[b];
   gaps::choose_points(points_, m);
-  if (friction_.concern(m.shape_a, m.shape_b))
-    friction_.look(friction_.to_body(m.shape_a, near_.pose(m.shape_a)),
+  if (friction_.applies(m.shape_a, m.shape_b))
+    friction_.apply(friction_.to_body(m.shape_a, near_.pose(m.shape_a)),
                    friction_.to_body(m.shape_b, near_.pose(m.shape_b)), m);
 }
 
@@ -98,7 +98,7 @@ void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int
                          std::vector<Manifold>& out) {
   const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
   out.clear();
-  for (const NearPair& pair : near_.find(bodies, active, h_s)) look(pair, out);
+  for (const NearPair& pair : near_.find(bodies, active, h_s)) detect_pair(pair, out);
 }
 
 }  // namespace tactus::sim

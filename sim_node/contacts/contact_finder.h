@@ -1,5 +1,5 @@
-// The contacts of the bodies that move, with their gaps: what may touch within a step, found before it does. Needs
-// no engine.
+// Contacts of the moving bodies with their gaps: pairs that may touch within a step, detected before they do.
+// Independent of the physics engine.
 #pragma once
 
 #include <memory>
@@ -16,37 +16,37 @@
 
 namespace tactus::sim {
 
-// Every pair is looked at by the detector that the settings choose, where that takes the pair of kinds, and by `gaps`
-// otherwise, and where the surfaces pass through each other, which the chosen one cannot resolve.
+// Uses the detector that the settings select for the pairs of kinds that it supports. Uses `gaps` for all other
+// pairs, and where surfaces intersect, which the selected detector cannot resolve.
 class ContactFinder {
  public:
-  // Throws std::runtime_error with one sentence when the chosen detector sees no gaps. trees:
-  // of this world, where others use them too.
+  // Throws std::runtime_error with one sentence when the selected detector reports no gaps. trees: shared trees of
+  // this world; null: the finder makes its own.
   ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees = nullptr);
 
-  // Contacts of the bodies `active` (ascending numbers of bodies that move) among each other and with all that
-  // never moves, into `out`, cleared first. Tools are ghosts and have none; bodies that could move and are not
-  // active are not there. Each pair is sought out to the gap that the two may close within h, from their
-  // velocities, spins, sizes and gravity, and the contact tolerance. bodies: of all; of those that never move
-  // nothing is read. Ordered by (shape_a, shape_b); points reduced to four; depth_m is negative for a gap. Costs
-  // what the active bodies do, not all. Deterministic. Realtime-safe once its lists have grown. Not for two
-  // threads at once, but two finders may be used by two threads.
+  // Writes the contacts of the bodies `active` (ascending indices of moving bodies) among each other and with all
+  // static bodies into `out`, after clearing it. Tools are ghosts without contacts. Inactive moving bodies are
+  // ignored. Each pair is searched up to the gap that may close within h_s, from velocities, rotation, sizes and
+  // gravity, plus the contact tolerance. bodies: of the whole world; entries of static bodies are not read. Ordered
+  // by (shape_a, shape_b). Points are reduced to four. depth_m is negative for a gap. The cost depends on the number
+  // of active bodies only. Deterministic. Real-time safe once its lists have grown. One finder is not thread-safe;
+  // two threads may use two finders.
   void find(std::span<const BodyMotion> bodies, std::span<const int> active, double h_s,
             std::vector<Manifold>& out);
-  // How many shapes the world has.
+  // Number of shapes of the world.
   std::size_t shapes() const { return body_of_.size(); }
 
  private:
-  void look(const NearPair& pair, std::vector<Manifold>& out);
+  void detect_pair(const NearPair& pair, std::vector<Manifold>& out);
 
   NearPairs near_;
   FrictionMaps friction_;
   std::vector<int> body_of_;                 // per shape
   std::vector<ShapeKind> kinds_;             // per shape
-  std::unique_ptr<Detector> gaps_, chosen_;  // chosen_: null when it is gaps
-  std::vector<int> number_, chosen_number_;  // per shape; -1: none
+  std::unique_ptr<Detector> gaps_, chosen_;  // chosen_: null when it is `gaps`
+  std::vector<int> number_, chosen_number_;  // per shape, index in the detector; -1: none
   std::vector<bool> chosen_takes_;           // by both kinds
-  bool only_triangles_ = false;              // the chosen one is asked about meshes only
+  bool only_triangles_ = false;              // the selected detector is used for meshes only
   std::vector<PointPair> pairs_;
   std::vector<ManifoldPoint> points_;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
 
 namespace tactus::sim {
 
@@ -11,12 +12,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A patch narrower than this part of its length is a line.
+// A patch narrower than this share of its length is a line.
 constexpr double kLine = 0.01;
 constexpr double kImmovable_kg = 1e9;
 constexpr double kPoissonDefault = 0.3;
 
-// Distance of the point furthest from the line through the two points furthest apart, and their distance.
+// Returns the distance between the two points furthest apart, and the largest distance of a point from the line
+// through them.
 std::pair<double, double> extent(const Manifold& c) {
   double length = 0;
   Vector3d from = Vector3d::Zero(), along = Vector3d::UnitX();
@@ -32,7 +34,7 @@ std::pair<double, double> extent(const Manifold& c) {
   return {length, width};
 }
 
-// Of at most four points in the plane across n: the largest of the three quadrilaterals, or their triangle.
+// Area of at most four points in the plane normal to n: the largest of the three quadrilaterals, or the triangle.
 double hull_area(const Manifold& c, const Vector3d& n) {
   const auto p = [&](int i) { return c.points[static_cast<std::size_t>(i)].point_m; };
   const auto triangle = [&](int i, int j, int k) { return 0.5 * std::abs((p(j) - p(i)).cross(p(k) - p(i)).dot(n)); };
@@ -98,7 +100,7 @@ std::vector<SurfaceTraits> surface_traits(const WorldDef& world, const Settings&
     if (shape.material >= 0) {
       const material_def_t& m = world.materials[static_cast<std::size_t>(shape.material)];
       s.compliance_1_Pa = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
-      // The dynamic coefficient as a share of the static one; the shape may override the material's.
+      // The dynamic coefficient is a share of the static one. The shape may override the material's.
       if (m.friction_static > 0) s.friction_dynamic = shape.friction * std::min(1.0, m.friction_dynamic / m.friction_static);
     }
     if (shape.kind != ShapeKind::kMesh || shape.mesh < 0) continue;
@@ -147,7 +149,7 @@ double hertz_point_area(double force_N, double curvature_1_m, double compliance_
 
 double hertz_line_area(double force_N, double curvature_1_m, double compliance_1_Pa, double length_m) {
   if (!(force_N > 0) || !(curvature_1_m > 0) || !(length_m > 0)) return 0;
-  // The curvature along a line is all across it: twice the mean of the two.
+  // The curvature at a line is all across it: twice the mean of the two principal curvatures.
   const double radius = 0.5 / curvature_1_m;
   const double half = std::min(radius, std::sqrt(4 * force_N * radius * compliance_1_Pa / (std::numbers::pi * length_m)));
   return 2 * half * length_m;

@@ -1,4 +1,4 @@
-// What a contact is like, from the geometry of its two surfaces and their materials. Pure.
+// Properties of a contact from the geometry of its two surfaces and their materials. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace tactus::sim {
 
-// By the points that are left of it: one, two or all on a line, or a patch.
+// By the points of the manifold: one is a point; two, or all on a line, are an edge; others are a surface.
 ContactKind kind_of(const Manifold& contact);
 
-// What a surface brings to any contact.
+// Properties of one surface for its contacts.
 struct SurfaceTraits {
   int body = -1;
   int material = -1;
@@ -26,30 +26,30 @@ struct SurfaceTraits {
   Eigen::Vector3d size_m{1, 1, 1};
   Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
   double edge_radius_m = 0.0005;
-  std::shared_ptr<const std::vector<double>> triangle_curvature_1_m;  // of a mesh, one for all its shapes
+  std::shared_ptr<const std::vector<double>> triangle_curvature_1_m;  // of a mesh, shared by all its shapes
   double mean_curvature_1_m = 0;               // of a mesh, over its triangles
 };
 
 std::vector<SurfaceTraits> surface_traits(const WorldDef& world, const Settings& settings);
 
-// Mean curvature, 1/m, >= 0, at a place in the body frame. Edges and corners are rounded by edge_radius_m. A patch is
-// flat there. triangle: of a mesh, -1: not known.
+// Mean curvature, 1/m, >= 0, at a position in the body frame. Edges and corners are rounded by edge_radius_m. A patch
+// has zero curvature. triangle: of a mesh; -1: unknown.
 double curvature(const SurfaceTraits& surface, ContactKind kind, const Eigen::Vector3d& in_body, int triangle);
 
-// Mean over the edges of each triangle of the turn of the vertex normal per length (after Rusinkiewicz 2004).
+// For each triangle, the mean over its edges of the change of the vertex normal per length (after Rusinkiewicz 2004).
 std::vector<double> triangle_curvatures(const TriangleMesh& mesh);
 
-// Mass that a collision feels along n at the point, kg: 1 / (sum of both mobilities). Joints are left out, which can only
-// make a body seem lighter. 1e9 when neither moves.
+// Effective mass of a collision along n at the point, kg: 1 / (sum of both mobilities). Joints are ignored, so a
+// jointed body may seem lighter than it is. 1e9 when neither body moves.
 double effective_mass(const BodyMotion& a, const BodyMotion& b, const Eigen::Vector3d& point, const Eigen::Vector3d& n);
 
-// Area that bodies pressed together share, m^2. A point: circle of Hertz, radius (3 F R / 4 E*)^(1/3) (Johnson 1985,
-// Contact Mechanics, equation 4.22). An edge of that length: strip of Hertz, half width (4 F R / pi E* L)^(1/2)
-// (equation 4.43). R is the inverse of the sum of curvatures; no contact is wider than R.
+// Contact area of pressed bodies, m^2. Point: circle of Hertz, radius (3 F R / 4 E*)^(1/3) (Johnson 1985, Contact
+// Mechanics, equation 4.22). Edge of length L: strip of Hertz, half width (4 F R / pi E* L)^(1/2) (equation 4.43). R
+// is the inverse of the sum of curvatures. The contact is at most as wide as R.
 double hertz_point_area(double force_N, double curvature_1_m, double compliance_1_Pa);
 double hertz_line_area(double force_N, double curvature_1_m, double compliance_1_Pa, double length_m);
 
-// The same for a manifold; a patch has the area of the hull of its points in the tangent plane.
+// The same for a manifold. A patch has the area of the convex hull of its points in the tangent plane.
 double contact_area(const Manifold& contact, ContactKind kind, double force_N, double curvature_1_m,
                     double compliance_1_Pa);
 

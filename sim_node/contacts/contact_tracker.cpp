@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/contact_point_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/model/behaviour_model.h"
@@ -12,14 +13,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Another hit needs the surfaces to have closed slower than this part of the threshold in between.
+// Re-arms the hit when the closing speed falls below this share of the threshold.
 constexpr double kRearm = 0.5;
-// The rolling velocity is a difference of two places: smoothed over so much time, s; a contact point that jumps further
-// than this beyond the motion of the surfaces did not roll, m.
+// Time constant of the low-pass filter of the rolling velocity, which is a difference of two positions, s. A contact
+// point that jumps further than kJump_m, relative to the motion of the surfaces, did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces nearer than this touch: design: twice what the solver leaves between surfaces that rest (impulse::Law), so
-// that its residual is no gap. What touched parts when it is further away than this.
+// Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between resting
+// surfaces (impulse::Law). Touching surfaces separate when the gap exceeds kParted_m.
 constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
@@ -34,7 +35,7 @@ double deepest(const Manifold& c) {
   return depth;
 }
 
-// Only the points that `keep`; all of them when it keeps none.
+// Keeps the points that satisfy `keep`, or all points when none does.
 template <class Keep>
 void take_points(const Manifold& c, Keep keep, Manifold& out) {
   out = c;
@@ -51,9 +52,9 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), meets_at_m_(meeting_distance_m(settings)), ids_(ids) {}
+    : surfaces_(std::move(surfaces)), settings_(settings), contact_distance_m_(meeting_distance_m(settings)), ids_(ids) {}
 
-// The point whose surfaces close fastest.
+// The point with the highest closing speed.
 ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<const BodyMotion> bodies) const {
   const BodyMotion &a = at(bodies, c.body_a), &b = at(bodies, c.body_b);
   Closing fastest;
@@ -64,7 +65,7 @@ ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<con
   return fastest;
 }
 
-ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, std::span<const BodyMotion> bodies) const {
+ContactTracker::Approach ContactTracker::approach(const Manifold& c, std::span<const BodyMotion> bodies) const {
   const auto [point, speed_m_s] = closing(c, bodies);
   return {.speed_m_s = speed_m_s,
           .mass_kg = effective_mass(at(bodies, c.body_a), at(bodies, c.body_b), point->point_m, point->normal),
@@ -79,7 +80,7 @@ double ContactTracker::curvature_of(const Manifold& c, const ManifoldPoint& p, s
          curvature(surfaces_[static_cast<std::size_t>(c.shape_b)], kind, at(bodies, c.body_b).to_body(p.point_m), p.triangle_b);
 }
 
-ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, const Impact& impact) const {
+ContactTracker::Approach ContactTracker::approach(const Manifold& c, const Impact& impact) const {
   const ContactKind kind = kind_of(c);
   const auto curved = [&](int shape, const Vector3d& in_body, int triangle) {
     return curvature(surfaces_[static_cast<std::size_t>(shape)], kind, in_body, triangle);
@@ -91,7 +92,7 @@ ContactTracker::Meeting ContactTracker::meeting(const Manifold& c, const Impact&
           .normal = impact.normal};
 }
 
-void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& status) {
+void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Approach& status) {
   const Manifold& m = c.manifold;
   when = std::max(when, c.last_event);
   c.last_event = when;
@@ -112,14 +113,14 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.curvature_1_m = static_cast<float>(status.curvature_1_m);
 }
 
-void ContactTracker::tell(LiveContact& c, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+void ContactTracker::report(LiveContact& c, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
                           std::vector<contact_event_t>& events) {
   events_ = &events;
-  emit(c, kind, when, meeting(c.manifold, bodies));
+  emit(c, kind, when, approach(c.manifold, bodies));
 }
 
-// Its manifold is the newest: so is its state.
-void ContactTracker::remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls) {
+// Updates the state of a contact from its newest manifold.
+void ContactTracker::store_state(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls) {
   const Manifold& m = c.manifold;
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
   const Vector3d place = centre_of(m), n = m.points[0].normal;
@@ -138,8 +139,8 @@ void ContactTracker::remember(LiveContact& c, std::span<const BodyMotion> bodies
   c.b_body_m = b.to_body(p.point_m - 0.5 * p.depth_m * p.normal);
 }
 
-template <class DescribeMeeting>
-void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeMeeting describe) {
+template <class DescribeApproach>
+void ContactTracker::begin_or_hit(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeApproach describe) {
   if (is_new) emit(c, contact_event_t::BEGIN, when, describe());
   const bool rested = !c.has_hit || now_ - c.last_hit >= sync::from_seconds(settings_.hit_interval_s);
   if (c.armed && rested && speed_m_s > settings_.hit_speed_m_s) {
@@ -152,11 +153,11 @@ void ContactTracker::meet(LiveContact& c, bool is_new, sync::SimTime when, doubl
   }
 }
 
-bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies) {
+bool ContactTracker::separate(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies) {
   const Manifold& m = c.manifold;
   const BodyMotion &a = at(bodies, m.body_a), &b = at(bodies, m.body_b);
   const Vector3d on_a = a.to_world(c.a_body_m), on_b = b.to_world(c.b_body_m), n = m.points[0].normal;
-  c.gap_m = (near ? -deepest(*near) : (on_b - on_a).dot(n)) - meets_at_m_;
+  c.gap_m = (near ? -deepest(*near) : (on_b - on_a).dot(n)) - contact_distance_m_;
   if (c.touching || struck) {
     const double opening = (b.velocity_at(on_b) - a.velocity_at(on_a)).dot(n);
     const double since_s = struck        ? step_s_ - struck->impact.last_s
@@ -169,7 +170,7 @@ bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* 
   const bool ended = c.gap_m > settings_.contact_end_gap_m ||
                      now_ - c.apart_since > sync::from_seconds(settings_.contact_end_time_s);
   if (ended) {
-    Meeting status = meeting(m, bodies);
+    Approach status = approach(m, bodies);
     status.speed_m_s = 0;
     status.place_m = on_a;
     emit(c, contact_event_t::END, c.apart_since, status);
@@ -177,12 +178,13 @@ bool ContactTracker::part(LiveContact& c, const Manifold* near, const Manifold* 
   return ended;
 }
 
-// One pair of shapes in one step. before: as it was; near: at the end of the step; solved: what the step did to it.
-void ContactTracker::follow(const LiveContact* before, const Manifold* near, const Manifold* solved,
+// Processes one pair of shapes in one step. before: its previous state; near: the manifold at the end of the step;
+// solved: the solver's result for the step.
+void ContactTracker::update_pair(const LiveContact* before, const Manifold* near, const Manifold* solved,
                             std::span<const BodyMotion> bodies) {
-  const Manifold* struck = solved && solved->impact.blows > 0 ? solved : nullptr;
+  const Manifold* struck = solved && solved->impact.count > 0 ? solved : nullptr;
   const bool touched = before && before->touching;
-  const double within = meets_at_m_ + (touched ? kParted_m : kTouch_m);
+  const double within = contact_distance_m_ + (touched ? kParted_m : kTouch_m);
   const bool touches = near && -deepest(*near) <= within;
   if (!before && !struck && !touches) return;
   LiveContact& c = next_.emplace_back();
@@ -200,19 +202,19 @@ void ContactTracker::follow(const LiveContact* before, const Manifold* near, con
     if (!before) c.place_m = i.place_m;
     take_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; }, c.manifold);
     c.a_body_m = i.a_body_m, c.b_body_m = i.b_body_m;
-    meet(c, !before, now_ - step_ + sync::from_seconds(i.first_s), i.speed_m_s, [&] { return meeting(c.manifold, i); });
+    begin_or_hit(c, !before, now_ - step_ + sync::from_seconds(i.first_s), i.speed_m_s, [&] { return approach(c.manifold, i); });
   }
   if (touches) {
-    const double far = meets_at_m_ + kParted_m;
+    const double far = contact_distance_m_ + kParted_m;
     take_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; }, c.manifold);
-    remember(c, bodies, touched);
+    store_state(c, bodies, touched);
     if (struck) return;
-    // The impact was inside the step: where the overlap began.
+    // The impact was within the step, where the overlap began.
     const auto [point, speed_m_s] = closing(c.manifold, bodies);
-    const double depth_m = std::max(0.0, point->depth_m + meets_at_m_);
+    const double depth_m = std::max(0.0, point->depth_m + contact_distance_m_);
     const double since_s = speed_m_s > 0 ? std::clamp(depth_m / speed_m_s, 0.0, step_s_) : 0;
-    meet(c, !before, now_ - sync::from_seconds(since_s), speed_m_s, [&] { return meeting(c.manifold, bodies); });
-  } else if (part(c, near, struck, bodies)) {
+    begin_or_hit(c, !before, now_ - sync::from_seconds(since_s), speed_m_s, [&] { return approach(c.manifold, bodies); });
+  } else if (separate(c, near, struck, bodies)) {
     next_.pop_back();
   }
 }
@@ -225,7 +227,7 @@ void ContactTracker::update(sync::SimTime now, sync::Nanoseconds step, std::span
   step_s_ = sync::to_seconds(step);
   events_ = &events;
   next_.clear();
-  // All three lists are ordered: one pass over the pairs that are in any of them.
+  // All three lists are ordered: one merge pass over their pairs.
   auto old = live_.cbegin();
   auto near = contacts.begin(), met = solved.begin();
   while (true) {
@@ -241,7 +243,7 @@ void ContactTracker::update(sync::SimTime now, sync::Nanoseconds step, std::span
     const LiveContact* before = old != live_.cend() && same(old->manifold) ? &*old : nullptr;
     const Manifold* at_end = near != contacts.end() && same(*near) ? &*near : nullptr;
     const Manifold* in_step = met != solved.end() && same(*met) ? &*met : nullptr;
-    follow(before, at_end, in_step, bodies);
+    update_pair(before, at_end, in_step, bodies);
     if (before) ++old;
     if (at_end) ++near;
     if (in_step) ++met;
@@ -263,7 +265,7 @@ void ContactTracker::describe(const LiveContact& c, std::span<const BodyMotion> 
   out.material_b = sb.material;
   out.tool = -1;
   out.normal = to_vec3f(deepest.normal);
-  out.depth_m = static_cast<float>(c.touching ? deepest.depth_m + meets_at_m_ : -c.gap_m);
+  out.depth_m = static_cast<float>(c.touching ? deepest.depth_m + contact_distance_m_ : -c.gap_m);
   out.area_m2 = static_cast<float>(contact_area(m, kind, c.normal_force_N, curvature_of(m, deepest, bodies),
                                                 sa.compliance_1_Pa + sb.compliance_1_Pa));
   out.normal_force_N = static_cast<float>(c.normal_force_N);

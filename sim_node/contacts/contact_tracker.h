@@ -1,5 +1,5 @@
-// Follows the contacts between bodies from step to step: gives each pair of shapes that touch an identity, says when it
-// began, hit and ended, and keeps its state. Pure: poses, velocities and manifolds are arguments.
+// Tracks the contacts between bodies from step to step: assigns an identity to each touching pair of shapes, emits
+// begin, hit and end, and keeps its state. Pure: poses, velocities and manifolds are arguments.
 #pragma once
 
 #include <span>
@@ -17,17 +17,17 @@
 
 namespace tactus::sim {
 
-// One pair of shapes that touches, or has just touched.
+// A pair of shapes that touches or has just separated.
 struct LiveContact {
   std::int64_t id = 0;
-  Manifold manifold;        // as last seen to touch
-  // Its deepest point on each surface, body frames, as last seen.
+  Manifold manifold;        // of the last step in which it touched
+  // Its deepest point on each surface, body frames, of the last step in which it touched.
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
-  bool touching = true;     // at the newest step; else within the hysteresis
+  bool touching = true;     // at the newest step; false within the hysteresis
   double gap_m = 0;         // while not touching
   double normal_force_N = 0;
   double impulse_N_s = 0;
-  bool armed = true;        // slow enough since the last hit for another one
+  bool armed = true;        // the approach has been slow enough since the last hit for another one
   sync::SimTime last_hit{}, last_event{};
   bool has_hit = false;
   sync::SimTime apart_since{};
@@ -39,39 +39,40 @@ class ContactTracker {
  public:
   ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids);
 
-  // The contacts at `now`, the end of a step of that length, and those that the step began with, with their forces and
-  // impacts; both ordered. Contacts may have gaps: a pair touches when it is nearer than what a solver leaves between
-  // surfaces that rest, or when the solver says that it met inside the step. bodies: as they are at `now`; where no
-  // solver says how surfaces met, before anything has acted on the new contacts. Appends the events of the step.
-  // Realtime-safe once its lists have grown.
+  // contacts: the contacts at `now`, the end of a step of this length. solved: those at the start of the step, with
+  // their forces and impacts. Both are ordered. Contacts may have gaps: a pair touches when its gap is below the
+  // residual that a solver leaves between resting surfaces, or when the solver reports an impact within the step.
+  // bodies: the state at `now`; where the solver reports no impacts, the state before it acts on the new contacts.
+  // Appends the events of the step. Real-time safe once its lists have grown.
   void update(sync::SimTime now, sync::Nanoseconds step, std::span<const BodyMotion> bodies,
               std::span<const Manifold> contacts, std::span<const Manifold> solved, std::vector<contact_event_t>& events);
 
   std::span<const LiveContact> live() const { return live_; }
-  // Those before the last update, once: what is in `into` goes, its room is used.
+  // Moves out the contacts before the last update; valid once. The old content of `into` is discarded and its memory
+  // reused.
   void take_previous(std::vector<LiveContact>& into) { std::swap(next_, into); }
-  // The contact as a message.
+  // Converts the contact to a message.
   void describe(const LiveContact& contact, std::span<const BodyMotion> bodies, contact_t& out) const;
 
-  // Contacts of marked bodies (a mark for each of the world) go elsewhere, appended to `out` in order, and come from there.
-  // Realtime-safe once the lists have grown.
-  void take(std::span<const char> marked, std::vector<LiveContact>& out);
-  void put(std::span<const LiveContact> contacts);
-  // Says something of a contact that the steps did not: its begin, for who was not told of it.
-  void tell(LiveContact& contact, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
+  // Moves the contacts of marked bodies (one mark per body of the world) to the end of `out`, in order, and inserts
+  // contacts moved out of another tracker. Real-time safe once the lists have grown.
+  void extract(std::span<const char> marked, std::vector<LiveContact>& out);
+  void insert(std::span<const LiveContact> contacts);
+  // Emits an event that the steps did not emit: the begin of a contact for receivers that did not get it.
+  void report(LiveContact& contact, std::int8_t kind, sync::SimTime when, std::span<const BodyMotion> bodies,
             std::vector<contact_event_t>& events);
 
-  // bodies: how many the world has.
+  // bodies: number of bodies in the world.
   void archive(StateArchive& a, std::size_t bodies);
   void archive(StateArchive& a, LiveContact& contact, std::size_t bodies);
-  // The ids have been renamed.
+  // Renames the stored ids after Ids::rename().
   void rename();
 
  private:
-  // How two surfaces come together, or are when they part.
-  struct Meeting {
-    double speed_m_s = 0;  // at which they close; negative: they part
-    double mass_kg = 0;    // that the meeting feels
+  // Relative motion of two surfaces at a begin, hit or end.
+  struct Approach {
+    double speed_m_s = 0;  // closing speed; negative: separating
+    double mass_kg = 0;    // effective mass
     double curvature_1_m = 0;
     Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitZ();
   };
@@ -80,21 +81,22 @@ class ContactTracker {
     double speed_m_s = 0;
   };
   Closing closing(const Manifold& contact, std::span<const BodyMotion> bodies) const;
-  Meeting meeting(const Manifold& contact, std::span<const BodyMotion> bodies) const;
-  Meeting meeting(const Manifold& contact, const Impact& impact) const;
-  void follow(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
-  // A hit when the surfaces close fast enough. describe() returns the Meeting; it is called only when an event is emitted.
-  template <class DescribeMeeting>
-  void meet(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeMeeting describe);
-  // True when it has ended.
-  bool part(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
-  void remember(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls);
-  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Meeting& status);
+  Approach approach(const Manifold& contact, std::span<const BodyMotion> bodies) const;
+  Approach approach(const Manifold& contact, const Impact& impact) const;
+  void update_pair(const LiveContact* before, const Manifold* near, const Manifold* solved, std::span<const BodyMotion> bodies);
+  // Emits a hit when the surfaces close fast enough. describe() returns the Approach; it is called only when an event
+  // is emitted.
+  template <class DescribeApproach>
+  void begin_or_hit(LiveContact& c, bool is_new, sync::SimTime when, double speed_m_s, DescribeApproach describe);
+  // Returns true when the contact has ended.
+  bool separate(LiveContact& c, const Manifold* near, const Manifold* struck, std::span<const BodyMotion> bodies);
+  void store_state(LiveContact& c, std::span<const BodyMotion> bodies, bool rolls);
+  void emit(LiveContact& c, std::int8_t kind, sync::SimTime when, const Approach& status);
   double curvature_of(const Manifold& contact, const ManifoldPoint& p, std::span<const BodyMotion> bodies) const;
 
   std::vector<SurfaceTraits> surfaces_;
   Settings settings_;
-  double meets_at_m_;  // surfaces act on each other from this gap on, and touch
+  double contact_distance_m_;  // gap at which surfaces start to interact and count as touching
   Ids& ids_;
   sync::SimTime now_{};
   sync::Nanoseconds step_{};

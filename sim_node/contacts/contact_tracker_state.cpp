@@ -6,7 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-// More contacts than a step can solve points.
+// Larger than the number of points that a step can solve.
 constexpr std::size_t kMaxContacts = 1 << 16;
 
 }  // namespace
@@ -23,7 +23,7 @@ void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
   a.list(live_, kMaxContacts, [&](LiveContact& c) { archive(a, c, bodies); });
 }
 
-void ContactTracker::take(std::span<const char> marked, std::vector<LiveContact>& out) {
+void ContactTracker::extract(std::span<const char> marked, std::vector<LiveContact>& out) {
   const auto goes = [&](const LiveContact& c) {
     return marked[static_cast<std::size_t>(c.manifold.body_a)] || marked[static_cast<std::size_t>(c.manifold.body_b)];
   };
@@ -31,7 +31,7 @@ void ContactTracker::take(std::span<const char> marked, std::vector<LiveContact>
   std::erase_if(live_, goes);
 }
 
-void ContactTracker::put(std::span<const LiveContact> contacts) {
+void ContactTracker::insert(std::span<const LiveContact> contacts) {
   live_.insert(live_.end(), contacts.begin(), contacts.end());
   std::sort(live_.begin(), live_.end(),
             [](const LiveContact& x, const LiveContact& y) { return x.manifold.before(y.manifold); });

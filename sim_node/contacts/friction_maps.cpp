@@ -1,6 +1,7 @@
 #include "sim_node/contacts/friction_maps.h"
 
 #include <map>
+#include <tactus/material_def_t.hpp>
 
 #include "sync/bus/identity.h"
 
@@ -22,7 +23,7 @@ FrictionMaps::FrictionMaps(const WorldDef& world) {
   }
 }
 
-void FrictionMaps::look(const Eigen::Isometry3d& to_a, const Eigen::Isometry3d& to_b, Manifold& contact) const {
+void FrictionMaps::apply(const Eigen::Isometry3d& to_a, const Eigen::Isometry3d& to_b, Manifold& contact) const {
   const auto& a = shapes_[static_cast<std::size_t>(contact.shape_a)].map;
   const auto& b = shapes_[static_cast<std::size_t>(contact.shape_b)].map;
   for (ManifoldPoint& p : contact.used()) {

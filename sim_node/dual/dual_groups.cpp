@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/dual/group_bodies.h"
@@ -49,20 +51,20 @@ DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
 }
 
 void DualGroups::start(std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
-  // Nothing is late at the first instant.
+  // At the first instant the step is computed synchronously, so it cannot be late.
   visual_.group().restart(ids_.incarnation());
   task_ = {};
   task_.length = rate_.next();
-  visual_.ask(task_);
-  visual_.take(step_);
+  visual_.request(task_);
+  visual_.poll(step_);
   begin_step(sync::SimTime{}, tools, events);
-  tell_due(sync::SimTime{}, events);
+  publish_due_events(sync::SimTime{}, events);
   if (settings_.visual_thread == "own") visual_.start();
 }
 
 void DualGroups::act(const Load& load) {
   if (world_->unit_of(load.body) < 0) return;
-  if (!is_haptic(load.body)) grouping_.want(load.body);
+  if (!is_haptic(load.body)) grouping_.request_entry(load.body);
   loads_.push_back(load);
 }
 
@@ -96,20 +98,21 @@ void DualGroups::find_contacts(double h_s) {
   source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h_s), contacts_);
 }
 
-// Of the haptic group.
-void DualGroups::note_touching() {
+// Records the pairs of moving bodies of the haptic group that touch.
+void DualGroups::record_touching() {
   touching_.clear();
   for (const LiveContact& c : tracker_.live())
     if (motions_[index(c.manifold.body_a)].moves() && motions_[index(c.manifold.body_b)].moves())
       touching_.emplace_back(c.manifold.body_a, c.manifold.body_b);
 }
 
-// Events of the visual group until then; those of bodies that have come into the haptic group since do not happen.
-void DualGroups::tell_due(sync::SimTime until, std::vector<contact_event_t>& events) {
+// Appends the events of the visual group up to `until`. Skips the events of bodies that have entered the haptic group
+// since.
+void DualGroups::publish_due_events(sync::SimTime until, std::vector<contact_event_t>& events) {
   if (!step_) return;
-  for (; told_ < step_->events.size(); ++told_) {
-    contact_event_t e = step_->events[told_];
-    e.time_ns += ahead_.count();
+  for (; published_events_ < step_->events.size(); ++published_events_) {
+    contact_event_t e = step_->events[published_events_];
+    e.time_ns += clock_offset_.count();
     if (sync::sim_time(e.time_ns) > until) break;
     const auto gone = [&](int body) { return motions_[index(body)].moves() && is_haptic(body); };
     if (!gone(e.body_a) && !gone(e.body_b)) events.push_back(e);
@@ -122,7 +125,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
   promoted_.clear();
   released_.clear();
   if (now >= ends_) {
-    if (visual_.take(step_))
+    if (visual_.poll(step_))
       begin_step(now, tools, events);
     else
       hold(now, tools, events);
@@ -130,7 +133,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     grouping_.watch(now, motions_, tools);
     promote(now, events);
   }
-  grant_wishes();
+  apply_queued_changes();
   const auto active = world_->active_bodies();
   if (stale_) find_contacts(settings_.step_s);
   stale_ = false;
@@ -144,51 +147,51 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
   source_.frames().place_impacts(solved_);
   read_motions(active);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);
-  tell_due(now + h, events);
+  publish_due_events(now + h, events);
 }
 
 void DualGroups::begin_step(sync::SimTime now, std::span<const GroupTool> tools,
                             std::vector<contact_event_t>& events) {
   began_ = true;
-  holds_ = false;
+  holding_ = false;
   begins_ = now;
   ends_ = now + step_->task.length;
-  ahead_ = now - step_->begins;
-  told_ = 0;
-  // All that has not been in the haptic group meanwhile.
+  clock_offset_ = now - step_->begins;
+  published_events_ = 0;
+  // Every body outside the haptic group takes the state at the beginning of the step.
   list_.assign(world_->active_bodies().begin(), world_->active_bodies().end());
   std::swap(motions_, step_->begin);
   read_motions(list_);
-  note_touching();
+  record_touching();
   grouping_.set_horizon(step_->task.length + sync::from_seconds(settings_.tool_jitter_s));
-  grouping_.begin_step(now, step_->ways, motions_, touching_, tools);
-  late_.clear();
+  grouping_.begin_step(now, step_->trajectories, motions_, touching_, tools);
+  departed_.clear();
   promote(now, events);
   release();
-  ask_for_next();
+  request_next_step();
 }
 
-void DualGroups::ask_for_next() {
+void DualGroups::request_next_step() {
   task_.number = ++number_;
   task_.missed = step_->task.length;
   task_.length = rate_.next();
-  task_.enters = late_;
-  for (LiveContact& c : task_.enters.contacts) shift(c, -ahead_);
-  // Whoever was in the step that has just been taken, and has been promoted while it was computed.
+  task_.enters = departed_;
+  for (LiveContact& c : task_.enters.contacts) shift(c, -clock_offset_);
+  // Units of the step just received that were promoted while the next step was being computed.
   task_.leaves.clear();
   const auto haptic = world_->active_units();
   for (const int unit : step_->units)
-    if (std::binary_search(haptic.begin(), haptic.end(), unit) || late_.find(unit) >= 0)
+    if (std::binary_search(haptic.begin(), haptic.end(), unit) || departed_.find(unit) >= 0)
       task_.leaves.push_back(unit);
   task_.changes = changes_;
   changes_.clear();
-  visual_.ask(task_);
+  visual_.request(task_);
 }
 
 void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) {
   ++held_ticks_;
-  if (!holds_) {
-    holds_ = true;
+  if (!holding_) {
+    holding_ = true;
     ++late_steps_;
     held_until_ = now;
     list_.assign(world_->active_bodies().begin(), world_->active_bodies().end());
@@ -197,7 +200,7 @@ void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::
   }
   if (now >= held_until_) {
     held_until_ = now + step_->task.length;
-    note_touching();
+    record_touching();
     grouping_.hold_step(now, motions_, touching_, tools);
   } else {
     grouping_.watch(now, motions_, tools);
@@ -205,31 +208,31 @@ void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::
   promote(now, events);
 }
 
-// Who has just left is told of here until its way is known.
+// Units that have just left are reported here until the visual group has computed their trajectory.
 void DualGroups::contacts(std::vector<contact_t>& out) {
   out.clear();
   for (const LiveContact& c : tracker_.live()) tracker_.describe(c, motions_, out.emplace_back());
-  for (const LiveContact& c : late_.contacts) tracker_.describe(c, motions_, out.emplace_back());
+  for (const LiveContact& c : departed_.contacts) tracker_.describe(c, motions_, out.emplace_back());
 }
 
 const Ahead* DualGroups::ahead() {
   ahead_now_.fresh = began_;
-  ahead_now_.held = holds_;
+  ahead_now_.held = holding_;
   ahead_now_.promoted = promoted_;
   if (began_ || !promoted_.empty()) {
     ahead_now_.begins = begins_;
     ahead_now_.time = ends_;
     ahead_waiting_.clear();
-    for (const int unit : late_.units) world_->unit_bodies(unit, ahead_waiting_);
+    for (const int unit : departed_.units) world_->unit_bodies(unit, ahead_waiting_);
     std::erase_if(ahead_waiting_, [this](int body) { return is_haptic(body); });
     std::sort(ahead_waiting_.begin(), ahead_waiting_.end());
     ahead_now_.waiting = ahead_waiting_;
     ahead_bodies_.clear();
     ahead_motions_.clear();
     for (const int body : step_->bodies) {
-      if (is_haptic(body) || late_.find(world_->unit_of(body)) >= 0) continue;
+      if (is_haptic(body) || departed_.find(world_->unit_of(body)) >= 0) continue;
       ahead_bodies_.push_back(body);
-      ahead_motions_.push_back(holds_ ? motions_[index(body)] : step_->end[index(body)]);
+      ahead_motions_.push_back(holding_ ? motions_[index(body)] : step_->end[index(body)]);
     }
     ahead_now_.bodies = ahead_bodies_;
     ahead_now_.motions = ahead_motions_;

@@ -1,5 +1,6 @@
-// Bodies go from group to group.
+// Moves bodies between the haptic and the visual group.
 #include <algorithm>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/dual_groups.h"
 
@@ -10,81 +11,82 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-void DualGroups::mark(std::span<const int> units, char as) {
+void DualGroups::mark(std::span<const int> units, char value) {
   list_.clear();
   for (const int unit : units) world_->unit_bodies(unit, list_);
-  for (const int body : list_) mask_[index(body)] = as;
+  for (const int body : list_) mask_[index(body)] = value;
 }
 
-// Who has left the group goes, with its contacts, as it is.
+// Moves units that have left the haptic group, with their states and contacts, to departed_.
 void DualGroups::release() {
   released_.assign(grouping_.left().begin(), grouping_.left().end());
   if (released_.empty()) return;
   gather_units(released_);
-  late_.units = units_;
-  late_.states.resize(units_.size());
-  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], late_.states[i]);
-  mark(late_.units, 1);
-  tracker_.take(mask_, late_.contacts);
-  mark(late_.units, 0);
+  departed_.units = units_;
+  departed_.states.resize(units_.size());
+  for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], departed_.states[i]);
+  mark(departed_.units, 1);
+  tracker_.extract(mask_, departed_.contacts);
+  mark(departed_.units, 0);
   activate();
 }
 
-// From an instant of the past to the present, in steps no longer than a tick; the others stand still meanwhile.
+// Advances the units from a past instant to the present, in steps no longer than a tick; all other bodies stand
+// still.
 void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::SimTime to,
                           std::vector<contact_event_t>& events) {
-  catching_up_.put(moved_);
+  catching_up_.insert(moved_);
   world_->set_active(units);
   read_motions(world_->active_bodies());
   const sync::Nanoseconds tick = sync::from_seconds(settings_.step_s);
   const std::int64_t steps = (to - from + tick - sync::Nanoseconds(1)) / tick;
-  unheard_.clear();
+  discarded_events_.clear();
   for (std::int64_t k = 0; k < steps; ++k) {
     const sync::Nanoseconds h = (to - from) * (k + 1) / steps - (to - from) * k / steps;
     find_contacts(sync::to_seconds(h));
     advance_.step(*world_, source_, sync::to_seconds(h), contacts_, solved_);
     source_.frames().place_impacts(solved_);
     read_motions(world_->active_bodies());
-    catching_up_.update(from + (to - from) * (k + 1) / steps, h, motions_, contacts_, solved_, unheard_);
+    catching_up_.update(from + (to - from) * (k + 1) / steps, h, motions_, contacts_, solved_, discarded_events_);
   }
   mark(units, 1);
   moved_.clear();
-  catching_up_.take(mask_, moved_);
+  catching_up_.extract(mask_, moved_);
   if (steps > 0) reconcile(from, to, events);
   mark(units, 0);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
 }
 
-// What has been told of these contacts up to now was the visual group's account of the last few ticks; where it
-// differs from how they have come to be, that is put right now.
+// Until now the visual group published the events of these contacts for the last few ticks. Where they differ from
+// the result of catch_up(), this function publishes the correction.
 void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<contact_event_t>& events) {
-  const auto ours = [&](int a, int b) { return mask_[index(a)] || mask_[index(b)]; };
-  for (std::size_t i = 0; i < told_ && i < step_->events.size(); ++i) {
+  const auto involved = [&](int a, int b) { return mask_[index(a)] || mask_[index(b)]; };
+  for (std::size_t i = 0; i < published_events_ && i < step_->events.size(); ++i) {
     const contact_event_t& e = step_->events[i];
-    if (sync::sim_time(e.time_ns) + ahead_ <= from || !ours(e.body_a, e.body_b)) continue;
+    if (sync::sim_time(e.time_ns) + clock_offset_ <= from || !involved(e.body_a, e.body_b)) continue;
     if (e.kind == contact_event_t::BEGIN) open_.push_back({e.contact_id, e.body_a, e.body_b, false});
     if (e.kind == contact_event_t::END)
-      std::erase_if(open_, [&](const Told& t) { return t.contact == e.contact_id; });
+      std::erase_if(open_, [&](const OpenContact& t) { return t.contact == e.contact_id; });
   }
   for (LiveContact& c : moved_) {
-    const auto same = std::find_if(open_.begin(), open_.end(), [&](const Told& t) { return t.contact == c.id; });
+    const auto same = std::find_if(open_.begin(), open_.end(), [&](const OpenContact& t) { return t.contact == c.id; });
     if (same != open_.end()) {
-      same->known = true;
+      same->matched = true;
       continue;
     }
-    const auto alike = std::find_if(open_.begin(), open_.end(), [&](const Told& t) {
-      return !t.known && t.body_a == c.manifold.body_a && t.body_b == c.manifold.body_b;
+    const auto similar = std::find_if(open_.begin(), open_.end(), [&](const OpenContact& t) {
+      return !t.matched && t.body_a == c.manifold.body_a && t.body_b == c.manifold.body_b;
     });
-    if (alike != open_.end()) {
-      c.id = alike->contact;
-      alike->known = true;
+    if (similar != open_.end()) {
+      c.id = similar->contact;
+      similar->matched = true;
     } else {
       c.id = ids_.fresh();
-      tracker_.tell(c, contact_event_t::BEGIN, to, motions_, events);
+      tracker_.report(c, contact_event_t::BEGIN, to, motions_, events);
     }
   }
-  for (const Told& t : open_) {
-    if (t.known) continue;
+  for (const OpenContact& t : open_) {
+    if (t.matched) continue;
     contact_event_t& e = events.emplace_back();
     e.event_id = ids_.fresh();
     e.contact_id = t.contact;
@@ -95,7 +97,8 @@ void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<con
   }
 }
 
-// Who has come into the group: from its way in the visual step, or, having left when the step began, from there.
+// Promotes the bodies that have entered the haptic group: from the trajectory of the visual step, or, for units that
+// left when the step began, from their state at that instant.
 void DualGroups::promote(sync::SimTime now, std::vector<contact_event_t>& events) {
   const auto entered = grouping_.entered();
   if (entered.empty()) return;
@@ -103,10 +106,10 @@ void DualGroups::promote(sync::SimTime now, std::vector<contact_event_t>& events
   gather_units(entered);
   from_late_.clear();
   from_step_.clear();
-  for (const int unit : units_) (late_.find(unit) >= 0 ? from_late_ : from_step_).push_back(unit);
+  for (const int unit : units_) (departed_.find(unit) >= 0 ? from_late_ : from_step_).push_back(unit);
   const sync::Nanoseconds passed = std::min(now - begins_, step_->task.length);
   const std::size_t k = step_->time_before(passed);
-  const auto take_over = [&](const std::vector<int>& units, sync::Nanoseconds at, const auto& state_of,
+  const auto promote_units = [&](const std::vector<int>& units, sync::Nanoseconds at, const auto& state_of,
                              const std::vector<LiveContact>& contacts, sync::Nanoseconds ahead) {
     if (units.empty()) return;
     for (const int unit : units) world_->set_state(unit, state_of(unit));
@@ -122,15 +125,15 @@ void DualGroups::promote(sync::SimTime now, std::vector<contact_event_t>& events
     mark(units, 0);
     catch_up(units, begins_ + at, begins_ + passed, events);
   };
-  take_over(from_late_, {}, [&](int unit) -> const auto& { return late_.states[index(late_.find(unit))]; },
-            late_.contacts, {});
-  take_over(
+  promote_units(from_late_, {}, [&](int unit) -> const auto& { return departed_.states[index(departed_.find(unit))]; },
+            departed_.contacts, {});
+  promote_units(
       from_step_, step_->times[k],
       [&](int unit) -> const auto& {
         const auto at = std::lower_bound(step_->units.begin(), step_->units.end(), unit);
         return step_->states[k][static_cast<std::size_t>(at - step_->units.begin())];
       },
-      step_->live[k], ahead_);
+      step_->live[k], clock_offset_);
   activate();
 }
 

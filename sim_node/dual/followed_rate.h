@@ -1,4 +1,4 @@
-// Visual steps as long as the pictures of a visual_node take: the rate that it says it reaches. Pure.
+// Visual rate taken from a visual_node: the frame rate that its health messages report. Pure.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,13 @@ namespace tactus::sim {
 
 class FollowedRate {
  public:
-  // What differs by less is the same rate: pictures come and go by one in a second.
+  // Smaller relative differences count as the same rate: the reported frame count varies by one per second.
   static constexpr double kSame = 0.03;
 
-  // process: its name; empty: nobody is followed.
+  // process: name of the visual_node process; empty: no process is followed.
   explicit FollowedRate(std::string process) : process_(std::move(process)) {}
 
-  // The rate from now on, Hz, when this message changes it. One that has not begun, or shows nothing, changes
+  // The new rate in Hz when this message changes it. A process that is not running or reports no frames changes
   // nothing.
   std::optional<double> hear(const node_health_t& m) {
     if (process_.empty() || m.node != process_ || m.state != node_health_t::RUNNING || !(m.rate_Hz > 0)) return {};

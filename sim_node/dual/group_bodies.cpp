@@ -13,7 +13,7 @@ std::vector<double> body_radii(const WorldDef& world, MeshTrees& trees) {
     if (world.bodies[body].is_static) continue;
     const ClosestSurface surface(s, s.kind == ShapeKind::kMesh ? trees.triangles(s, world) : nullptr);
     const double from_centre = (s.pose * surface.centre() - world.bodies[body].centre_of_mass_m).norm();
-    // A plane that moves is a plate of its size.
+    // A moving plane is a plate of its size.
     const double bound = s.kind == ShapeKind::kPlane ? 0.5 * s.size_m.norm() : surface.bound_m();
     out[body] = std::max(out[body], from_centre + bound);
   }

@@ -1,4 +1,4 @@
-// What grouping and the two groups need to know of a world. Pure.
+// The data of a world that grouping and the two groups require: bounding radii, group bodies and settings. Pure.
 #pragma once
 
 #include <vector>
@@ -11,14 +11,14 @@
 
 namespace tactus::sim {
 
-// Radius about its centre of mass of the sphere that holds each body, m; 0: it never moves, or has no shape.
+// Radius in m of the bounding sphere of each body about its centre of mass; 0: the body is static or has no shape.
 std::vector<double> body_radii(const WorldDef& world, MeshTrees& trees);
 
-// world: of impulses, for its systems of joints.
+// world: an impulse world, for its systems of joints.
 std::vector<GroupBody> group_bodies(const WorldDef& def, const impulse::World& world, MeshTrees& trees);
 
-// Settings with the behaviour models that the groups have: penalty contact where a hand may be, of the end of the step
-// unless the settings ask for the explicit form; impulses elsewhere.
+// Settings with the behaviour model of each group: penalty contact for the haptic group, implicit (evaluated at the
+// end of the step) unless the settings choose the explicit form; impulses for the visual group.
 Settings for_haptic_group(Settings settings);
 Settings for_visual_group(Settings settings);
 

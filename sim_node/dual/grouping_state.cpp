@@ -1,4 +1,4 @@
-// The state of grouping as bytes. The ways of the step are somebody else's: begin with them again by resume().
+// Serializes the state of grouping. The trajectories of the step belong to the caller: pass them again by resume().
 #include <algorithm>
 
 #include "sim_node/dual/grouping.h"
@@ -24,16 +24,16 @@ void Grouping::archive(StateArchive& a) {
   const std::size_t n = bodies_.size();
   const auto body = [&](int& i) {
     a.index(i, n);
-    a.require(i >= 0, "the state names a body that is not there");
+    a.require(i >= 0, "the state names a body that does not exist");
   };
   sim::archive(a, limits_.horizon);
   sim::archive(a, limits_.leave_after);
   a(step_began_), a(watched_from_), a(held_), a(held_after_s_), a(alarms_);
   if (a.reads()) {
     for (const int i : haptic_) member_[static_cast<std::size_t>(i)] = 0;
-    for (const int i : late_) is_late_[static_cast<std::size_t>(i)] = 0;
+    for (const int i : departed_) is_departed_[static_cast<std::size_t>(i)] = 0;
   }
-  for (auto* list : {&haptic_, &late_, &asked_}) a.list(*list, n, body);
+  for (auto* list : {&haptic_, &departed_, &requested_}) a.list(*list, n, body);
   a.list(touching_, kMaxPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
   for (const int i : haptic_) {
     const auto k = static_cast<std::size_t>(i);
@@ -41,13 +41,13 @@ void Grouping::archive(StateArchive& a) {
     sim::archive(a, inside_[k]);
     a(kicks_[k].speed_m_s), a(kicks_[k].left_s);
   }
-  for (const int i : late_) {
+  for (const int i : departed_) {
     const auto k = static_cast<std::size_t>(i);
-    is_late_[k] = 1;
-    sim::archive(a, late_ways_[k]);
+    is_departed_[k] = 1;
+    sim::archive(a, departed_trajectories_[k]);
   }
   a.list(tools_, kMaxTools, [&](SweptSphere& s) { sim::archive(a, s); });
-  a.fixed(wanted_at_, [&](sync::SimTime& t) { a(t); });
+  a.fixed(last_reached_, [&](sync::SimTime& t) { a(t); });
   if (a.reads()) {
     entered_.clear();
     left_.clear();

@@ -12,7 +12,7 @@ int root(std::vector<int>& parent, int i) {
   return i;
 }
 
-// What comes nearer than this wakes, m: design: ten times what a resting contact wavers by.
+// A body that comes nearer than this wakes a resting body, m; design: ten times the jitter of a resting contact.
 constexpr double kNear_m = 0.001;
 
 }  // namespace
@@ -34,7 +34,7 @@ std::span<const int> Resting::settle(std::span<const int> bodies, std::span<cons
         m.velocity_m_s.norm() < kStill_m_s && m.spin_rad_s.norm() < kStill_rad_s && supported[index(i)];
     still_for_[index(i)] = still ? std::min(still_for_[index(i)] + length, kStillFor) : sync::Nanoseconds(0);
     parent_[index(i)] = i;
-    calm_[index(i)] = 1;  // of an island: its least body's
+    calm_[index(i)] = 1;  // indexed by the smallest body of an island
   }
   const auto moves = [&](int i) { return motions[index(i)].moves() && !rests(i); };
   for (const auto& [a, b] : touching) {
@@ -64,7 +64,7 @@ void Resting::rebuild(std::span<const BodyMotion> motions, std::span<const doubl
   stale_ = false;
 }
 
-// Of the islands in woken_islands_.
+// Wakes the islands in woken_islands_.
 std::span<const int> Resting::wake_islands() {
   changed_.clear();
   if (woken_islands_.empty()) return changed_;
@@ -82,14 +82,14 @@ std::span<const int> Resting::wake_islands() {
   return changed_;
 }
 
-std::span<const int> Resting::near(std::span<const SweptSphere> ways, std::span<const BodyMotion> motions,
+std::span<const int> Resting::near(std::span<const SweptSphere> trajectories, std::span<const BodyMotion> motions,
                                    std::span<const double> radii_m, double horizon_s) {
   near_.clear();
   if (resting_.empty()) return near_;
   if (stale_) rebuild(motions, radii_m);
-  for (const SweptSphere& way : ways) {
+  for (const SweptSphere& trajectory : trajectories) {
     found_.clear();
-    grid_.find(bounds_of(way, horizon_s), found_);
+    grid_.find(bounds_of(trajectory, horizon_s), found_);
     for (const int k : found_) near_.push_back(resting_[index(k)]);
   }
   std::sort(near_.begin(), near_.end());

@@ -1,5 +1,5 @@
-// Which bodies rest and need not be computed: those of an island, joined by contacts, that have all been still for
-// a while. They wake together. Pure.
+// Bodies at rest that need not be computed: islands of bodies joined by contacts, all of which have been still for a
+// while. An island wakes as a whole. Pure.
 #pragma once
 
 #include <span>
@@ -15,25 +15,26 @@ namespace tactus::sim {
 
 class Resting {
  public:
-  // All bodies slower than this for so long, as ODE puts bodies to sleep (Smith 2006, ODE manual 5.6: 0.01 m/s,
-  // 0.01 rad/s); design: half a second, in which a body that is about to tip has begun to.
+  // An island sleeps when all its bodies are slower than this for kStillFor, as in ODE (Smith 2006, ODE manual 5.6:
+  // 0.01 m/s, 0.01 rad/s). kStillFor is half a second by design: a body that is about to tip starts to move within
+  // it.
   static constexpr double kStill_m_s = 0.01, kStill_rad_s = 0.01;
   static constexpr sync::Nanoseconds kStillFor{500'000'000};
 
-  // may_rest: of each body of the world: free ones may.
+  // may_rest: one flag per body of the world; bodies without joints may rest.
   explicit Resting(std::vector<char> may_rest);
 
-  // A step of that length has ended. bodies: those that were computed; motions: of all. touching: pairs that
-  // touch, of which one may rest already. supported: bodies that touch something. Who rests from now on,
-  // ascending.
+  // Call at the end of a step of this length. bodies: the computed bodies; motions: of all bodies. touching: pairs
+  // that touch; one of a pair may rest already. supported: bodies that touch something. Returns the bodies that rest
+  // from now on, ascending.
   std::span<const int> settle(std::span<const int> bodies, std::span<const BodyMotion> motions,
                               std::span<const std::pair<int, int>> touching, std::span<const char> supported,
                               sync::Nanoseconds length);
-  // Those that rest so near to these ways, within a horizon, that there may be contact; ascending. motions,
-  // radii_m: of all.
-  std::span<const int> near(std::span<const SweptSphere> ways, std::span<const BodyMotion> motions,
+  // Resting bodies near enough to these trajectories, within the horizon, for contact to be possible; ascending.
+  // motions, radii_m: of all bodies.
+  std::span<const int> near(std::span<const SweptSphere> trajectories, std::span<const BodyMotion> motions,
                             std::span<const double> radii_m, double horizon_s);
-  // The islands of these wake; who does, ascending.
+  // Wakes the islands of these bodies; returns the woken bodies, ascending.
   std::span<const int> wake_with(std::span<const int> bodies);
   std::span<const int> wake_all();
   std::span<const int> resting() const { return resting_; }
@@ -47,10 +48,10 @@ class Resting {
   std::span<const int> wake_islands();
 
   std::vector<char> may_rest_;
-  std::vector<sync::Nanoseconds> still_for_;  // of each body
-  std::vector<int> island_;                   // of each body that rests; -1
+  std::vector<sync::Nanoseconds> still_for_;  // per body
+  std::vector<int> island_;                   // island of each resting body; -1: awake
   std::vector<int> resting_;                  // ascending
-  bool stale_ = true;                         // the grid is of others
+  bool stale_ = true;                         // the grid does not match resting_
   std::vector<Bounds> boxes_;
   BoundsGrid grid_;
   std::vector<int> parent_, found_, near_, changed_, woken_islands_;

@@ -1,5 +1,5 @@
-// The ways of all bodies that are simulated ahead, for one visual step, and who touches whom in it: what grouping
-// asks about, made ready where the step is computed, so that a haptic tick costs what its group costs. Pure.
+// Trajectories of all bodies that are simulated ahead, for one visual step, and the pairs that touch in it. The
+// visual group prepares them for grouping, so that the cost of a haptic tick depends only on the haptic group. Pure.
 #pragma once
 
 #include <span>
@@ -13,28 +13,28 @@ namespace tactus::sim {
 
 class SweptTrajectories {
  public:
-  // members: ascending numbers of bodies of the world, which has so many; ways: of each, from the beginning of the
-  // step on. touching: pairs of bodies. Realtime-safe once its lists have grown.
-  void set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> ways,
+  // bodies: number of bodies of the world. members: ascending body numbers; trajectories: one per member, from the
+  // beginning of the step on. touching: pairs of bodies. Realtime-safe once the lists have grown.
+  void set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> trajectories,
            std::span<const std::pair<int, int>> touching, double horizon_s);
 
   bool has(int body) const { return at_[index(body)] >= 0; }
-  // Of a member, from the beginning of the step on.
-  const SweptSphere& of(int body) const { return ways_[index(at_[index(body)])]; }
-  // Members whose ways may meet these bounds, into `found`, appended in ascending order.
+  // Trajectory of a member, from the beginning of the step on.
+  const SweptSphere& of(int body) const { return trajectories_[index(at_[index(body)])]; }
+  // Appends the members whose trajectories may meet these bounds to `found`, in ascending order.
   void find(const Bounds& query, std::vector<int>& found) const;
-  // bodies: how many the world has.
+  // bodies: number of bodies of the world.
   void archive(StateArchive& a, std::size_t bodies);
-  // What a body touches in the step.
-  std::span<const int> beside(int body) const;
+  // The bodies that a body touches in the step.
+  std::span<const int> touched_by(int body) const;
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   std::vector<int> members_, at_;
-  std::vector<SweptSphere> ways_;
+  std::vector<SweptSphere> trajectories_;
   std::vector<Bounds> boxes_;
   BoundsGrid grid_;
-  std::vector<int> first_, beside_, next_;
+  std::vector<int> first_, touched_, next_;
   double horizon_s_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "sim_node/dual/visual_group.h"
 
 #include <algorithm>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/group_bodies.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// Bodies touch within this, m: design: what a contact is told of before it closes.
+// Bodies touch within this distance, m; design: the gap at which a contact is reported before it closes.
 constexpr double kTouching_m = 0.001;
 
 std::vector<char> may_rest(const WorldDef& def) {
@@ -35,17 +36,17 @@ VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vec
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings_), settings_, ids_),
-      newcomers_(surface_traits(def, settings_), settings_, ids_),
+      entering_tracker_(surface_traits(def, settings_), settings_, ids_),
       resting_(may_rest(def)),
       mask_(def.bodies.size()),
       motions_(frames_.at_start(def)),
-      sought_(motions_) {
+      contact_motions_(motions_) {
   for (int i = 0; i < world_->units(); ++i) units_.push_back(i);
   activate();
   read_motions();
 }
 
-// What rests is of the group, but not computed.
+// Resting units belong to the group but are not computed.
 void VisualGroup::activate() {
   const auto active = world_->active_units();
   awake_.clear();
@@ -63,14 +64,14 @@ void VisualGroup::read_motions() {
     motions_[index(body)] = frames_.motion(body, world_->motions()[index(body)]);
 }
 
-// Their bodies, which are left in list_.
-void VisualGroup::mark(std::span<const int> units, char as) {
+// Leaves the bodies of the units in list_.
+void VisualGroup::mark(std::span<const int> units, char value) {
   list_.clear();
   for (const int unit : units) world_->unit_bodies(unit, list_);
-  for (const int body : list_) mask_[index(body)] = as;
+  for (const int body : list_) mask_[index(body)] = value;
 }
 
-// The contacts of who wakes are followed again.
+// Tracks the contacts of the woken bodies again.
 void VisualGroup::wake(std::span<const int> woken) {
   if (woken.empty()) return;
   for (const int body : woken) mask_[index(body)] = 1;
@@ -80,7 +81,7 @@ void VisualGroup::wake(std::span<const int> woken) {
   moved_.clear();
   std::copy_if(resting_contacts_.begin(), resting_contacts_.end(), std::back_inserter(moved_), wakes);
   std::erase_if(resting_contacts_, wakes);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
   for (const int body : woken) mask_[index(body)] = 0;
 }
 
@@ -88,7 +89,7 @@ void VisualGroup::settle(sync::Nanoseconds length) {
   const auto calm = resting_.settle(world_->active_bodies(), motions_, touching_, supported_, length);
   if (calm.empty()) return;
   for (const int body : calm) mask_[index(body)] = 1;
-  tracker_.take(mask_, resting_contacts_);
+  tracker_.extract(mask_, resting_contacts_);
   for (const int body : calm) {
     motions_[index(body)].velocity_m_s.setZero();
     motions_[index(body)].spin_rad_s.setZero();
@@ -96,39 +97,39 @@ void VisualGroup::settle(sync::Nanoseconds length) {
   }
 }
 
-void VisualGroup::let_go(const VisualTask& task) {
+void VisualGroup::remove_leaving(const VisualTask& task) {
   if (task.leaves.empty()) return;
   mark(task.leaves, 0);
   wake(resting_.wake_with(list_));
   mark(task.leaves, 1);
   moved_.clear();
-  tracker_.take(mask_, moved_);
+  tracker_.extract(mask_, moved_);
   mark(task.leaves, 0);
   std::erase_if(units_,
                 [&](int unit) { return std::binary_search(task.leaves.begin(), task.leaves.end(), unit); });
 }
 
-// Those that come were in the haptic group at the beginning of the step before: they catch up by themselves, since
-// they reach nobody else in it.
-void VisualGroup::take_over(const VisualTask& task, VisualStep& out) {
-  const Handover& enters = task.enters;
+// Entering units were in the haptic group at the beginning of the previous step. They catch up by themselves, since
+// they reach no other body in it.
+void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
+  const UnitTransfer& enters = task.enters;
   if (enters.units.empty()) return;
   for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
   world_->set_active(enters.units);
   read_motions();
-  newcomers_.put(enters.contacts);
-  sub_steps(newcomers_, now_ - task.missed, task.missed, out, false);
+  entering_tracker_.insert(enters.contacts);
+  sub_steps(entering_tracker_, now_ - task.missed, task.missed, out, false);
   moved_.clear();
   std::fill(mask_.begin(), mask_.end(), 1);
-  newcomers_.take(mask_, moved_);
+  entering_tracker_.extract(mask_, moved_);
   std::fill(mask_.begin(), mask_.end(), 0);
-  tracker_.put(moved_);
+  tracker_.insert(moved_);
   units_.insert(units_.end(), enters.units.begin(), enters.units.end());
   std::sort(units_.begin(), units_.end());
 }
 
-// Whether one that is awake is about to strike one that rests.
-bool VisualGroup::meets(const Manifold& m, int awake, double h) const {
+// Whether an awake body is about to strike a resting one.
+bool VisualGroup::is_about_to_strike(const Manifold& m, int awake, double h) const {
   const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
   return motions_[index(awake)].moves() &&
          std::any_of(m.used().begin(), m.used().end(), [&](const ManifoldPoint& p) {
@@ -140,30 +141,30 @@ bool VisualGroup::meets(const Manifold& m, int awake, double h) const {
 void VisualGroup::Contacts::find(std::span<const BodyMotion> motions, std::span<const int> active, double h,
                                  std::vector<Manifold>& out) {
   VisualGroup& g = group_;
-  for (const int body : active) g.sought_[index(body)] = g.frames_.motion(body, motions[index(body)]);
+  for (const int body : active) g.contact_motions_[index(body)] = g.frames_.motion(body, motions[index(body)]);
   straight_.clear();
   if (g.resting_.count() > 0)
     for (const int body : active) {
-      const BodyMotion& m = g.sought_[index(body)];
+      const BodyMotion& m = g.contact_motions_[index(body)];
       straight_.push_back({m.centre_m, m.velocity_m_s, g.radii_m_[index(body)], kTouching_m});
     }
-  const auto near = g.resting_.near(straight_, g.sought_, g.radii_m_, h);
-  if (near.empty()) return g.finder_.find(g.sought_, active, h, out);
-  looked_after_.assign(active.begin(), active.end());
-  looked_after_.insert(looked_after_.end(), near.begin(), near.end());
-  std::sort(looked_after_.begin(), looked_after_.end());
-  g.finder_.find(g.sought_, looked_after_, h, out);
-  const auto still = [&](int body) { return g.resting_.rests(body) || !g.sought_[index(body)].moves(); };
+  const auto near = g.resting_.near(straight_, g.contact_motions_, g.radii_m_, h);
+  if (near.empty()) return g.finder_.find(g.contact_motions_, active, h, out);
+  checked_bodies_.assign(active.begin(), active.end());
+  checked_bodies_.insert(checked_bodies_.end(), near.begin(), near.end());
+  std::sort(checked_bodies_.begin(), checked_bodies_.end());
+  g.finder_.find(g.contact_motions_, checked_bodies_, h, out);
+  const auto still = [&](int body) { return g.resting_.rests(body) || !g.contact_motions_[index(body)].moves(); };
   std::erase_if(out, [&](const Manifold& m) { return still(m.body_a) && still(m.body_b); });
 }
 
-// Who rests and is about to be struck wakes, with its island.
+// Wakes the resting bodies that are about to be struck, with their islands.
 bool VisualGroup::wake_struck(double h) {
   if (resting_.count() == 0) return false;
   list_.clear();
   for (const Manifold& m : contacts_) {
-    if (resting_.rests(m.body_a) && meets(m, m.body_b, h)) list_.push_back(m.body_a);
-    if (resting_.rests(m.body_b) && meets(m, m.body_a, h)) list_.push_back(m.body_b);
+    if (resting_.rests(m.body_a) && is_about_to_strike(m, m.body_b, h)) list_.push_back(m.body_a);
+    if (resting_.rests(m.body_b) && is_about_to_strike(m, m.body_a, h)) list_.push_back(m.body_b);
   }
   if (list_.empty()) return false;
   wake(resting_.wake_with(list_));
@@ -171,50 +172,51 @@ bool VisualGroup::wake_struck(double h) {
   return true;
 }
 
-// noted: of the group; else of those that catch up by themselves.
+// record: true for the group; false for units that catch up by themselves.
 void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::Nanoseconds length,
-                            VisualStep& out, bool noted) {
+                            VisualStep& out, bool record) {
   const auto at = [&](int k) { return sync::Nanoseconds(length.count() * k / settings_.visual_substeps); };
   const auto find = [&](double h) {
     source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h), contacts_);
   };
   double h = sync::to_seconds(at(1));
-  // Those that the step before ended with will do, when nobody has come or gone and steps are as long.
-  if (!noted || !found_ || h > found_for_s_) find(h);
+  // The contacts found at the end of the previous step are reused if no unit has come or gone and the step is not
+  // longer.
+  if (!record || !found_ || h > found_for_s_) find(h);
   for (int k = 0; k < settings_.visual_substeps; ++k) {
     h = sync::to_seconds(at(k + 1) - at(k));
-    while (noted && wake_struck(h)) find(h);
-    if (noted) note_sub_step(index(k), at(k), out);
-    // Steps are of one of two lengths that differ by a tick: the next one may be as long as the one before.
+    while (record && wake_struck(h)) find(h);
+    if (record) record_sub_step(index(k), at(k), out);
+    // Steps have one of two lengths that differ by a tick: the next one may be as long as the previous one.
     const double next_s = std::max(h, before_s_);
     advance_.step(*world_, source_, h, contacts_, solved_, next_s);
     frames_.place_impacts(solved_);
-    found_ = noted;
+    found_ = record;
     found_for_s_ = next_s;
     before_s_ = h;
-    // Contacts have last been sought where the step led.
-    for (const int body : world_->active_bodies()) motions_[index(body)] = sought_[index(body)];
+    // The last contact detection was at the end of the step.
+    for (const int body : world_->active_bodies()) motions_[index(body)] = contact_motions_[index(body)];
     const std::size_t first = out.events.size();
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
-    if (noted) {
+    if (record) {
       tracker.take_previous(out.live[index(k)]);
       add_resting(out.live[index(k)]);
     }
-    for (const LiveContact& c : tracker.live()) note_touching(c.manifold.body_a, c.manifold.body_b);
+    for (const LiveContact& c : tracker.live()) record_touching(c.manifold.body_a, c.manifold.body_b);
     for (std::size_t i = first; i < out.events.size(); ++i)
-      note_touching(out.events[i].body_a, out.events[i].body_b);
-    if (noted)
-      for (const int body : out.bodies) places_.push_back(motions_[index(body)].centre_m);
+      record_touching(out.events[i].body_a, out.events[i].body_b);
+    if (record)
+      for (const int body : out.bodies) centres_m_.push_back(motions_[index(body)].centre_m);
   }
 }
 
-void VisualGroup::note_touching(int a, int b) {
+void VisualGroup::record_touching(int a, int b) {
   supported_[index(a)] = supported_[index(b)] = 1;
   if (motions_[index(a)].moves() && motions_[index(b)].moves())
     touching_.emplace_back(std::min(a, b), std::max(a, b));
 }
 
-void VisualGroup::note_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out) {
+void VisualGroup::record_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out) {
   out.times.push_back(passed);
   out.states[k].resize(units_.size());
   for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], out.states[k][i]);
@@ -224,24 +226,24 @@ void VisualGroup::add_resting(std::vector<LiveContact>& live) const {
   live.insert(live.end(), resting_contacts_.begin(), resting_contacts_.end());
 }
 
-// Straight ways lead from where the bodies are to where they will be.
-void VisualGroup::note_ways(VisualStep& out) {
+// Straight lines from the poses at the beginning to those at the end of the step.
+void VisualGroup::record_trajectories(VisualStep& out) {
   const double length_s = sync::to_seconds(out.task.length);
-  const std::size_t n = out.bodies.size(), steps = n > 0 ? places_.size() / n : 0;
+  const std::size_t n = out.bodies.size(), steps = n > 0 ? centres_m_.size() / n : 0;
   straight_.clear();
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t body = index(out.bodies[i]);
     const Eigen::Vector3d from = out.begin[body].centre_m, by = motions_[body].centre_m - from;
-    double stray = 0;
+    double deviation_m = 0;
     for (std::size_t k = 0; k + 1 < steps; ++k) {
       const double share = sync::to_seconds(out.times[k + 1]) / length_s;
-      stray = std::max(stray, (places_[k * n + i] - from - share * by).norm());
+      deviation_m = std::max(deviation_m, (centres_m_[k * n + i] - from - share * by).norm());
     }
-    straight_.push_back({from, by / length_s, radii_m_[body], stray + kTouching_m});
+    straight_.push_back({from, by / length_s, radii_m_[body], deviation_m + kTouching_m});
   }
   std::sort(touching_.begin(), touching_.end());
   touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
-  out.ways.set(motions_.size(), out.bodies, straight_, touching_, length_s);
+  out.trajectories.set(motions_.size(), out.bodies, straight_, touching_, length_s);
 }
 
 void VisualGroup::run(const VisualTask& task, VisualStep& out) {
@@ -249,13 +251,13 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   out.events.clear();
   out.times.clear();
   touching_.clear();
-  places_.clear();
+  centres_m_.clear();
   supported_.assign(motions_.size(), 0);
-  let_go(task);
+  remove_leaving(task);
   for (const impulse::SceneChange& change : task.changes) scene_.apply(*world_, change);
   if (!task.changes.empty()) found_ = false;
   if (!task.changes.empty()) wake(resting_.wake_all());
-  take_over(task, out);
+  add_entering(task, out);
   activate();
   out.begins = now_;
   out.units = units_;
@@ -266,15 +268,15 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   out.states.resize(index(settings_.visual_substeps) + 1);
   out.live.resize(index(settings_.visual_substeps) + 1);
   sub_steps(tracker_, now_, task.length, out, true);
-  for (const LiveContact& c : resting_contacts_) note_touching(c.manifold.body_a, c.manifold.body_b);
-  // They are told one after the other as their time comes; a sub-step finds them by shape.
+  for (const LiveContact& c : resting_contacts_) record_touching(c.manifold.body_a, c.manifold.body_b);
+  // Events are published in order of time; within a sub-step they are found in order of shapes.
   std::stable_sort(out.events.begin(), out.events.end(),
                    [](const contact_event_t& x, const contact_event_t& y) { return x.time_ns < y.time_ns; });
   now_ += task.length;
-  note_sub_step(index(settings_.visual_substeps), task.length, out);
+  record_sub_step(index(settings_.visual_substeps), task.length, out);
   out.live.back().assign(tracker_.live().begin(), tracker_.live().end());
   add_resting(out.live.back());
-  note_ways(out);
+  record_trajectories(out);
   settle(task.length);
   out.end = motions_;
   out.asleep = static_cast<std::int64_t>(resting_.count());

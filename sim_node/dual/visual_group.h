@@ -1,5 +1,5 @@
-// The bodies that no tool can reach: moved by impulses in visual steps of some 16 ms, each divided into sub-steps,
-// ahead of time. Its clock is its own: whoever asks for a step says when it is to be. Knows no threads.
+// Bodies that no tool can reach: moved by impulses in visual steps of about 16 ms, each divided into sub-steps, ahead
+// of time. The group has its own clock; the caller decides when a step begins. Contains no threads.
 #pragma once
 
 #include <memory>
@@ -14,32 +14,32 @@ namespace tactus::sim {
 
 class VisualGroup {
  public:
-  // radii_m: of a sphere about the centre of mass that holds each body. ids: how its contacts and events are
-  // named. Throws std::runtime_error with one sentence when the world cannot be simulated. All units are its own
-  // at first.
+  // radii_m: radius of the bounding sphere of each body about its centre of mass. ids: names its contacts and events.
+  // Throws std::runtime_error with one sentence when the world cannot be simulated. Initially the group contains all
+  // units.
   VisualGroup(const WorldDef& world, const Settings& settings, std::vector<double> radii_m, Ids ids,
               const std::shared_ptr<MeshTrees>& trees);
 
-  // Takes over who enters, lets go who leaves, and computes the step. Deterministic: the same tasks give the same
+  // Adds entering units, removes leaving units, and computes the step. Deterministic: the same tasks give the same
   // steps to the bit. Realtime-safe once the lists have grown.
   void run(const VisualTask& task, VisualStep& out);
 
   const impulse::World& world() const { return *world_; }
   sync::SimTime now() const { return now_; }
-  // All that the next steps depend on. Throws BadState.
+  // Everything that the next steps depend on. Throws BadState.
   void archive(StateArchive& a);
   void rename(std::int64_t incarnation);
-  // Before the first step.
+  // Call before the first step.
   void restart(std::int64_t incarnation) { ids_.restart(incarnation); }
 
  private:
   void activate();
-  void mark(std::span<const int> units, char as);
-  void let_go(const VisualTask& task);
-  void take_over(const VisualTask& task, VisualStep& out);
+  void mark(std::span<const int> units, char value);
+  void remove_leaving(const VisualTask& task);
+  void add_entering(const VisualTask& task, VisualStep& out);
   void wake(std::span<const int> woken);
   void settle(sync::Nanoseconds length);
-  // Contacts of what is awake. What rests is there where something awake is near: it stands as if fixed.
+  // Contacts of the awake bodies. A resting body takes part when an awake body is near it; it is treated as fixed.
   class Contacts : public impulse::ContactSource {
    public:
     explicit Contacts(VisualGroup& group) : group_(group) {}
@@ -48,18 +48,18 @@ class VisualGroup {
 
    private:
     VisualGroup& group_;
-    std::vector<int> looked_after_;
+    std::vector<int> checked_bodies_;
     std::vector<SweptSphere> straight_;
   };
   bool wake_struck(double h_s);
   void sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::Nanoseconds length, VisualStep& out,
-                 bool noted);
-  bool meets(const Manifold& m, int awake, double h_s) const;
+                 bool record);
+  bool is_about_to_strike(const Manifold& m, int awake, double h_s) const;
   void read_motions();
-  void note_touching(int a, int b);
-  void note_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out);
+  void record_touching(int a, int b);
+  void record_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out);
   void add_resting(std::vector<LiveContact>& live) const;
-  void note_ways(VisualStep& out);
+  void record_trajectories(VisualStep& out);
 
   Settings settings_;
   std::vector<double> radii_m_;
@@ -70,21 +70,21 @@ class VisualGroup {
   impulse::Advance advance_;
   impulse::SceneSettings scene_;
   Ids ids_;
-  ContactTracker tracker_, newcomers_;         // of those that are awake, and of those that catch up
-  std::vector<LiveContact> resting_contacts_;  // of those that rest
+  ContactTracker tracker_, entering_tracker_;         // of the awake bodies, and of those that catch up
+  std::vector<LiveContact> resting_contacts_;  // of the resting bodies
   Resting resting_;
   sync::SimTime now_{};
-  bool found_ = false;  // contacts_ are those of the present poses, sought for steps of found_for_s_
-  double found_for_s_ = 0, before_s_ = 0;  // and the length of the sub-step before
+  bool found_ = false;  // contacts_ are valid for the present poses and for steps up to found_for_s_
+  double found_for_s_ = 0, before_s_ = 0;  // length of the previous sub-step
   std::vector<int> units_, awake_;            // ascending
-  std::vector<char> mask_, supported_;        // of each body
-  std::vector<BodyMotion> motions_, sought_;  // as they are, and as contacts were last sought for
+  std::vector<char> mask_, supported_;        // per body
+  std::vector<BodyMotion> motions_, contact_motions_;  // at present, and at the last contact detection
   std::vector<Manifold> contacts_, solved_;
   std::vector<LiveContact> moved_;
   std::vector<int> list_;
   std::vector<SweptSphere> straight_;
   std::vector<std::pair<int, int>> touching_;
-  std::vector<Eigen::Vector3d> places_;  // centres of the group's bodies at the end of each sub-step
+  std::vector<Eigen::Vector3d> centres_m_;  // of the group's bodies at the end of each sub-step
 };
 
 }  // namespace tactus::sim

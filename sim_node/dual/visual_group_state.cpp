@@ -16,15 +16,15 @@ void VisualGroup::archive(StateArchive& a) {
   a(now_);
   a.list(units_, static_cast<std::size_t>(world_->units()), [&](int& unit) {
     a.index(unit, static_cast<std::size_t>(world_->units()));
-    a.require(unit >= 0, "the state names a body that is not there");
+    a.require(unit >= 0, "the state names a body that does not exist");
   });
-  a.require(std::is_sorted(units_.begin(), units_.end()), "the state holds a list in disorder");
+  a.require(std::is_sorted(units_.begin(), units_.end()), "the state holds an unsorted list");
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
   a.list(contacts_, kMaxContacts, [&](Manifold& m) { sim::archive(a, m, motions_.size(), finder_.shapes()); });
   bool found = found_;
   a(found), a(found_for_s_), a(before_s_);
   if (!a.reads()) return;
-  sought_ = motions_;
+  contact_motions_ = motions_;
   activate();
   found_ = found;
 }

@@ -1,4 +1,4 @@
-// How long the visual steps are, in whole haptic ticks. Pure.
+// Lengths of the visual steps in whole haptic ticks. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@ namespace tactus::sim {
 
 class VisualRate {
  public:
-  // Pictures are not shown faster than 240 Hz, as snapshots are not (setting state_rate); slower than 10 Hz
-  // nothing is seen to move (design).
-  static constexpr double kLeast_Hz = 10, kMax_Hz = 240;
+  // Design: 240 Hz is also the limit of snapshots (setting state_rate); below 10 Hz motion is not perceived as
+  // continuous.
+  static constexpr double kMin_Hz = 10, kMax_Hz = 240;
 
   VisualRate(double rate_Hz, sync::Nanoseconds tick) : tick_(tick) { set(rate_Hz); }
 
-  // Steps from the next one on; beyond the limits the nearest.
+  // Applies from the next step on; clamps to the limits.
   void set(double rate_Hz);
   double rate_Hz() const { return rate_Hz_; }
-  // The length of the next step: step n begins at the first tick that is not before n / rate, so that at 60 Hz
-  // lengths are 16 or 17 ticks of 1 ms.
+  // Length of the next step. Step n begins at the first tick at or after n / rate; at 60 Hz a step has 16 or 17 ticks
+  // of 1 ms.
   sync::Nanoseconds next();
 
   template <class Archive>
@@ -30,7 +30,7 @@ class VisualRate {
  private:
   sync::Nanoseconds tick_;
   double rate_Hz_ = 60;
-  std::int64_t steps_ = 0, begun_ = 0;  // steps since the rate was set, and the ticks that they last
+  std::int64_t steps_ = 0, begun_ = 0;  // since the rate was set: number of steps, and of the ticks that they last
 };
 
 }  // namespace tactus::sim

@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxContacts = 1 << 16;  // as of a tracker
+constexpr std::size_t kMaxContacts = 1 << 16;  // the limit of ContactTracker
 constexpr std::size_t kMaxCoordinates = 1 << 16, kMaxSubSteps = 64, kMaxChanges = 1 << 12;
 
 void archive_unit(StateArchive& a, impulse::UnitState& s) {
@@ -24,13 +24,13 @@ void archive_time(StateArchive& a, sync::Nanoseconds& t) {
   t = sync::Nanoseconds(ns);
 }
 
-// Numbers of units or bodies, ascending.
+// Indices of units or bodies, ascending.
 void archive_numbers(StateArchive& a, std::vector<int>& numbers, std::size_t count) {
   a.list(numbers, count, [&](int& n) {
     a.index(n, count);
-    a.require(n >= 0, "the state names a body that is not there");
+    a.require(n >= 0, "the state names a body that does not exist");
   });
-  a.require(std::is_sorted(numbers.begin(), numbers.end()), "the state holds a list in disorder");
+  a.require(std::is_sorted(numbers.begin(), numbers.end()), "the state holds an unsorted list");
 }
 
 }  // namespace
@@ -39,18 +39,18 @@ void shift(LiveContact& c, sync::Nanoseconds by) {
   for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.apart_since}) *t += by;
 }
 
-int Handover::find(int unit) const {
+int UnitTransfer::find(int unit) const {
   const auto at = std::lower_bound(units.begin(), units.end(), unit);
   return at != units.end() && *at == unit ? static_cast<int>(at - units.begin()) : -1;
 }
 
-void Handover::archive(StateArchive& a, int most, std::size_t bodies, ContactTracker& tracker) {
-  const auto count = static_cast<std::size_t>(most);
+void UnitTransfer::archive(StateArchive& a, int max_units, std::size_t bodies, ContactTracker& tracker) {
+  const auto count = static_cast<std::size_t>(max_units);
   a.list(units, count, [&](int& unit) {
     a.index(unit, count);
-    a.require(unit >= 0, "the state names a body that is not there");
+    a.require(unit >= 0, "the state names a body that does not exist");
   });
-  a.require(std::is_sorted(units.begin(), units.end()), "the state holds a list in disorder");
+  a.require(std::is_sorted(units.begin(), units.end()), "the state holds an unsorted list");
   a.list(states, count, [&](impulse::UnitState& s) { archive_unit(a, s); });
   a.require(states.size() == units.size(), "the state holds a list that is too long");
   a.list(contacts, kMaxContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
@@ -64,13 +64,13 @@ void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, Contact
   a.list(changes, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
 }
 
-void VisualStep::archive(StateArchive& a, int most, std::size_t count, ContactTracker& tracker) {
-  task.archive(a, most, count, tracker);
+void VisualStep::archive(StateArchive& a, int max_units, std::size_t count, ContactTracker& tracker) {
+  task.archive(a, max_units, count, tracker);
   a(begins);
-  archive_numbers(a, units, static_cast<std::size_t>(most)), archive_numbers(a, bodies, count);
+  archive_numbers(a, units, static_cast<std::size_t>(max_units)), archive_numbers(a, bodies, count);
   a.list(times, kMaxSubSteps, [&](sync::Nanoseconds& t) { archive_time(a, t); });
   a.list(states, kMaxSubSteps, [&](auto& list) {
-    a.list(list, static_cast<std::size_t>(most), [&](impulse::UnitState& s) { archive_unit(a, s); });
+    a.list(list, static_cast<std::size_t>(max_units), [&](impulse::UnitState& s) { archive_unit(a, s); });
     a.require(list.size() == units.size(), "the state holds a list that is too long");
   });
   a.list(live, kMaxSubSteps,
@@ -79,9 +79,9 @@ void VisualStep::archive(StateArchive& a, int most, std::size_t count, ContactTr
             "the state holds a list that is too long");
   for (auto* list : {&begin, &end}) {
     a.list(*list, count, [&](BodyMotion& m) { sim::archive(a, m); });
-    a.require(list->size() == count, "the state is one of another scene");
+    a.require(list->size() == count, "the state belongs to another scene");
   }
-  ways.archive(a, count);
+  trajectories.archive(a, count);
   a.list(events, kMaxContacts, [&](contact_event_t& e) { a.message(e); });
   a(asleep);
 }

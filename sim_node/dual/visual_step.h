@@ -1,5 +1,5 @@
-// What the two groups of a dual simulation hand to each other, by value: a task for the visual group, and the step
-// that comes of it. Plain data; kept and swapped, so that nothing is allocated once the lists have grown.
+// Data that the two groups of a dual simulation exchange by value: a task for the visual group, and the step that
+// results. Plain data; the lists are kept and swapped, so that nothing is allocated once they have grown.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,28 @@
 
 namespace tactus::sim {
 
-// Some units, and the contacts in which they are.
-struct Handover {
+// Units that change groups, with their states and contacts.
+struct UnitTransfer {
   std::vector<int> units;  // ascending
   std::vector<impulse::UnitState> states;
   std::vector<LiveContact> contacts;
   void clear() { units.clear(), states.clear(), contacts.clear(); }
-  // Where a unit is in it; -1: nowhere.
+  // Index of a unit; -1: not found.
   int find(int unit) const;
-  // most: units of the world. tracker: of the world whose contacts these are.
-  void archive(StateArchive& a, int most, std::size_t bodies, ContactTracker& tracker);
+  // max_units: units of the world. tracker: of the world that these contacts belong to.
+  void archive(StateArchive& a, int max_units, std::size_t bodies, ContactTracker& tracker);
 };
 
-// Moves the instants of a contact to another clock.
+// Shifts the times of a contact to another clock.
 void shift(LiveContact& contact, sync::Nanoseconds by);
 
 struct VisualTask {
   std::int64_t number = 0;     // of the step
   sync::Nanoseconds length{};  // of the step
-  sync::Nanoseconds missed{};  // of the step before, at whose beginning those that enter left the haptic group
-  Handover enters;             // as they were then
-  std::vector<int> leaves;     // units that are in the haptic group by now
-  std::vector<impulse::SceneChange> changes;  // that hold from its beginning on
+  sync::Nanoseconds missed{};  // length of the previous step, at whose beginning the entering units left the haptic group
+  UnitTransfer enters;             // their state at that time
+  std::vector<int> leaves;     // units that are now in the haptic group
+  std::vector<impulse::SceneChange> changes;  // valid from the beginning of the step on
 
   void archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker);
 };
@@ -49,20 +49,20 @@ struct VisualStep {
   VisualTask task;
   sync::SimTime begins{};
   std::vector<int> units, bodies;        // of the group, ascending
-  std::vector<sync::Nanoseconds> times;  // at which sub-steps begin, from `begins` on, and the end
-  // At each of them: every unit of the group, and the contacts.
+  std::vector<sync::Nanoseconds> times;  // beginning of each sub-step from `begins` on, and the end
+  // For each of `times`: the states of the units of the group, and the contacts.
   std::vector<std::vector<impulse::UnitState>> states;
   std::vector<std::vector<LiveContact>> live;
-  std::vector<BodyMotion> begin, end;   // of every body of the world; of those not in the group nothing is known
-  SweptTrajectories ways;                            // from the beginning on
-  std::vector<contact_event_t> events;  // on that clock; those of who entered are from the step before
-  std::int64_t asleep = 0;              // bodies that rested and were not computed
+  std::vector<BodyMotion> begin, end;   // of every body of the world; undefined for bodies outside the group
+  SweptTrajectories trajectories;       // from the beginning of the step on
+  std::vector<contact_event_t> events;  // on the group's clock; events of entering units are from the previous step
+  std::int64_t asleep = 0;              // number of resting bodies that were not computed
 
-  // The newest of times that is not after `passed`.
+  // Index of the last of `times` at or before `passed`.
   std::size_t time_before(sync::Nanoseconds passed) const;
-  // units, bodies: of the world. tracker: of the world whose contacts these are.
+  // units, bodies: of the world. tracker: of the world that these contacts belong to.
   void archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker);
-  // The names of contacts and events are of another incarnation.
+  // Renames contacts and events to another incarnation.
   void rename(const Ids& ids);
 };
 

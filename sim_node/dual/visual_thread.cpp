@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-// design: below the haptic loop (50), above all that only shows (sync/node_descriptor.h).
+// design: below the haptic loop (50), above the nodes that only display (sync/node/node_descriptor.h).
 constexpr int kPriority = 45;
 
 }  // namespace
@@ -17,16 +17,16 @@ VisualThread::VisualThread(std::unique_ptr<VisualGroup> group)
     : group_(std::move(group)), step_(std::make_unique<VisualStep>()) {}
 
 void VisualThread::start() {
-  // In a virtual time computing takes none: a step is done when it is asked for.
+  // In virtual time computation takes no time: request() computes the step at once.
   if (!thread_.joinable() && !sync::VirtualTime::current()) thread_ = std::thread([this] { loop(); });
 }
 
 VisualThread::~VisualThread() {
   if (!thread_.joinable()) return;
-  // A step that is being computed is waited for.
+  // Waits for a step that is being computed.
   int state = state_.load();
-  while (state == kAsked || !state_.compare_exchange_strong(state, kEnd)) {
-    if (state == kAsked) state_.wait(kAsked);
+  while (state == kRequested || !state_.compare_exchange_strong(state, kEnd)) {
+    if (state == kRequested) state_.wait(kRequested);
     state = state_.load();
   }
   state_.notify_all();
@@ -39,42 +39,42 @@ void VisualThread::loop() {
   while (true) {
     const int state = state_.load(std::memory_order_acquire);
     if (state == kEnd) return;
-    if (state != kAsked) {
+    if (state != kRequested) {
       state_.wait(state);
       continue;
     }
     const sync::HostTime began = sync::host_now();
     group_->run(task_, *step_);
-    // Steps that take longer than they last would starve the machine.
+    // Steps that take longer than their own length would starve the machine.
     if (guard.tick(began, sync::host_now())) sync::leave_realtime();
     state_.store(kDone, std::memory_order_release);
     state_.notify_all();
   }
 }
 
-void VisualThread::ask(const VisualTask& task) {
+void VisualThread::request(const VisualTask& task) {
   task_ = task;
-  asked_ = true;
+  requested_ = true;
   if (!thread_.joinable()) {
     group_->run(task_, *step_);
     state_ = kDone;
     return;
   }
-  state_.store(kAsked, std::memory_order_release);
+  state_.store(kRequested, std::memory_order_release);
   state_.notify_all();
 }
 
-bool VisualThread::take(std::unique_ptr<VisualStep>& step) {
+bool VisualThread::poll(std::unique_ptr<VisualStep>& step) {
   if (state_.load(std::memory_order_acquire) != kDone) return false;
   std::swap(step_, step);
   if (!step_) step_ = std::make_unique<VisualStep>();
-  asked_ = false;
+  requested_ = false;
   state_.store(kIdle, std::memory_order_release);
   return true;
 }
 
 VisualStep& VisualThread::finish() {
-  while (thread_.joinable() && state_.load(std::memory_order_acquire) == kAsked) state_.wait(kAsked);
+  while (thread_.joinable() && state_.load(std::memory_order_acquire) == kRequested) state_.wait(kRequested);
   return *step_;
 }
 

@@ -1,5 +1,5 @@
-// Where the visual steps are computed: in a thread of its own, below the haptic loop, or at once where they are
-// asked for. What goes in and out goes by value; nobody waits for the other.
+// Runs the visual steps: on a thread with a priority below the haptic loop, or synchronously in request(). Tasks and
+// steps are passed by value; neither side waits for the other.
 #pragma once
 
 #include <atomic>
@@ -17,31 +17,31 @@ class VisualThread {
   VisualThread(const VisualThread&) = delete;
   VisualThread& operator=(const VisualThread&) = delete;
 
-  // A thread of its own from now on, scheduled as the caller is, but below it. Without it steps are computed
-  // within ask(), the same way every time.
+  // Starts the thread, with the scheduling of the caller but a lower priority. Without it, request() computes each
+  // step itself, which is deterministic.
   void start();
 
-  // Call when nothing is asked for or ready. The lists of the task are copied. Realtime-safe with a thread of its
-  // own once the lists have grown.
-  void ask(const VisualTask& task);
-  // The step that was asked for, exchanged for the caller's old one, when it is there; never waits. Realtime-safe:
-  // yes.
-  bool take(std::unique_ptr<VisualStep>& step);
-  bool asked() const { return asked_; }
+  // Call only when no step is requested or ready. Copies the lists of the task. Realtime-safe with a running thread
+  // once the lists have grown.
+  void request(const VisualTask& task);
+  // Exchanges the finished step for the caller's previous one; false when it is not ready. Never waits.
+  // Realtime-safe: yes.
+  bool poll(std::unique_ptr<VisualStep>& step);
+  bool requested() const { return requested_; }
 
-  // For what happens while the world stands still: waits for the step that was asked for; it stays to be taken.
+  // Waits for the requested step; poll() still returns it. For use while the world is paused.
   VisualStep& finish();
   // Not while a step is being computed.
   VisualGroup& group() { return *group_; }
 
  private:
-  enum State { kIdle, kAsked, kDone, kEnd };
+  enum State { kIdle, kRequested, kDone, kEnd };
   void loop();
 
   std::unique_ptr<VisualGroup> group_;
   VisualTask task_;
   std::unique_ptr<VisualStep> step_;
-  bool asked_ = false;
+  bool requested_ = false;
   std::atomic<int> state_{kIdle};
   std::thread thread_;
 };

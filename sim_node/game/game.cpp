@@ -1,6 +1,7 @@
 #include "sim_node/game/game.h"
 
 #include <algorithm>
+#include <tactus/hole_state_t.hpp>
 
 namespace tactus::sim {
 
@@ -8,7 +9,8 @@ Game::Game(std::vector<HoleDef> holes) {
   for (HoleDef& def : holes) holes_.push_back({std::move(def), -1, {}, -1});
 }
 
-// Its centre of mass lies below the rim and within the wall. Only what belongs into some hole of the game counts.
+// The body whose centre of mass is below the rim and within the wall. Only bodies that belong to a hole of the game
+// count.
 int Game::body_in(const HoleDef& hole, std::span<const BodyMotion> bodies) const {
   for (const Hole& other : holes_) {
     const Eigen::Vector3d from_rim = bodies[static_cast<std::size_t>(other.def.ball)].centre_m - hole.position_m;
@@ -26,7 +28,7 @@ void Game::step(sync::SimTime now, std::span<const BodyMotion> bodies) {
       h.candidate = found;
       h.since = now;
     }
-    const int inside = found == h.inside || now - h.since >= kSettles || found < 0 ? found : -1;
+    const int inside = found == h.inside || now - h.since >= kSettlingTime || found < 0 ? found : -1;
     changed_ = changed_ || inside != h.inside;
     h.inside = inside;
     all = all && inside == h.def.ball;

@@ -1,4 +1,4 @@
-// The game of a scene: which body lies in which hole, and whether all lie in theirs. Pure.
+// The game of a scene: which body is in which hole, and whether every hole has its own body. Pure.
 #pragma once
 
 #include <span>
@@ -14,17 +14,17 @@ namespace tactus::sim {
 
 class Game {
  public:
-  // A body counts as in a hole when it has been there for so long: one that bounces out again was not.
-  static constexpr sync::Nanoseconds kSettles{100'000'000};
+  // A body counts as in a hole after this time, so that a body that bounces out does not count.
+  static constexpr sync::Nanoseconds kSettlingTime{100'000'000};
 
   explicit Game(std::vector<HoleDef> holes);
 
   bool any() const { return !holes_.empty(); }
-  // Where the bodies are at `now`, the end of a step.
+  // Updates from the poses at `now`, the end of a step.
   void step(sync::SimTime now, std::span<const BodyMotion> bodies);
-  // True once after each change of what describe() says.
+  // True once after each change of the data that describe() writes.
   bool take_change() { return std::exchange(changed_, false); }
-  // All but header and clock.
+  // Writes everything except header and clock.
   void describe(game_state_t& out) const;
   bool won() const { return won_; }
 
@@ -33,7 +33,7 @@ class Game {
  private:
   struct Hole {
     HoleDef def;
-    int candidate = -1;  // its centre is in there now
+    int candidate = -1;  // body whose centre is in the hole now
     sync::SimTime since{};
     int inside = -1;
   };

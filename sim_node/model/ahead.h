@@ -1,4 +1,4 @@
-// What is known of bodies that are computed ahead, as whoever computes hands it to whoever tells. Plain data.
+// Look-ahead state, handed from the dynamics to the publisher. Plain data.
 #pragma once
 
 #include <functional>
@@ -11,19 +11,19 @@
 
 namespace tactus::sim {
 
-// Of the bodies that are computed ahead.
+// State of the bodies that are computed ahead.
 struct Ahead {
-  sync::SimTime begins{};               // of the visual step that runs
+  sync::SimTime begins{};               // start of the running visual step
   sync::SimTime time{};                 // its end
-  std::span<const int> bodies;          // their numbers, ascending
+  std::span<const int> bodies;          // their indices, ascending
   std::span<const BodyMotion> motions;  // of each of `bodies`, at `time`
-  // In neither group until the next step begins; ascending. As those of `bodies`, StateSource has them as they
-  // were when this step began.
+  // Bodies in neither group until the next step begins; ascending. For these and for `bodies`, StateSource has the
+  // state at the start of this step.
   std::span<const int> waiting;
   std::function<void(std::vector<contact_t>&)> contacts;  // of the group AHEAD, at `time`; clears the list first
   bool fresh = false;                                     // the step begins in this tick
-  bool held = false;              // the step is late: until it begins they stay where they are
-  std::span<const int> promoted;  // that were computed ahead and from this tick on are not
+  bool held = false;              // the step is late: the bodies stay at rest until it begins
+  std::span<const int> promoted;  // bodies that were computed ahead up to this tick
 };
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-// The parts that several states share.
+// Archive functions shared by several states.
 #pragma once
 
 #include "sim_node/model/body_motion.h"
@@ -12,13 +12,13 @@ inline void archive(StateArchive& a, BodyMotion& m) {
   a(m.inverse_mass_1_kg), a(m.inverse_inertia);
 }
 
-// bodies, shapes: how many the world has.
+// bodies, shapes: numbers of bodies and shapes in the world.
 inline void archive(StateArchive& a, Manifold& m, std::size_t bodies, std::size_t shapes) {
   a.index(m.shape_a, shapes), a.index(m.shape_b, shapes), a.index(m.body_a, bodies), a.index(m.body_b, bodies);
   a(m.count);
   a.require(
       m.count >= 1 && m.count <= kMaxManifoldPoints && std::min({m.shape_a, m.shape_b, m.body_a, m.body_b}) >= 0,
-      "the state holds a contact of nothing");
+      "the state holds a contact without points or bodies");
   for (ManifoldPoint& p : m.used())
     a(p.point_m), a(p.normal), a(p.depth_m), a(p.triangle_a), a(p.triangle_b), a(p.normal_force_N), a(p.friction);
 }

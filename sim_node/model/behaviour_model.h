@@ -1,4 +1,4 @@
-// The laws that may move the bodies of a scene, behind one solver (setting `solver`), and what each needs.
+// Contact laws that a scene may select (setting `solver`), and the requirements of each.
 #pragma once
 
 #include <span>
@@ -11,25 +11,26 @@ namespace tactus::sim {
 
 struct BehaviourModel {
   std::string_view name, what;
-  // Solved by impulse::World, free bodies and systems of joints alike; else by ODE.
+  // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
-  // Acts before surfaces meet, and puts apart what overlaps all the same: contacts have to say how far they still are
-  // apart, or what was put apart would be no contact any more and never be solved. The others make do with overlap.
+  // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their
+  // gaps: a pair that was separated would otherwise be no contact any more and would never be solved. The other
+  // models accept overlaps only.
   bool needs_gaps = false;
-  // Joints must not close a loop.
+  // Joints must not form a loop.
   bool needs_trees = false;
-  // Only so stiff as step and mass allow.
+  // Stiffness is limited by step and mass.
   bool has_stability_limit = false;
-  bool bounces = true;  // by restitution; else only what is too fast for the spring, which throws back the rest
-  bool finite_forces = false;  // which also are continuous; else a blow is over in one step
+  bool bounces = true;  // by restitution; otherwise restitution applies only to bodies too fast for the spring
+  bool finite_forces = false;  // forces are finite and continuous; otherwise an impact takes one step
 };
 
 std::span<const BehaviourModel> behaviour_models();
 // Throws std::runtime_error with one sentence when the name is unknown.
 const BehaviourModel& behaviour_model(std::string_view name);
 
-// The gap at which surfaces begin to act on each other, m: where springs do, and, so that nothing changes when a body goes
-// from one group to the other, in both groups of a dual simulation. Else they meet at none.
+// Gap at which surfaces start to interact, m: the reach of springs, in both groups of a dual simulation, so that the
+// contact does not change when a body moves between groups. 0 for models without springs.
 double meeting_distance_m(const Settings& settings);
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-// Where a body is and how it moves: what the solver gives and everything else reads. Plain data, world frame, SI.
+// Pose and velocity of a body, as the solver outputs them. Plain data, world frame, SI.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ struct BodyMotion {
   bool moves() const { return inverse_mass_1_kg > 0; }
 };
 
-// Speed that a unit impulse along n at the point gives to that point, 1/kg.
+// Speed of the point along n per unit impulse along n at the point, 1/kg.
 inline double mobility(const BodyMotion& b, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
   if (!b.moves()) return 0;
   const Eigen::Vector3d arm = (point - b.centre_m).cross(n);

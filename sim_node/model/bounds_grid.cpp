@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr long long kMaxCells = 64;  // of one box, or of one query: beyond that a look at all is as cheap
+constexpr long long kMaxCells = 64;  // of one box or one query; beyond it a linear search costs no more
 constexpr int kFurthest = (1 << 20) - 1;
 constexpr double kSmallestCell_m = 1e-3;
 
@@ -44,7 +44,7 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
   if (boxes_.empty()) return;
   const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
   std::nth_element(sizes_.begin(), middle, sizes_.end());
-  // design: most boxes lie in one or two cells, a query sees few besides
+  // design: most boxes span one or two cells, and a query visits few others
   cell_m_ = std::max(4 * *middle, kSmallestCell_m);
   for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
     const Range r = range_of(boxes_[static_cast<std::size_t>(i)]);
@@ -53,7 +53,7 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
     else
       each_cell(r.least, r.most, [&](int x, int y, int z) { entries_.push_back({bucket_of(x, y, z), i}); });
   }
-  // Counted, then put in place, from the last on so that each bucket is in order.
+  // Counting sort, filled from the end so that each bucket is in order.
   first_.assign(buckets_ + 1, 0);
   for (const Entry& e : entries_) ++first_[e.bucket];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());

@@ -1,5 +1,5 @@
-// Finds the boxes that may meet a given one among many: cells of one size, hashed; what is larger than a few cells
-// is looked at each time. Pure, deterministic.
+// Hashed uniform grid for overlap queries of boxes. Boxes that span many cells are tested in every query. Pure,
+// deterministic.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace tactus::sim {
 
 class BoundsGrid {
  public:
-  // Indexes these boxes anew. Realtime-safe once its lists have grown.
+  // Rebuilds the index. Real-time safe once its lists have grown.
   void build(std::span<const Bounds> boxes);
-  // Appends those that meet the query to `found`, in ascending order, each once.
+  // Appends the boxes that overlap the query to `found`, in ascending order, each once.
   void find(const Bounds& query, std::vector<int>& found) const;
 
  private:
@@ -34,7 +34,7 @@ class BoundsGrid {
   std::vector<Entry> entries_;
   std::uint32_t buckets_ = 1;    // a power of two
   std::vector<int> first_, in_;  // the boxes of each bucket: in_[first_[bucket]...]
-  std::vector<int> large_;       // in many cells
+  std::vector<int> large_;       // boxes that span too many cells
   std::vector<double> sizes_;
 };
 

@@ -1,4 +1,4 @@
-// What two surfaces have in common where they touch.
+// Type of a contact: point, edge or surface.
 #pragma once
 
 #include <cstdint>

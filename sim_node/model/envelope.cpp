@@ -42,7 +42,7 @@ std::vector<std::uint8_t> wrap_state(std::span<const std::uint8_t> state, std::u
 
 std::span<const std::uint8_t> unwrap_state(std::span<const std::uint8_t> bytes, std::uint64_t fingerprint) {
   if (bytes.size() < kHead + kTail || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin()))
-    throw BadState("this is no state of a simulation");
+    throw BadState("the bytes are not a saved state of a simulation");
   if (number_at(bytes, 8) != kStateVersion)
     throw BadState("the state has version " + std::to_string(number_at(bytes, 8)) +
                    ", this program reads version " + std::to_string(kStateVersion));
@@ -50,7 +50,7 @@ std::span<const std::uint8_t> unwrap_state(std::span<const std::uint8_t> bytes, 
   if (number_at(bytes, 24) != size || number_at(bytes, kHead + size) != hash_of(bytes.first(kHead + size)))
     throw BadState("the state is damaged");
   if (number_at(bytes, 16) != fingerprint)
-    throw BadState("the state is one of another scene or of other settings");
+    throw BadState("the state belongs to another scene or to other settings");
   return bytes.subspan(kHead, size);
 }
 

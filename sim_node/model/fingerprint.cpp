@@ -1,12 +1,15 @@
 #include "sim_node/model/fingerprint.h"
 
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+
 #include "sim_node/model/state_archive.h"
 #include "sync/bus/identity.h"
 
 namespace tactus::sim {
 namespace {
 
-// Takes values, where an archive takes what it could also read.
+// Write-only archive that accepts values instead of references.
 struct Words {
   StateArchive a;
   template <class... T>

@@ -1,4 +1,4 @@
-// Which world a state is of: a hash of all that moves it and is no state. Pure.
+// Identity of the world of a saved state: a hash of everything that determines its motion and is not state. Pure.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tactus::sim {
 
-// Equal for two worlds exactly when a state of one continues in the other.
+// Equal for two worlds exactly when a state of one can continue in the other.
 std::uint64_t fingerprint(const WorldDef& world, const Settings& settings);
 
 }  // namespace tactus::sim

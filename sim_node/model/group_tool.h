@@ -1,4 +1,4 @@
-// A tool as the groups of a dual simulation see it. Plain data.
+// State of a tool for the groups of a dual simulation. Plain data.
 #pragma once
 
 #include <Eigen/Core>

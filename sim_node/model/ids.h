@@ -1,4 +1,4 @@
-// Numbers for events and contacts: unique over restarts, so that receivers discard repetitions by them.
+// Ids of events and contacts, unique across restarts, so that receivers can discard repetitions.
 #pragma once
 
 #include "sim_node/model/state_archive.h"
@@ -8,21 +8,21 @@ namespace tactus::sim {
 
 class Ids {
  public:
-  // Several may give numbers of one incarnation: each every so manieth, from its own on.
+  // Several counters may share one incarnation. Each starts at its own lane and advances by the number of lanes.
   explicit Ids(std::int64_t incarnation, std::int64_t lane = 0, std::int64_t lanes = 1)
       : incarnation_(incarnation), lane_(lane), lanes_(lanes) {}
   std::int64_t fresh() { return sync::prefixed_id(incarnation_, lane_ + lanes_ * next_++); }
-  // Whether fresh() has given that number.
+  // Whether fresh() has returned this id.
   bool issued(std::int64_t id) const {
     const std::int64_t count = id & ((std::int64_t{1} << 40) - 1);
     return count % lanes_ == lane_ && count / lanes_ < next_ && id == sync::prefixed_id(incarnation_, count);
   }
   std::int64_t incarnation() const { return incarnation_; }
-  // Another incarnation from here on.
+  // Starts a new incarnation and restarts the count.
   void restart(std::int64_t incarnation) { *this = Ids(incarnation, lane_, lanes_); }
-  // The world goes on in a new life: numbers are counted on, under another name.
+  // Continues the count under a new incarnation.
   void rename(std::int64_t incarnation) { incarnation_ = incarnation; }
-  // What a number given before is called now.
+  // The id under the current incarnation of an id issued before.
   std::int64_t renamed(std::int64_t id) const { return sync::prefixed_id(incarnation_, id); }
 
   void archive(StateArchive& a) {

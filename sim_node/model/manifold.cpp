@@ -6,8 +6,8 @@
 namespace tactus::sim {
 namespace {
 
-// Two points of one place but with other normals, as in a corner, are as far apart as this per radian, m: below the size
-// of any patch, above that of a duplicate.
+// Distance per radian between two points with one position and different normals, as in a corner, m. Smaller than any
+// patch and larger than the distance of duplicates.
 constexpr double kNormalWeight_m = 1e-3;
 constexpr double kSamePlace_m = 1e-6;
 

@@ -1,4 +1,5 @@
-// What a collision query finds for one pair of shapes: up to four points that stand for the whole contact.
+// Contact manifold: result of a collision query for one pair of shapes, with up to four points that represent the
+// contact.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,20 +13,21 @@ struct ManifoldPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
   double depth_m = 0;                                 // positive inside; negative: a gap
   int triangle_a = -1, triangle_b = -1;               // of a mesh; -1: none
-  double normal_force_N = 0;                          // once solved, mean over the step
-  double friction = 1;                                // factor on that of the pair, by the maps of its surfaces
+  double normal_force_N = 0;                          // output of the solver, mean over the step
+  double friction = 1;                                // factor on the friction of the pair, from friction maps
 };
 
-// What a step did at a pair of shapes: how they met in it, if they did.
+// Impacts of a pair of shapes within a step, as the solver reports them.
 struct Impact {
-  int blows = 0;                   // 0: they touched before, or did not touch, and the rest says nothing
-  double first_s = 0, last_s = 0;  // instants of the first and the last blow, from the start of the step
-  double speed_m_s = 0;            // at which the surfaces closed before the first
-  double effective_mass_kg = 0;    // that it felt, joints included
-  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first, world
+  int count = 0;                   // 0: no impact within the step; the other members are then undefined
+  double first_s = 0, last_s = 0;  // times of the first and the last impact, from the start of the step
+  double speed_m_s = 0;            // closing speed before the first impact
+  double effective_mass_kg = 0;    // at the first impact, joints included
+  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first impact, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
-  // The places that met, in the frames of the bodies as they lay when the step began (its last part, if it was
-  // divided). Of an impulse world: from their centres of mass, turned as since its start (impulse/body_frames.h).
+  // Positions of the first impact in the frames of the bodies at the start of the step (of its last part, if it was
+  // divided). In an impulse world: from the centres of mass, with the rotation since the start
+  // (impulse/body_frames.h).
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;
 };
@@ -37,18 +39,18 @@ struct Manifold {
   int body_a = -1, body_b = -1;  // body_a < body_b
   int count = 0;
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
-  Impact impact;  // once solved
+  Impact impact;  // output of the solver
 
-  // Only what is used is copied: lists of manifolds are most of what a step moves about.
+  // Copies only the points in use, since lists of manifolds are most of the data that a step moves.
   Manifold() = default;
   Manifold(const Manifold& o) { *this = o; }
   Manifold& operator=(const Manifold& o) {
     shape_a = o.shape_a, shape_b = o.shape_b, body_a = o.body_a, body_b = o.body_b, count = o.count;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) points[i] = o.points[i];
-    if (o.impact.blows > 0)
+    if (o.impact.count > 0)
       impact = o.impact;
     else
-      impact.blows = 0;
+      impact.count = 0;
     return *this;
   }
 
@@ -57,8 +59,8 @@ struct Manifold {
   bool before(const Manifold& o) const { return shape_a != o.shape_a ? shape_a < o.shape_a : shape_b < o.shape_b; }
 };
 
-// The deepest point, then each time the one furthest from those chosen: the corners of the patch. Without this the
-// stiffness of a contact would grow with its tessellation. Fills out.points and out.count.
+// Selects the deepest point, then repeatedly the one furthest from those selected: the corners of the patch. Without
+// this reduction the stiffness of a contact would depend on its tessellation. Fills out.points and out.count.
 void reduce_points(std::span<const ManifoldPoint> found, Manifold& out);
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-// The modes of a struck object, as measured: the table that scripts/analyse_modes writes.
+// Measured modes of a struck object: parser of the table that tactus analyse-modes writes.
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace tactus::sim {
 
-// Rows of frequency_Hz, damping_1_s and amplitude, in columns of these names, among others; ascending. Throws
-// std::runtime_error, with the row, when there is none, too many, or one that is no mode.
+// Returns the rows of the columns frequency_Hz, damping_1_s and amplitude, ascending; other columns are ignored.
+// Throws std::runtime_error with the row when the table has no rows, too many rows or an invalid mode.
 std::vector<measured_mode_t> parse_measured_modes(std::string_view csv);
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-// Two points of two surfaces that are near to each other: what a collision query is about.
+// Witness points of two near or overlapping surfaces: the result of a collision query.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@ struct PointPair {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                                   // unit, world, from a to b
   double gap_m = 0;                        // between the surfaces along the normal; negative: depth
   int triangle_a = -1, triangle_b = -1;    // of a mesh; -1: none
-  ContactKind kind = ContactKind::kPoint;  // of the pair of surfaces (of triangles, where there are some)
-  bool pierced = false;                    // an edge goes through a face here
+  ContactKind kind = ContactKind::kPoint;  // of the pair of surfaces, or of triangles in meshes
+  bool pierced = false;                    // an edge passes through a face here
 };
 
 }  // namespace tactus::sim

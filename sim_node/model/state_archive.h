@@ -1,9 +1,9 @@
-// A state as bytes and back. A class that has one names its members once, in order, for both directions:
+// Serialization of a state to bytes and back. A class with state lists its members once, in order, for both
+// directions:
 //
-//   void archive(StateArchive& a) { a(steps_), a(place_m_), a.list(live_, kMost, [&](auto& c) { c.archive(a); });
-//   }
+// void archive(StateArchive& a) { a(steps_), a(place_m_), a.list(live_, kMax, [&](auto& c) { c.archive(a); }); }
 //
-// Every number takes eight bytes, little-endian, doubles as they are: what comes back is the same to the bit.
+// Every number takes eight bytes, little-endian. Doubles are stored unchanged, so a round trip is bit-identical.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,7 +20,7 @@
 
 namespace tactus::sim {
 
-// Bytes that are no state, or none that fits; what() is one sentence.
+// Invalid bytes of a state; what() is one sentence.
 struct BadState : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -34,7 +34,7 @@ class StateArchive {
 
   bool reads() const { return reads_; }
   const Bytes& bytes() const { return bytes_; }
-  // Reading: whether all has been read.
+  // When reading: whether all bytes have been read.
   bool at_end() const { return left_.empty(); }
   void require(bool holds, const char* sentence) const {
     if (!holds) throw BadState(sentence);
@@ -63,11 +63,11 @@ class StateArchive {
     require(wide >= INT32_MIN && wide <= INT32_MAX, "the state holds a number out of range");
     x = static_cast<int>(wide);
   }
-  // Of something that has so many; -1: none.
+  // Index into a list of `size` items; -1: none.
   void index(int& x, std::size_t size) {
     (*this)(x);
     require(x >= -1 && x < static_cast<std::int64_t>(size),
-            "the state names a body, shape or surface that is not there");
+            "the state refers to a body, shape or surface that does not exist");
   }
   void operator()(bool& x) {
     std::int64_t wide = x ? 1 : 0;
@@ -89,7 +89,7 @@ class StateArchive {
   void operator()(sync::SimTime& t) {
     std::int64_t ns = sync::to_ns(t);
     (*this)(ns);
-    // A year: sums of such times do not overflow.
+    // One year: sums of such times do not overflow.
     require(ns >= -kMaxTime_ns && ns <= kMaxTime_ns, "the state holds a time out of range");
     t = sync::sim_time(ns);
   }
@@ -104,7 +104,7 @@ class StateArchive {
       bytes_.insert(bytes_.end(), text.begin(), text.end());
     }
   }
-  // A list of at most so many.
+  // A list with a maximum length.
   template <class Item, class Each>
   void list(std::vector<Item>& items, std::size_t most, Each each) {
     std::uint64_t size = items.size();
@@ -113,15 +113,15 @@ class StateArchive {
     if (reads_) items.resize(size);
     for (Item& item : items) each(item);
   }
-  // A list whose length is that of the world.
+  // A list whose length is fixed by the world.
   template <class Item, class Each>
   void fixed(std::vector<Item>& items, Each each) {
     std::uint64_t size = items.size();
     (*this)(size);
-    require(size == items.size(), "the state is one of another scene");
+    require(size == items.size(), "the state belongs to another scene");
     for (Item& item : items) each(item);
   }
-  // A message, or a part of one.
+  // A message or a part of one.
   template <class Message>
   void message(Message& m) {
     std::string text;
@@ -135,7 +135,7 @@ class StateArchive {
     bool whole = false;
     try {
       whole = m.decode(text.data(), 0, static_cast<int>(text.size())) == static_cast<int>(text.size());
-    } catch (const std::exception&) {  // the generated decoder throws on hostile lengths
+    } catch (const std::exception&) {  // the generated decoder throws on invalid lengths
     }
     require(whole, "the state holds a damaged message");
   }

@@ -22,7 +22,7 @@ double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon
                         w = a.centre_m - b.centre_m;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double area = uu * vv - uv * uv;
-  // Along each way as a share of it. Parallel ways: any share of the first will do.
+  // Parameters along each path, as a share. For parallel paths any parameter of the first is valid.
   double s = area > 1e-12 * uu * vv ? std::clamp((uv * vw - uw * vv) / area, 0.0, 1.0) : 0;
   const double along = uv * s + vw;
   double t = vv > 0 ? along / vv : 0;

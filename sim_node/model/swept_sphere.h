@@ -1,4 +1,4 @@
-// A bounding sphere on its straight way, and how far the true way may leave that: what grouping compares. Pure.
+// Bounding sphere in linear motion with a bound on the deviation, for the grouping of bodies. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,21 +6,21 @@
 namespace tactus::sim {
 
 struct SweptSphere {
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  // at the beginning of the horizon
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  // at the start of the horizon
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
   double radius_m = 0;
-  double pad_m = 0;  // its centre stays so near to the straight way
+  double pad_m = 0;  // maximum deviation of the centre from the linear motion
 };
 
-// When the centres first are so near, s; -1: never within the horizon.
+// First time at which the centres are within the distance, s; -1: not within the horizon.
 double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distance_m, double horizon_s);
 
-// Smallest distance of the straight ways themselves, each at an instant of its own: the axes of the capsules that
-// Kim et al. 2005, section 4, intersect. Never larger than the closest approach in time. Source of the method:
-// Ericson 2005, Real-Time Collision Detection, 5.1.9.
+// Minimum distance of the two paths as line segments, independent of time: the axes of the capsules that Kim et al.
+// 2005, section 4, intersect. At most the closest approach in time. Method: Ericson 2005, Real-Time Collision
+// Detection, 5.1.9.
 double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon_s);
 
-// What holds the sphere during the whole horizon.
+// Axis-aligned box around the sphere during the whole horizon.
 struct Bounds {
   Eigen::Vector3d least_m, most_m;
   bool meets(const Bounds& o) const {

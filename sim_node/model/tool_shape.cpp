@@ -1,6 +1,7 @@
 #include "sim_node/model/tool_shape.h"
 
 #include <algorithm>
+#include <tactus/tool_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

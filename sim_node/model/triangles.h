@@ -1,20 +1,21 @@
-// What is done with triangles whoever they come from: checks, normals, extent, mass.
+// Operations on triangle meshes from any source: validation, normals, bounds, mass properties.
 #pragma once
 
 #include "sim_node/model/world_def.h"
 
 namespace tactus::sim {
 
-// Removes triangles without area and the vertices that nobody uses.
+// Removes triangles without area and unused vertices.
 void remove_degenerate(TriangleMesh& mesh);
 
-// Unit normals, the area-weighted mean of the triangles around a vertex, where none are given or they are no unit.
+// Computes unit normals, the area-weighted mean of the triangles around a vertex, where normals are missing or not of
+// unit length.
 void complete_normals(TriangleMesh& mesh);
 
-// Smallest box that holds all vertices, mapped by `pose`.
+// Smallest axis-aligned box around all vertices, mapped by `pose`.
 Eigen::AlignedBox3d bounds(const TriangleMesh& mesh, const Eigen::Isometry3d& pose);
 
-// Volume m^3 (negative when turned inside out), centroid and second moments of a closed mesh of density 1: the sum over
+// Volume m^3 (negative for an inverted mesh), centroid and second moments of a closed mesh of density 1: the sum over
 // the tetrahedra between each triangle and the origin (Lien and Kajiya 1984, IEEE Computer Graphics 4(10)).
 struct VolumeIntegral {
   double volume_m3 = 0;
@@ -23,7 +24,7 @@ struct VolumeIntegral {
 };
 VolumeIntegral integrate(const TriangleMesh& mesh);
 
-// A triangle mesh of a heightfield, at most `max_samples` a side, for the eye.
+// Triangle mesh of a heightfield for drawing, with at most `max_samples` per side.
 TriangleMesh triangulate(const Heightfield& field, int max_samples);
 
 }  // namespace tactus::sim

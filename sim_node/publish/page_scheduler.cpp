@@ -17,7 +17,7 @@ PageScheduler::PageScheduler(double rate_Hz, double pages_per_second, sync::Nano
   for (State& s : lanes_) s.rate_Hz = rate_Hz;
 }
 
-// Even parts of what is left over the ticks up to the next snapshot.
+// Distributes the remaining pages evenly over the ticks up to the next snapshot.
 void PageScheduler::set_share(State& s) const {
   const double left_s = static_cast<double>(s.next) / rate_Hz_ - seconds(now_);
   const double ticks = std::max(1.0, std::floor(left_s / sync::to_seconds(step_)));
@@ -26,8 +26,8 @@ void PageScheduler::set_share(State& s) const {
 
 void PageScheduler::tick(sync::SimTime now) {
   now_ = now;
-  // What a tick does not use is not saved up for a burst, so no second carries more than the budget; but of a budget of
-  // less than a page a tick it is.
+  // Unused pages of a tick are not saved for a burst, so that no second exceeds the budget. Exception: a budget of
+  // less than one page per tick accumulates up to one page.
   allowance_ = std::min(allowance_ + per_tick_, std::max(1.0, per_tick_));
   for (State& s : lanes_) set_share(s);
 }
@@ -43,7 +43,7 @@ void PageScheduler::begin(Lane lane, std::size_t pages) {
   s.sent = 0;
   if (s.taken_ns >= 0) s.rate_Hz = 1e9 / static_cast<double>(sync::to_ns(now_) - s.taken_ns);
   s.taken_ns = sync::to_ns(now_);
-  // Those that could not be taken are left out, not made up for.
+  // Missed snapshots are skipped, not made up for.
   s.next = std::max(s.next + 1, static_cast<std::int64_t>(std::floor((seconds(now_) + kTiny_s) * rate_Hz_)) + 1);
   set_share(s);
 }

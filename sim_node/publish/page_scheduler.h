@@ -1,7 +1,6 @@
-// When the slow state is taken and which of its pages go out in a tick: two lanes, the world and the contacts, that share
-// a budget of pages a second. A snapshot of a lane is taken when its time has come and the one before is out; its pages
-// are spread over the ticks up to the next; when there is more than the budget carries, the lanes take turns and their
-// rates fall. Pure.
+// Schedules the snapshots of the slow state and their pages: two lanes, world and contacts, share a budget of pages
+// per second. A lane takes a snapshot when it is due and the previous one has been sent. Its pages are spread over
+// the ticks up to the next one. When the budget is exceeded, the lanes alternate and their rates fall. Pure.
 #pragma once
 
 #include <array>
@@ -18,30 +17,30 @@ class PageScheduler {
  public:
   PageScheduler(double rate_Hz, double pages_per_second, sync::Nanoseconds step);
 
-  // A tick of the world begins.
+  // Call at the beginning of each tick.
   void tick(sync::SimTime now);
-  // True when a snapshot of the lane is to be taken in this tick. Snapshot n is due at tick ceil(n * ticks per
+  // True when a snapshot of the lane must be taken in this tick. Snapshot n is due at tick ceil(n * ticks per
   // snapshot), 16 or 17 at 60 Hz.
   bool due(Lane lane) const;
-  // True when all pages of the lane are out.
+  // True when all pages of the lane have been sent.
   bool free(Lane lane) const { return at(lane).left() == 0; }
-  // A page more than those of the snapshots, before all of them: true when the budget carries it now.
+  // Requests a page in addition to the snapshots and before them; true when the budget allows it.
   bool take_extra();
-  // It has been taken and has so many pages.
+  // Call after taking a snapshot of this number of pages.
   void begin(Lane lane, std::size_t pages);
-  // Somebody waits for the whole world: these pages replace what is left of the world's and go before all others.
+  // A receiver needs the whole world: these pages replace the remaining ones of the world and precede all others.
   void begin_urgent_world(std::size_t pages);
 
-  // The lane whose next page goes out now; kNone when the tick has sent its share.
+  // The lane whose next page must be sent now; kNone when the share of the tick has been sent.
   Lane next();
 
-  // Snapshots a second of the lane, by the time between the last two.
+  // Snapshots per second of the lane, from the interval between the last two.
   double rate_Hz(Lane lane) const { return at(lane).rate_Hz; }
 
  private:
   struct State {
     std::size_t pages = 0, sent = 0;
-    std::size_t share = 0;  // pages that may still go out in this tick
+    std::size_t share = 0;  // pages that may still be sent in this tick
     std::int64_t next = 0;  // number of the next snapshot
     std::int64_t taken_ns = -1;
     double rate_Hz = 0;
@@ -52,7 +51,7 @@ class PageScheduler {
   void set_share(State& s) const;
 
   double rate_Hz_;
-  double per_tick_;  // pages of the budget
+  double per_tick_;  // budget in pages per tick
   sync::Nanoseconds step_;
   std::array<State, 2> lanes_;
   bool urgent_ = false;

@@ -1,4 +1,4 @@
-// Cuts lists into messages that fit one datagram. Pure.
+// Cuts lists into pages, messages that fit one datagram. Pure.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace tactus::sim {
 
-// Ranges [begin, end) of `items` such that a message with `base_bytes` besides them fits. At least one range, so that an
-// empty list is told too.
+// Ranges [begin, end) of `items` such that a message with `base_bytes` in addition fits. At least one range, so that
+// an empty list is published too.
 template <class Item>
 std::vector<std::pair<std::size_t, std::size_t>> paged(const std::vector<Item>& items, std::size_t base_bytes) {
   std::vector<std::pair<std::size_t, std::size_t>> pages;
@@ -28,7 +28,7 @@ std::vector<std::pair<std::size_t, std::size_t>> paged(const std::vector<Item>& 
   return pages;
 }
 
-// Bytes of a message without its items.
+// Size in bytes of a message without items.
 template <class Message>
 std::size_t empty_size() {
   static const std::size_t size = static_cast<std::size_t>(Message{}.getEncodedSize());

@@ -1,6 +1,11 @@
 #include "sim_node/publish/publisher.h"
 
 #include <algorithm>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/sim_clock_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sim_node/publish/paging.h"
 #include "sim_node/publish/touch_pages.h"
@@ -8,8 +13,8 @@
 namespace tactus::sim {
 
 void Publisher::publish_events(const StepView& view, const sim_clock_t& clock) {
-  young_.add(*view.events, pace_);
-  const std::vector<contact_event_t>& due = young_.due(pace_);
+  repeater_.add(*view.events, pace_);
+  const std::vector<contact_event_t>& due = repeater_.due(pace_);
   if (due.empty()) return;
   const auto pages = paged(due, empty_size<contact_events_t>());
   for (std::size_t page = 0; page < pages.size(); ++page) {

@@ -1,8 +1,8 @@
-// The map between simulated time and the host's clock, as it is published. It follows what the loop really does but slews:
-// a tick that was missed shakes no renderer. Pure.
+// Published map between simulated time and the host clock. It follows the actual loop but slews, so that a missed
+// tick does not disturb the renderers. Pure.
 //
-// A simulation that cannot keep up keeps its step: simulated time falls behind, the offset of the map grows, and its rate
-// says how fast.
+// A simulation that cannot keep up keeps its step length: simulated time falls behind, the offset of the map grows,
+// and the map's rate shows the speed.
 #pragma once
 
 #include <cmath>
@@ -15,15 +15,16 @@ namespace tactus::sim {
 
 class SimPacer {
  public:
-  // Time in which the map follows, s of the world: a missed tick of 1 ms is a slew of 5 % that is over after 60 ms.
+  // Time constant of the map, s of simulated time: a missed tick of 1 ms causes a slew of 5 % that is over after 60
+  // ms.
   static constexpr double kFollow_s = 0.02;
 
-  // One tick: the world is at `sim` at the deadline `due` of the loop. Call with ever later times.
+  // One tick: the world is at `sim` at the deadline `due` of the loop. Both must increase from call to call.
   sync::TimeMap tick(sync::SimTime sim, sync::HostTime due);
-  // One tick in which the world stands still at `sim`: the map has rate 0 and moves no more until the next tick(), which
-  // begins a new one.
+  // One tick of a pause at `sim`: the map has rate 0 and stays constant until the next tick(), which begins a new
+  // map.
   sync::TimeMap hold(sync::SimTime sim, sync::HostTime due);
-  // Simulated seconds per host second over the last whole second; 0 while the world stands still.
+  // Simulated seconds per host second over the last whole second; 0 during a pause.
   double realtime_factor() const { return held_ ? 0 : factor_; }
 
  private:
@@ -32,7 +33,7 @@ class SimPacer {
   }
 
   std::optional<sync::HostTime> held_;
-  std::optional<double> offset_ns_;  // host - sim, since base_
+  std::optional<double> offset_ns_;  // host - sim, minus base_ns_
   std::int64_t base_ns_ = 0;
   sync::SimTime last_sim_{};
   sync::SimTime window_sim_{};

@@ -1,6 +1,8 @@
 #include "sim_node/publish/snapshots.h"
 
 #include <algorithm>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/vectors.h"
@@ -9,16 +11,16 @@
 namespace tactus::sim {
 namespace {
 
-// Less than this is rest, below what is seen and felt: 20 um and 0.02 degrees since it was last told, or at these
-// speeds within a snapshot.
+// Thresholds of motion, below visual and haptic perception: 20 um and 0.02 degrees since the last publication, or
+// these speeds within a snapshot.
 constexpr double kMoved_m = 2e-5;
 constexpr double kTurned_rad = 4e-4;
 constexpr double kMoving_m_s = 1e-3;
 constexpr double kTurning_rad_s = 1e-2;
 
-bool moves(const BodyMotion& m, const BodyMotion& told) {
-  return (m.position_m - told.position_m).norm() > kMoved_m ||
-         m.orientation.angularDistance(told.orientation) > kTurned_rad || m.velocity_m_s.norm() > kMoving_m_s ||
+bool moves(const BodyMotion& m, const BodyMotion& published) {
+  return (m.position_m - published.position_m).norm() > kMoved_m ||
+         m.orientation.angularDistance(published.orientation) > kTurned_rad || m.velocity_m_s.norm() > kMoving_m_s ||
          m.spin_rad_s.norm() > kTurning_rad_s;
 }
 
@@ -27,14 +29,14 @@ body_state_t state_of(std::size_t body, const BodyMotion& m, bool moving) {
   b.body = static_cast<std::int32_t>(body);
   b.position_m = to_vec3(m.position_m);
   b.orientation = to_quatf(m.orientation);
-  // One that rests is left out from now on; receivers must not move it on meanwhile.
+  // A resting body is omitted from later snapshots; velocity 0 prevents receivers from extrapolating it.
   if (!moving) return b;
   b.velocity_m_s = to_vec3f(m.velocity_at(m.position_m));
   b.angular_velocity_rad_s = to_vec3f(m.spin_rad_s);
   return b;
 }
 
-// The items of that range, without those that are gone.
+// Copies the items of that range, without those for which gone() is true.
 template <class Page, class Item, class Gone>
 void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& from,
           std::pair<std::size_t, std::size_t> range, const Gone& gone) {
@@ -47,8 +49,8 @@ void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& fr
 
 }  // namespace
 
-// Where a body is now. Those that are computed ahead are known as of the beginning of the step, a tick ago when it
-// has just begun: their velocity takes them there, off by g h^2 / 2 = 5 um in 1 ms.
+// The present motion of a body. Bodies computed ahead have the motion at the beginning of their step, one tick ago
+// when it has just begun: their velocity extrapolates it, with an error of g h^2 / 2 = 5 um in 1 ms.
 const BodyMotion& Snapshots::present(std::size_t body, sync::SimTime now, const StateSource& source) {
   const BodyMotion& m = source.bodies[body];
   const Ahead* a = source.ahead;
@@ -68,24 +70,25 @@ const BodyMotion& Snapshots::present(std::size_t body, sync::SimTime now, const 
   return present_;
 }
 
-void Snapshots::tell_now(std::size_t body, const BodyMotion& m, bool always) {
-  const bool moving = moves(m, told_[body]);
-  // Once more when it has come to rest, so that its last pose is told, at rest.
+void Snapshots::add_present(std::size_t body, const BodyMotion& m, bool always) {
+  const bool moving = moves(m, last_published_[body]);
+  // Published once more at rest, so that receivers get the final pose.
   if (always || moving || moved_[body]) {
     bodies_.items.push_back(state_of(body, m, moving));
-    told_[body] = m;
+    last_published_[body] = m;
   }
   moved_[body] = moving;
 }
 
-// One that came from the bodies of every step, or rested, is told of the present step too: pictures begin there.
-void Snapshots::tell_ahead(std::size_t body, const BodyMotion& m, const BodyMotion& now, bool always) {
-  const bool moving = moves(m, told_[body]);
+// A body that was not computed ahead before, or rested, is also published at the present step, where interpolation
+// begins.
+void Snapshots::add_ahead(std::size_t body, const BodyMotion& m, const BodyMotion& now, bool always) {
+  const bool moving = moves(m, last_published_[body]);
   if (moving && !(ahead_[body] && moved_[body]))
-    bodies_.items.push_back(state_of(body, now, moves(now, told_[body])));
+    bodies_.items.push_back(state_of(body, now, moves(now, last_published_[body])));
   if (always || moving || moved_[body]) {
     bodies_ahead_.items.push_back(state_of(body, m, moving));
-    told_[body] = m;
+    last_published_[body] = m;
   }
   moved_[body] = moving;
 }
@@ -97,22 +100,22 @@ void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSo
   bodies_ahead_.time = a ? a->time : now;
   full_ = full;
   if (full) {
-    full_wanted_ = false;
+    full_requested_ = false;
     last_full_ = pace;
   }
-  const bool first = told_.size() != source.bodies.size();
-  if (first) told_.assign(source.bodies.begin(), source.bodies.end());
+  const bool first = last_published_.size() != source.bodies.size();
+  if (first) last_published_.assign(source.bodies.begin(), source.bodies.end());
   moved_.resize(source.bodies.size(), 0);
   bodies_.items.clear();
   bodies_ahead_.items.clear();
   for (std::size_t i = 0, next = 0; i < source.bodies.size(); ++i) {
     const bool is_ahead = a && next < a->bodies.size() && a->bodies[next] == static_cast<int>(i);
-    const BodyMotion* foreseen = is_ahead ? &a->motions[next++] : nullptr;
+    const BodyMotion* predicted = is_ahead ? &a->motions[next++] : nullptr;
     if (!is_ahead || a->held) {
-      tell_now(i, present(i, now, source), full || (a && told_until_[i] > pace));
+      add_present(i, present(i, now, source), full || (a && repeat_until_[i] > pace));
       if (a) ahead_[i] = 0;
     } else if (with_ahead) {
-      tell_ahead(i, *foreseen, present(i, now, source), full);
+      add_ahead(i, *predicted, present(i, now, source), full);
       ahead_[i] = 1;
     }
   }
@@ -153,7 +156,7 @@ void Snapshots::fill(world_state_t& m) {
 }
 
 void Snapshots::fill(contact_frame_t& m) {
-  // What is told ahead comes first: one that goes over is then in one of the two at every instant.
+  // Pages of contacts ahead come first, so that a contact that changes groups is in one of the two at every instant.
   const bool now = sent_contacts_ >= contacts_ahead_.pages.size();
   const Part<contact_t>& part = now ? contacts_ : contacts_ahead_;
   const std::size_t page = now ? sent_contacts_ - contacts_ahead_.pages.size() : sent_contacts_;
@@ -162,40 +165,40 @@ void Snapshots::fill(contact_frame_t& m) {
   m.group = now ? contact_frame_t::OTHER : contact_frame_t::AHEAD;
   m.page = static_cast<std::int32_t>(page);
   m.pages = static_cast<std::int32_t>(part.pages.size());
-  // Also those of promoted bodies: they touch still, and how hard is told with the next snapshot.
+  // Includes contacts of promoted bodies: they still touch, and the next snapshot updates their force.
   copy(m, &contact_frame_t::contacts, part.items, part.pages[page], [](const contact_t&) { return false; });
 }
 
-// What became of the bodies that are computed ahead. stands: the world does, and what it said of this tick it said
-// before.
-void Snapshots::follow(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool stands) {
+// Updates the state of the bodies computed ahead. paused: the world is paused, and the data of this tick have been
+// published before.
+void Snapshots::update_ahead(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool paused) {
   ahead_.resize(bodies, 0);
   gone_.resize(bodies, 0);
-  told_until_.resize(bodies, sync::SimTime::min());
+  repeat_until_.resize(bodies, sync::SimTime::min());
   moved_.resize(bodies, 0);
-  if ((ahead.fresh && !stands) || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
+  if ((ahead.fresh && !paused) || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
   held_ = ahead.held;
-  // One that went back before it could be told.
+  // Drop a body that left the haptic group before its promotion was published.
   std::erase_if(promoted_,
                 [&](int body) { return std::binary_search(ahead.bodies.begin(), ahead.bodies.end(), body); });
-  if (stands) return;
+  if (paused) return;
   for (const int body : ahead.promoted) {
     const auto i = static_cast<std::size_t>(body);
     ahead_[i] = 0;
     moved_[i] = 1;
     gone_[i] = 1;
-    told_until_[i] = pace + kToldAgain;
+    repeat_until_[i] = pace + kRepeatPromoted;
     if (std::find(promoted_.begin(), promoted_.end(), body) == promoted_.end()) promoted_.push_back(body);
   }
 }
 
-void Snapshots::tell_promoted(sync::SimTime now, const StateSource& source,
+void Snapshots::publish_promoted(sync::SimTime now, const StateSource& source,
                               const std::function<void(world_state_t&)>& send) {
   static const std::size_t per_page = (channels::kMaxMessageBytes - empty_size<world_state_t>()) /
                                       static_cast<std::size_t>(body_state_t{}._getEncodedSizeNoHash());
   std::size_t pages = 0;
   while (pages * per_page < promoted_.size() && scheduler_.take_extra()) ++pages;
-  const std::size_t told = std::min(promoted_.size(), pages * per_page);
+  const std::size_t published = std::min(promoted_.size(), pages * per_page);
   world_state_t& m = world_page_;
   for (std::size_t page = 0; page < pages; ++page) {
     m.header.sim_time_ns = sync::to_ns(now);
@@ -205,22 +208,22 @@ void Snapshots::tell_promoted(sync::SimTime now, const StateSource& source,
     m.page = static_cast<std::int32_t>(page);
     m.pages = static_cast<std::int32_t>(pages);
     m.bodies.clear();
-    for (std::size_t i = page * per_page; i < std::min(told, (page + 1) * per_page); ++i) {
+    for (std::size_t i = page * per_page; i < std::min(published, (page + 1) * per_page); ++i) {
       const auto body = static_cast<std::size_t>(promoted_[i]);
       const BodyMotion& motion = present(body, now, source);
-      m.bodies.push_back(state_of(body, motion, told_.size() <= body || moves(motion, told_[body])));
+      m.bodies.push_back(state_of(body, motion, last_published_.size() <= body || moves(motion, last_published_[body])));
     }
     m.count = static_cast<std::int32_t>(m.bodies.size());
     send(m);
   }
-  promoted_.erase(promoted_.begin(), promoted_.begin() + static_cast<std::ptrdiff_t>(told));
+  promoted_.erase(promoted_.begin(), promoted_.begin() + static_cast<std::ptrdiff_t>(published));
 }
 
 void Snapshots::take_due(sync::SimTime now, sync::SimTime pace, const StateSource& source) {
   if (scheduler_.due(Lane::kWorld)) {
-    take_bodies(now, pace, source, full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod, false);
+    take_bodies(now, pace, source, full_requested_ || !last_full_ || pace - *last_full_ >= kFullPeriod, false);
     scheduler_.begin(Lane::kWorld, bodies_.pages.size());
-  } else if (full_wanted_) {
+  } else if (full_requested_) {
     take_bodies(now, pace, source, true, false);
     scheduler_.begin_urgent_world(bodies_.pages.size());
   }
@@ -232,11 +235,11 @@ void Snapshots::take_due(sync::SimTime now, sync::SimTime pace, const StateSourc
 
 void Snapshots::take_due_ahead(sync::SimTime now, sync::SimTime pace, const StateSource& source) {
   const auto ready = [&](Lane lane, bool pending, sync::SimTime taken) {
-    return scheduler_.free(lane) && (pending || (scheduler_.due(lane) && pace - taken >= kNoStep));
+    return scheduler_.free(lane) && (pending || (scheduler_.due(lane) && pace - taken >= kMaxStepGap));
   };
   const bool takes = ready(Lane::kWorld, bodies_pending_, taken_bodies_);
-  if (takes || full_wanted_) {
-    const bool full = full_wanted_ || !last_full_ || pace - *last_full_ >= kFullPeriod;
+  if (takes || full_requested_) {
+    const bool full = full_requested_ || !last_full_ || pace - *last_full_ >= kFullPeriod;
     take_bodies(now, pace, source, full, bodies_pending_ || full);
     const std::size_t pages = bodies_.pages.size() + bodies_ahead_.pages.size();
     takes ? scheduler_.begin(Lane::kWorld, pages) : scheduler_.begin_urgent_world(pages);
@@ -256,9 +259,9 @@ void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& s
                      const std::function<void(world_state_t&)>& send_world) {
   scheduler_.tick(pace);
   if (source.ahead) {
-    follow(*source.ahead, source.bodies.size(), pace, last_now_ == now);
+    update_ahead(*source.ahead, source.bodies.size(), pace, last_now_ == now);
     last_now_ = now;
-    tell_promoted(now, source, send_world);
+    publish_promoted(now, source, send_world);
     take_due_ahead(now, pace, source);
   } else {
     take_due(now, pace, source);

@@ -7,12 +7,12 @@
 
 namespace tactus::sim {
 
-// The most of each on a page, by the size of a datagram (tests/lcmtypes/size_test.cpp).
+// Maximum number of items per page, by the size of a datagram (tests/lcmtypes/size_test.cpp).
 inline constexpr std::size_t kPlanesOfPage = 7, kBooksOfPage = 7;
 
-// Calls send(page) for each page of a whole model, first to last: at least one, so that an empty model is sent
-// too. `page` is scratch, kept by the caller so that nothing is allocated from step to step. A model of one page is not
-// copied: the scratch page borrows its lists.
+// Calls send(page) for each page of a complete model in order: at least one, so that an empty model is published too.
+// `page` is a buffer of the caller, so that nothing is allocated per step. A model of one page is not copied: the page
+// borrows its lists during the call.
 template <class Send>
 void each_touch_page(touch_model_t& whole, touch_model_t& page, Send&& send) {
   const auto pages_for = [](std::size_t items, std::size_t of_page) { return (items + of_page - 1) / of_page; };

@@ -5,6 +5,7 @@
 #include <sdf/Collision.hh>
 #include <sdf/Link.hh>
 #include <sdf/Sensor.hh>
+#include <tactus/material_def_t.hpp>
 
 #include "sim_node/scene/inertial.h"
 #include "sim_node/scene/joints.h"
@@ -18,7 +19,7 @@
 namespace tactus::sim {
 namespace {
 
-// SDF's default (surface.sdf): a surface of which nothing is said has friction 1 and no restitution.
+// SDF's default (surface.sdf): friction 1 and no restitution.
 constexpr double kDefaultFriction = 1;
 
 double value_of(const LoadContext& context, const sdf::ElementPtr& element, double min, double max) {
@@ -28,7 +29,7 @@ double value_of(const LoadContext& context, const sdf::ElementPtr& element, doub
   return value;
 }
 
-// What SDF says of a surface goes before what its material says.
+// Values in SDF take precedence over those of the material.
 void read_surface(const LoadContext& context, const sdf::ElementPtr& collision, int inherited, ShapeDef& shape) {
   shape.material = surface_material(context, collision, inherited);
   shape.friction = kDefaultFriction;
@@ -43,7 +44,7 @@ void read_surface(const LoadContext& context, const sdf::ElementPtr& collision, 
     shape.restitution = value_of(context, bounce, 0, 1);
 }
 
-// What the file of a mesh says that it is made of; -1: nothing.
+// Material that the mesh file names; -1: none.
 int file_material(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner) {
   if (geometry.Type() != sdf::GeometryType::MESH || written(owner, "tactus:surface")) return -1;
   return material_of_file(context, named_mesh(context, *geometry.MeshShape(), *owner), -1);
@@ -62,21 +63,21 @@ void add_collisions(LoadContext& context, const sdf::Link& link, int body, int m
   }
 }
 
-// A body that is seen and not felt gets the box around what is seen, and every plane among it.
+// A body with visuals but no collision gets the bounding box of its visuals, and every plane among them.
 void add_bounding_box(LoadContext& context, std::size_t first_visual, int body, int material) {
   ShapeDef box;
-  Eigen::AlignedBox3d around;
+  Eigen::AlignedBox3d bounding_box;
   for (std::size_t i = first_visual; i < context.world.visuals.size(); ++i) {
     const ShapeDef& shape = context.world.visuals[i].shape;
-    around.extend(bounds(context.world, shape));
+    bounding_box.extend(bounds(context.world, shape));
     if (shape.kind == ShapeKind::kPlane) box = shape;
     if (material < 0) material = shape.material;
   }
   box.name = "bounding_box", box.body = body;
-  if (!around.isEmpty()) {
+  if (!bounding_box.isEmpty()) {
     box.kind = ShapeKind::kBox;
-    box.pose = Eigen::Translation3d(around.center()) * Eigen::Isometry3d::Identity();
-    box.size_m = around.sizes().cwiseMax(1e-4);  // a flat mesh has no thickness
+    box.pose = Eigen::Translation3d(bounding_box.center()) * Eigen::Isometry3d::Identity();
+    box.size_m = bounding_box.sizes().cwiseMax(1e-4);  // a flat mesh has no thickness
   }
   read_surface(context, nullptr, material, box);
   context.world.shapes.push_back(box);
@@ -124,7 +125,7 @@ int add_link(LoadContext& context, const sdf::Link& link, const Eigen::Isometry3
   return index;
 }
 
-// Links of a model collide with each other only where <self_collide> says so, on the model or on one of the two.
+// Links of a model collide with each other only if <self_collide> is set on the model or on one of the two links.
 void forbid_self_collision(LoadContext& context, const sdf::Model& model, const std::vector<int>& bodies) {
   std::vector<bool> collides;
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {

@@ -1,4 +1,4 @@
-// Models and links: bodies with their mass, shapes and visuals, and who may collide with whom.
+// Models and links of a scene: bodies with mass, shapes and visuals, and the pairs that do not collide.
 #pragma once
 
 #include <sdf/Model.hh>
@@ -7,8 +7,8 @@
 
 namespace tactus::sim {
 
-// Appends every link of the model and of the models nested in it. `world_pose` is the pose of the model's parent,
-// `scope` its scoped name with "::" after it, or empty.
+// Appends every link of the model and of its nested models. `world_pose`: pose of the model's parent. `scope`: the
+// parent's scoped name followed by "::", or empty.
 void add_model(LoadContext& context, const sdf::Model& model, const Eigen::Isometry3d& world_pose,
                const std::string& scope, bool inside_static, int material);
 

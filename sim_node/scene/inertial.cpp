@@ -22,10 +22,10 @@ Eigen::Matrix3d read_inertia(const LoadContext& context, const sdf::ElementPtr& 
   if (!matrix.allFinite()) context.refuse(*inertia, "is not finite");
   const Eigen::Vector3d moments = matrix.selfadjointView<Eigen::Lower>().eigenvalues();  // ascending
   if (!(moments[0] > 0))
-    context.refuse(*inertia, "is not positive definite: correct it, or leave it out to have it computed from the shapes");
-  // No distribution of mass does this; the step still computes. 1 %: figures are written with few digits.
+    context.refuse(*inertia, "is not positive definite: correct it, or leave it out so that it is computed from the shapes");
+  // No mass distribution has such moments; the solver can still step. Tolerance 1 %, because files have few digits.
   if (moments[2] > 1.01 * (moments[0] + moments[1]))
-    context.warn(*inertia, "belongs to no real body: one principal moment is larger than the two others together");
+    context.warn(*inertia, "is not physically possible: one principal moment is larger than the sum of the two others");
   return matrix;
 }
 

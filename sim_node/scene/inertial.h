@@ -1,4 +1,4 @@
-// The mass of a link: as <inertial> says, and what it leaves out from the shapes.
+// Mass and inertia of a link, from <inertial> or, for missing values, from its shapes.
 #pragma once
 
 #include <span>
@@ -7,8 +7,9 @@
 
 namespace tactus::sim {
 
-// No <mass>: that of the shapes' materials, or SDF's 1 kg where one has no material. No <inertia>: that of the shapes,
-// in proportion to the mass. Refuses a mass that is not positive and an inertia that is not positive definite.
+// Without <mass>: the mass by the materials of the shapes, or SDF's 1 kg when a shape has no material. Without
+// <inertia>: the inertia of the shapes, scaled to the mass. Rejects a mass that is not positive and an inertia that
+// is not positive definite.
 void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std::span<const ShapeDef> shapes,
                    BodyDef& body);
 

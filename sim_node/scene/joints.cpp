@@ -10,9 +10,9 @@
 namespace tactus::sim {
 namespace {
 
-// world_def.h: limits beyond 1e15 are none. SDF writes none as 1e16 or inf.
+// world_def.h: limits beyond 1e15 mean none. SDF writes none as 1e16 or inf.
 constexpr double kNoLimit = 1e16;
-// Speed that a motor without a wanted speed heads for, rad/s or m/s: so high that its torque is constant.
+// Target speed of a motor without one, rad/s or m/s: high enough for a constant torque.
 constexpr double kFreeSpeed = 1000;
 
 std::optional<JointKind> kind_of(sdf::JointType type) {
@@ -64,7 +64,7 @@ void read_motor(const LoadContext& context, const sdf::ElementPtr& element, Join
   Attributes attributes(context, *motor);
   const bool linear = joint.kind == JointKind::kPrismatic;
   if (joint.kind == JointKind::kFixed || joint.kind == JointKind::kBall)
-    context.refuse(*motor, "stands on a joint without an axis");
+    context.refuse(*motor, "is on a joint without an axis");
   const int axes = joint.kind == JointKind::kUniversal ? 2 : 1;
   const int index = static_cast<int>(attributes.quantity("axis", "1", 1, axes).value_or(1));
   const double effort = linear ? attributes.required_quantity("force", "N", -1e6, 1e6)
@@ -109,7 +109,7 @@ void add_joint(LoadContext& context, const sdf::Joint& from, const Eigen::Isomet
   if (joint.parent >= 0 && joint.child >= 0) {
     context.world.no_collision.emplace_back(std::min(joint.parent, joint.child), std::max(joint.parent, joint.child));
     const auto is_static = [&](int b) { return context.world.bodies[static_cast<std::size_t>(b)].is_static; };
-    if (is_static(joint.parent) && is_static(joint.child)) return;  // nothing that it could hold
+    if (is_static(joint.parent) && is_static(joint.child)) return;  // the joint cannot move anything
   }
   context.world.joints.push_back(joint);
 }

@@ -1,4 +1,4 @@
-// Joints of a model, and the motors on them.
+// Joints of a model, and their motors.
 #pragma once
 
 #include <sdf/Joint.hh>
@@ -7,8 +7,8 @@
 
 namespace tactus::sim {
 
-// Appends the joint, and the pair of its bodies to those that do not collide. `model_pose` and `scope` are those of the
-// model that it stands in. Warns of a type that is not supported, and leaves the joint out.
+// Appends the joint, and adds its pair of bodies to those that do not collide. `model_pose` and `scope`: of the model
+// that contains it. Warns of an unsupported type and omits the joint.
 void add_joint(LoadContext& context, const sdf::Joint& joint, const Eigen::Isometry3d& model_pose,
                const std::string& scope);
 

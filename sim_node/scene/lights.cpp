@@ -1,6 +1,8 @@
 #include "sim_node/scene/lights.h"
 
 #include <cmath>
+#include <tactus/light_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/sdf/sdf_eigen.h"

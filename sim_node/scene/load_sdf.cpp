@@ -21,8 +21,8 @@
 namespace tactus::sim {
 namespace {
 
-// What stands in for the two models that every Gazebo brings and that are not beside the file.
-void add_stand_ins(LoadContext& context) {
+// Built-in versions of the two models of every Gazebo installation, when the scene does not bring them.
+void add_builtin_models(LoadContext& context) {
   for (const auto& skipped : context.files.skipped()) {
     if (skipped.uri == "model://sun") context.world.lights.push_back(sun());
     if (skipped.uri != "model://ground_plane" || context.body_of.contains("ground_plane::link")) continue;
@@ -69,7 +69,7 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
   } else {
     add_model(context, *model, Eigen::Isometry3d::Identity(), "", false, -1);
   }
-  add_stand_ins(context);
+  add_builtin_models(context);
   sort_no_collision(context.world);
   if (context.world.lights.empty()) context.world.lights.push_back(sun());
   read_view(context, world, element);

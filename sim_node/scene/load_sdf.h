@@ -1,5 +1,5 @@
-// Reads a world from an SDFormat file (1.4 to 1.9) and our own <tactus:...> elements in it; docs/scene_format.md says
-// which elements count.
+// Loads a world from an SDFormat file (1.4 to 1.9) with <tactus:...> elements; docs/scene_format.md lists the
+// supported elements.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace tactus::sim {
 
-// Adds one sentence per element that is not supported, or that was repaired, to `warnings`: "FILE:LINE: XML path ...".
-// Throws std::runtime_error with one sentence, "FILE:LINE: what is wrong and what to do", when the file is wrong.
+// Adds one sentence per unsupported or repaired element to `warnings`: "FILE:LINE: XML path ...". Throws
+// std::runtime_error with one sentence, "FILE:LINE: problem: remedy", when the file is invalid.
 WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace tactus::sim

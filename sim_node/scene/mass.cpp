@@ -45,7 +45,7 @@ MassProperties capsule(double r, double length, double density) {
   return m;
 }
 
-// In the shape's frame. A mesh that is not closed counts as its bounding box.
+// In the shape's frame. An open mesh counts as its bounding box.
 MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double density) {
   const Eigen::Vector3d& size = shape.size_m;
   switch (shape.kind) {
@@ -59,14 +59,14 @@ MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double den
       return capsule(size.x(), size.z(), density);
     case ShapeKind::kMesh: {
       const TriangleMesh& mesh = world.meshes[static_cast<std::size_t>(shape.mesh)];
-      const Eigen::AlignedBox3d around = bounds(mesh, Eigen::Isometry3d::Identity());
+      const Eigen::AlignedBox3d bounding_box = bounds(mesh, Eigen::Isometry3d::Identity());
       const VolumeIntegral integral = integrate(mesh);
       MassProperties m{density * integral.volume_m3, integral.centroid_m, density * integral.inertia};
-      const bool closed = integral.volume_m3 > 1e-3 * around.volume() && integral.volume_m3 <= around.volume() * 1.001 &&
+      const bool closed = integral.volume_m3 > 1e-3 * bounding_box.volume() && integral.volume_m3 <= bounding_box.volume() * 1.001 &&
                           m.inertia_kg_m2.ldlt().isPositive();
       if (closed) return m;
-      m = box(around.sizes().cwiseMax(1e-4), density);
-      m.centre_of_mass_m = around.center();
+      m = box(bounding_box.sizes().cwiseMax(1e-4), density);
+      m.centre_of_mass_m = bounding_box.center();
       return m;
     }
     case ShapeKind::kPlane:

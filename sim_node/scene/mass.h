@@ -13,11 +13,11 @@ struct MassProperties {
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the centre of mass, body axes
 };
 
-// Overlaps count twice. Each shape has the density of its material; where one has none, all have 1 kg/m^3, so that only
-// the ratios mean something. Planes and heightfields have no mass. `has_density` says which of the two it was.
+// Overlaps count twice. Each shape has the density of its material; if any shape has none, all have 1 kg/m^3 and only
+// the ratios are meaningful. Planes and heightfields have no mass. `has_density`: whether all shapes have a material.
 MassProperties mass_of(const WorldDef& world, std::span<const ShapeDef> shapes, bool& has_density);
 
-// The same body with another mass: inertia in proportion.
+// The same body with another mass; the inertia is scaled in proportion.
 MassProperties scaled_to(MassProperties properties, double mass_kg);
 
 }  // namespace tactus::sim

@@ -24,8 +24,8 @@ int add(LoadContext& context, const std::string& key, const NamedMesh& named, co
   return at->second;
 }
 
-// Of a part beside others that have them: pictures show their corner there.
-void complete(MeshPart& part) {
+// Fills missing texture coordinates when other parts have them: the corner of the picture is used.
+void fill_texcoords(MeshPart& part) {
   if (part.texcoords.empty()) part.texcoords.assign(part.positions_m.size(), Eigen::Vector2f(0, 0));
   make_tangents(part);
 }
@@ -47,7 +47,7 @@ TriangleMesh as_seen(const NamedMesh& named, const std::set<int>& materials, int
       textured = textured || (!part.texcoords.empty() && materials.contains(part.material));
     }
   if (textured)
-    for (MeshPart& part : chosen.parts) complete(part);
+    for (MeshPart& part : chosen.parts) fill_texcoords(part);
   TriangleMesh mesh = join_parts(chosen, named.choice, &materials);
   if (times == 0) return mesh;
   mesh = subdivide(mesh, times);
@@ -82,11 +82,11 @@ NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Ele
   return named;
 }
 
-int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
+int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
   return add(context, named.key, named, element, [&] { return join_parts(*named.parts, named.choice); });
 }
 
-int seen_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
+int display_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
               const sdf::Element& element) {
   std::string key = named.key + "|seen|" + std::to_string(subdivide);
   for (const int material : materials) key += "|" + std::to_string(material);

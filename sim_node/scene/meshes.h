@@ -1,4 +1,4 @@
-// The meshes of a scene: each file read once, and its triangles as they collide and as they are seen.
+// Meshes of a scene: reads each file once, and provides its triangles for collision and for display.
 #pragma once
 
 #include <filesystem>
@@ -9,27 +9,27 @@
 
 namespace tactus::sim {
 
-// What <mesh> names, checked.
+// The validated content of a <mesh> element.
 struct NamedMesh {
   std::string uri;
   std::filesystem::path file;
   MeshChoice choice;
   const MeshParts* parts = nullptr;  // lives as long as the context
-  std::string key;                   // who says the same means the same mesh
+  std::string key;                   // equal keys refer to the same mesh
 };
 
-// `element` is the <mesh>. Refuses a scale that is none and a file that cannot be read.
+// `element`: the <mesh>. Rejects an invalid scale and an unreadable file.
 NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element);
 
-// All of it as one mesh, for whoever collides with it; index in WorldDef::meshes, as below.
-int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
+// The whole file as one mesh, for collision; returns its index in WorldDef::meshes.
+int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
 
-// As it is seen: the parts with these materials, with tangents where a picture lies on them, `subdivide` times
-// finer.
-int seen_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
+// The mesh for display: the parts with these materials, with tangents where a picture is mapped onto them, subdivided
+// `subdivide` times.
+int display_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
               const sdf::Element& element);
 
-// Index of the material that the file itself says it is made of, else `otherwise`.
+// Index of the material that the file names, else `otherwise`.
 int material_of_file(LoadContext& context, const NamedMesh& named, int otherwise);
 
 }  // namespace tactus::sim

@@ -1,5 +1,13 @@
 #include "sim_node/scene/scene_assets.h"
 
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
+
 #include "lcmtypes/vectors.h"
 #include "sim_node/model/tool_shape.h"
 #include "sim_node/model/triangles.h"
@@ -9,7 +17,7 @@
 namespace tactus::sim {
 namespace {
 
-// Samples a side of a heightfield as it is seen: 0.5 million triangles, 19 MB.
+// Maximum samples per side of a displayed heightfield: 0.5 million triangles, 19 MB.
 constexpr int kMaxSamples = 513;
 
 mesh_t to_message(const TriangleMesh& mesh) {

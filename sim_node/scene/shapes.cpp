@@ -35,7 +35,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
 }
 
 void require_positive(const LoadContext& context, const sdf::Element& owner, const ShapeDef& shape) {
-  // Sizes that the kind does not use are 1.
+  // Unused sizes of a kind are 1.
   if (!shape.size_m.allFinite() || (shape.size_m.array() <= 0).any() || shape.size_m.maxCoeff() > 1e6)
     context.refuse(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
 }
@@ -75,7 +75,7 @@ std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& ge
     }
     case sdf::GeometryType::MESH:
       shape.kind = ShapeKind::kMesh;
-      shape.mesh = whole_mesh(context, named_mesh(context, *geometry.MeshShape(), element), element);
+      shape.mesh = collision_mesh(context, named_mesh(context, *geometry.MeshShape(), element), element);
       break;
     case sdf::GeometryType::HEIGHTMAP:
       shape.kind = ShapeKind::kHeightfield;
@@ -94,18 +94,18 @@ std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& ge
 Eigen::AlignedBox3d bounds(const WorldDef& world, const ShapeDef& shape) {
   const Eigen::Matrix3d turn = shape.pose.linear();
   const Eigen::Vector3d centre = shape.pose.translation();
-  const auto around = [&](const Eigen::Vector3d& half) { return Eigen::AlignedBox3d(centre - half, centre + half); };
+  const auto box_around = [&](const Eigen::Vector3d& half) { return Eigen::AlignedBox3d(centre - half, centre + half); };
   const double r = shape.size_m.x(), half_length = shape.size_m.z() / 2;
   const Eigen::Vector3d z = turn.col(2).cwiseAbs();
   switch (shape.kind) {
     case ShapeKind::kBox:
-      return around(turn.cwiseAbs() * shape.size_m / 2);
+      return box_around(turn.cwiseAbs() * shape.size_m / 2);
     case ShapeKind::kSphere:
-      return around(Eigen::Vector3d::Constant(r));
+      return box_around(Eigen::Vector3d::Constant(r));
     case ShapeKind::kCapsule:
-      return around(z * half_length + Eigen::Vector3d::Constant(r));
+      return box_around(z * half_length + Eigen::Vector3d::Constant(r));
     case ShapeKind::kCylinder:  // a disc of normal z reaches r sqrt(1 - z_i^2) along axis i
-      return around(z * half_length + r * (1 - z.array().square()).max(0).sqrt().matrix());
+      return box_around(z * half_length + r * (1 - z.array().square()).max(0).sqrt().matrix());
     case ShapeKind::kMesh:
       return bounds(world.meshes[static_cast<std::size_t>(shape.mesh)], shape.pose);
     case ShapeKind::kHeightfield: {

@@ -8,13 +8,13 @@
 
 namespace tactus::sim {
 
-// Kind, size, mesh and pose (the geometry's own, in the body frame: a plane is turned to its normal). Nothing for
-// geometry that is not supported. Refuses sizes that are not positive and files that cannot be read. `owner` is the
+// Reads kind, size, mesh and pose (in the body frame, including the geometry's own: a plane is rotated to its
+// normal). Empty for unsupported geometry. Rejects sizes that are not positive and unreadable files. `owner`: the
 // <collision> or <visual>.
 std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner,
                                    const Eigen::Isometry3d& pose);
 
-// Smallest box in the body frame that holds the shape; empty for a plane.
+// Smallest box in the body frame that contains the shape; empty for a plane.
 Eigen::AlignedBox3d bounds(const WorldDef& world, const ShapeDef& shape);
 
 }  // namespace tactus::sim

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/waypoint_t.hpp>
 
 #include "lcmtypes/tool_device.h"
 #include "lcmtypes/vectors.h"
@@ -15,7 +17,7 @@
 namespace tactus::sim {
 namespace {
 
-// Without further word: a fingertip, and the hand's effective mass at it of about 0.1 kg (design).
+// Defaults: a fingertip, and an effective mass of the hand at the fingertip of about 0.1 kg (design).
 constexpr double kDefaultRadius_m = 0.008, kDefaultMass_kg = 0.1;
 
 waypoint_t read_waypoint(const LoadContext& context, const sdf::Element& element) {
@@ -28,7 +30,8 @@ waypoint_t read_waypoint(const LoadContext& context, const sdf::Element& element
   return waypoint;
 }
 
-// As it is sent to the hand: its motion file, which is found as meshes are, by its whole path.
+// The device string as published to the hand, with the full path of its motion file, which is located like a mesh
+// file.
 std::string read_device(const LoadContext& context, const sdf::Element& element, const std::string& text) try {
   const ToolDevice device = parse_tool_device(text);
   if (device.file.empty()) return text;
@@ -41,9 +44,9 @@ std::string read_device(const LoadContext& context, const sdf::Element& element,
   context.refuse(element, std::string("has a bad device: ") + e.what());
 }
 
-constexpr double kLargest_m = 1, kSmallest_m = 1e-4;  // of a tool: what a hand holds
+constexpr double kLargest_m = 1, kSmallest_m = 1e-4;  // of a handheld tool
 
-// The triangles of a mesh tool; each file and scale once.
+// The triangles of a mesh tool; each file and scale is read once.
 int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::string& uri, double scale) {
   const std::filesystem::path file = context.asset_file(uri, element);
   const std::string key = file.string() + "|tool|" + std::to_string(scale);
@@ -56,7 +59,7 @@ int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::s
   return at->second;
 }
 
-// What touches: a ball, or a shape that is felt with torque.
+// The touching geometry: a ball, or a shape with torque feedback.
 void read_tool_shape(LoadContext& context, const sdf::Element& element, Attributes& attributes, tool_def_t& tool) {
   const std::string shape = attributes.text("shape").value_or("ball");
   tool.shape = tool_def_t::BALL;
@@ -79,7 +82,7 @@ void read_tool_shape(LoadContext& context, const sdf::Element& element, Attribut
   }
 }
 
-// A solid of even density; a point as if it had 1 mm.
+// A solid of uniform density; a point counts as a ball of 1 mm.
 Eigen::Matrix3d tool_inertia(const WorldDef& world, const tool_def_t& tool, Eigen::Vector3d& centre_m) {
   ShapeDef shape = tool_shape(tool);
   shape.material = -1;
@@ -94,7 +97,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   tool_def_t tool{};
   tool.name = attributes.required_text("name");
-  if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that something else has: choose another");
+  if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that is already in use: choose another");
   read_tool_shape(context, *element, attributes, tool);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
   tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
@@ -134,7 +137,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   context.world.bodies.push_back(body);
   if (is_shaped(tool)) tool.radius_m = tool_bound_m(context.world, tool);
   if (tool.radius_m > kLargest_m)
-    context.refuse(*element, "reaches further than 1 m from its origin: a hand holds something smaller");
+    context.refuse(*element, "extends further than 1 m from its origin: make it smaller");
   BodyDef& held = context.world.bodies.back();
   held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m);
   context.world.tools.push_back(tool);

@@ -1,4 +1,4 @@
-// Tools: what a hand holds in the scene, and the path of the virtual hand.
+// <tactus:tool>: handheld tools of a scene, and the paths of virtual hands.
 #pragma once
 
 #include "sim_node/scene/sdf/load_context.h"

@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// What is looked into, and which of its children mean something here. A child without an entry of its own is a leaf.
+// Supported elements and their supported children. A child without its own entry is a leaf.
 const std::map<std::string, Names> kSupported{
     {"sdf", {"world", "model"}},
     {"world", {"gravity", "physics", "scene", "gui", "light", "model", "frame", "tactus:material", "tactus:tool",
@@ -46,13 +46,13 @@ const std::map<std::string, Names> kSupported{
     {"limit", {"lower", "upper", "effort"}},
     {"dynamics", {"damping", "friction", "spring_reference", "spring_stiffness"}},
 };
-// Elements that change nothing while they say what holds anyway.
+// Values that have no effect because they match the fixed behaviour.
 const std::map<std::string, Names> kHarmless{
     {"enable_wind", {"false", "0"}}, {"kinematic", {"false", "0"}}, {"must_be_base_link", {"false", "0"}},
     {"visualize", {"false", "0"}},   {"light_on", {"true", "1"}},   {"laser_retro", {"0"}},
     {"lighting", {"true", "1"}},     {"double_sided", {"false", "0"}}};
 
-// Step and rate of the simulation: one step for each tick of touch.
+// Fixed step and rate of the simulation: one step per haptic tick.
 constexpr double kStep_s = 0.001, kRate_Hz = 1000;
 
 const Names* children_of(const std::string& parent, const std::string& name) {
@@ -69,18 +69,18 @@ bool harmless(const sdf::Element& element) {
 void check_pace(const LoadContext& context, const sdf::Element& e) {
   const auto value = [&] { return e.Get<double>(); };
   if (e.GetName() == "max_step_size" && std::abs(value() - kStep_s) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " does not fit: the world is stepped by 0.001 s");
+    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world is stepped by 0.001 s");
   if (e.GetName() == "real_time_factor" && std::abs(value() - 1) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " does not fit: the world runs in real time");
+    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world runs in real time");
   if (e.GetName() == "real_time_update_rate" && value() != 0 && std::abs(value() - kRate_Hz) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " does not fit: the world is stepped 1000 times a second");
+    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world is stepped 1000 times a second");
 }
 
 void walk(const LoadContext& context, const sdf::ElementPtr& element, const Names& supported) {
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (!child->GetExplicitlySetInFile() || child == context.camera_sensor) continue;
     const std::string& name = child->GetName();
-    if (element->GetName() == "world" && is_setting_element(name)) continue;  // tactus_settings.h sees to it
+    if (element->GetName() == "world" && is_setting_element(name)) continue;  // handled by tactus_settings.h
     if (!supported.contains(name)) {
       if (!harmless(*child)) context.warn(*child, "is not supported and has no effect");
       continue;

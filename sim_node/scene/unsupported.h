@@ -1,11 +1,11 @@
-// Says what of a scene has no effect here: one warning for each such element, and none for what lies inside it.
+// Warnings for elements of a scene that have no effect: one per element, and none for its children.
 #pragma once
 
 #include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 
-// Also warns of a step size or rate of <physics> that is not ours. `root` is <sdf>.
+// Also warns of a step size or rate in <physics> that differs from the fixed one. `root`: <sdf>.
 void warn_unsupported(const LoadContext& context, const sdf::ElementPtr& root);
 
 }  // namespace tactus::sim

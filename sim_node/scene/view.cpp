@@ -14,30 +14,30 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180;
 
 // +x towards the target, z up.
-Eigen::Isometry3d looking(const Eigen::Vector3d& from, const Eigen::Vector3d& at) {
+Eigen::Isometry3d look_pose(const Eigen::Vector3d& from, const Eigen::Vector3d& at) {
   const Eigen::Vector3d x = (at - from).normalized();
-  const Eigen::Vector3d beside = std::abs(x.z()) > 0.999 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ().cross(x);
+  const Eigen::Vector3d perpendicular = std::abs(x.z()) > 0.999 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ().cross(x);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() << x, beside.normalized(), x.cross(beside.normalized());
+  pose.linear() << x, perpendicular.normalized(), x.cross(perpendicular.normalized());
   pose.translation() = from;
   return pose;
 }
 
 // A pose, or a position and a point to look at.
-std::optional<Eigen::Isometry3d> read_place(const LoadContext& context, const sdf::Element& element, Attributes& attributes) {
+std::optional<Eigen::Isometry3d> read_viewpoint(const LoadContext& context, const sdf::Element& element, Attributes& attributes) {
   const auto pose = attributes.pose("pose");
   const auto position = attributes.position("position"), at = attributes.position("look_at");
   if (pose && (position || at)) context.refuse(element, "has both a pose and a position: give one");
   if (position.has_value() != at.has_value()) context.refuse(element, "needs position and look_at together");
   if (position && (*position - *at).norm() < 1e-6) context.refuse(element, "looks at itself");
-  return position ? looking(*position, *at) : pose;
+  return position ? look_pose(*position, *at) : pose;
 }
 
 bool read_tactus_camera(LoadContext& context, const sdf::ElementPtr& world) {
   const sdf::ElementPtr element = written(world, "tactus:camera");
   if (!element) return false;
   Attributes attributes(context, *element);
-  const auto place = read_place(context, *element, attributes);
+  const auto place = read_viewpoint(context, *element, attributes);
   if (!place) context.refuse(*element, "lacks its pose, or position and look_at");
   context.world.camera = *place;
   context.world.camera_fov_rad = attributes.quantity("fov", "rad", 1 * kDeg, 170 * kDeg).value_or(60 * kDeg);
@@ -50,7 +50,7 @@ bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
   if (!pose) return false;
   context.world.camera = to_eigen(pose->Get<ignition::math::Pose3d>());
   if (!context.world.camera.matrix().allFinite()) context.refuse(*pose, "is not finite");
-  context.world.camera_fov_rad = 60 * kDeg;  // that of Gazebo's window
+  context.world.camera_fov_rad = 60 * kDeg;  // as in Gazebo's window
   return true;
 }
 
@@ -63,20 +63,20 @@ bool read_camera_sensor(LoadContext& context) {
   return true;
 }
 
-// From the front, the right and above, as far as the sphere around all bodies asks for.
-void look_at_all(LoadContext& context) {
-  Eigen::AlignedBox3d around;
+// From the front, right and above, at the distance that shows the bounding sphere of all bodies.
+void frame_all_bodies(LoadContext& context) {
+  Eigen::AlignedBox3d bounding_box;
   for (const ShapeDef& shape : context.world.shapes) {
     ShapeDef placed = shape;
     placed.pose = context.world.bodies[static_cast<std::size_t>(shape.body)].pose * shape.pose;
-    if (shape.kind != ShapeKind::kHeightfield) around.extend(bounds(context.world, placed));
+    if (shape.kind != ShapeKind::kHeightfield) bounding_box.extend(bounds(context.world, placed));
   }
-  if (around.isEmpty()) around.extend(Eigen::Vector3d::Zero());
-  const double radius = std::max(around.sizes().norm() / 2, 0.1);
+  if (bounding_box.isEmpty()) bounding_box.extend(Eigen::Vector3d::Zero());
+  const double radius = std::max(bounding_box.sizes().norm() / 2, 0.1);
   const double vertical_fov = 2 * std::atan(std::tan(30 * kDeg) * 0.75);
   const double distance = std::min(radius / std::sin(vertical_fov / 2), 1e5);
-  const Eigen::Vector3d from = around.center() + distance * Eigen::Vector3d(-0.7, -0.5, 0.5).normalized();
-  context.world.camera = looking(from, around.center());
+  const Eigen::Vector3d from = bounding_box.center() + distance * Eigen::Vector3d(-0.7, -0.5, 0.5).normalized();
+  context.world.camera = look_pose(from, bounding_box.center());
   context.world.camera_fov_rad = 60 * kDeg;
 }
 
@@ -97,11 +97,11 @@ void read_light_from_everywhere(LoadContext& context, const sdf::World* world, c
 
 void read_view(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element) {
   if (!read_tactus_camera(context, element) && !read_gui_camera(context, element) && !read_camera_sensor(context))
-    look_at_all(context);
+    frame_all_bodies(context);
   context.world.listener = context.world.camera;
   if (const sdf::ElementPtr listener = written(element, "tactus:listener")) {
     Attributes attributes(context, *listener);
-    const auto place = read_place(context, *listener, attributes);
+    const auto place = read_viewpoint(context, *listener, attributes);
     if (!place) context.refuse(*listener, "lacks its pose, or position and look_at");
     context.world.listener = *place;
     attributes.done();

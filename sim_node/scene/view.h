@@ -1,4 +1,4 @@
-// From where the scene is seen and heard.
+// Camera and listener of a scene, ambient light and background.
 #pragma once
 
 #include <sdf/World.hh>
@@ -7,9 +7,9 @@
 
 namespace tactus::sim {
 
-// Camera: <tactus:camera>, else that of <gui>, else the first camera sensor, else one that has all bodies in view.
-// Listener: <tactus:listener>, else at the camera. Light from everywhere and background from <scene>, or SDF's defaults.
-// `world` may be null: a file that holds a model only.
+// Camera: <tactus:camera>, else that of <gui>, else the first camera sensor, else a view of all bodies. Listener:
+// <tactus:listener>, else at the camera. Ambient light and background: <scene>, or the defaults of SDF. `world` is
+// null for a file that contains only a model.
 void read_view(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element);
 
 }  // namespace tactus::sim

@@ -4,6 +4,7 @@
 #include <sdf/Material.hh>
 #include <sdf/Visual.hh>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/sdf/attributes.h"
@@ -19,7 +20,7 @@
 namespace tactus::sim {
 namespace {
 
-// The plain colours that Gazebo classic brings as scripts and that its worlds refer to by name; our approximations.
+// Colours of the script materials of Gazebo classic, which its worlds refer to by name; our approximations.
 const std::map<std::string, Eigen::Vector3d> kScripts{
     {"Gazebo/Grey", {0.5, 0.5, 0.5}},   {"Gazebo/DarkGrey", {0.2, 0.2, 0.2}}, {"Gazebo/White", {0.9, 0.9, 0.9}},
     {"Gazebo/Black", {0.02, 0.02, 0.02}}, {"Gazebo/Red", {0.8, 0.05, 0.05}},  {"Gazebo/Green", {0.05, 0.7, 0.05}},
@@ -33,17 +34,17 @@ Eigen::Vector3d colour(const LoadContext& context, const sdf::Element& element, 
   return rgb.cwiseMax(0).cwiseMin(1);
 }
 
-// How SDF says that a visual is drawn.
+// Appearance of a visual as SDF defines it.
 struct Appearance {
   VisualDef def;
-  bool coloured = false;  // SDF gives its colours: the file's do not count
-  LookWords look;
+  bool coloured = false;  // SDF defines the colours; those of the mesh file are ignored
+  LookAttributes look;
 };
 
 
-// The pictures of <pbr>, by either of its workflows.
-LookWords read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
-  LookWords words;
+// The maps of <pbr>, for both of its workflows.
+LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
+  LookAttributes words;
   const sdf::ElementPtr pbr = written(material, "pbr");
   sdf::ElementPtr workflow = written(pbr, "metal");
   if (!workflow) workflow = written(pbr, "specular");
@@ -51,7 +52,7 @@ LookWords read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
     const sdf::ElementPtr element = written(workflow, name);
     if (!element) return std::nullopt;
     const std::string uri = element->Get<std::string>();
-    // Worlds of others name pictures that are on somebody's server.
+    // Third-party worlds name pictures that are on remote servers.
     if (context.files.find(uri, element->FilePath()).empty()) {
       context.warn(*element, "names \"" + uri + "\", which is not found: drawn without it");
       return std::nullopt;
@@ -75,7 +76,7 @@ void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a)
     if (known != kScripts.end())
       a.def.ambient = a.def.diffuse = known->second;
     else if (!given("diffuse"))
-      context.warn(*script, "names \"" + m.ScriptName() + "\", whose colour is not known: shown grey");
+      context.warn(*script, "names \"" + m.ScriptName() + "\", whose colour is unknown: shown in grey");
   }
   a.coloured = a.coloured || given("diffuse") || given("ambient");
   if (given("diffuse")) a.def.diffuse = a.def.ambient = colour(context, *material, m.Diffuse());
@@ -97,18 +98,19 @@ Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int bo
   Appearance a;
   a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
   a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look_words(context, *look);
+  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look(context, *look);
   read_material(context, from, a);
   return a;
 }
 
-// A map without a colour to multiply shows its own.
-void finish(LoadContext& context, Appearance& a) {
+// A colour map without a colour is shown unchanged.
+void complete_appearance(LoadContext& context, Appearance& a) {
   if (!a.coloured && a.look.colour_map.value_or(0) != 0) a.def.diffuse = a.def.ambient = Eigen::Vector3d::Ones();
   a.def.look = look_index(context.world, a.look);
 }
 
-// A picture that a mesh file names or holds; nothing, and a warning, where it is not to be had: files come without theirs.
+// A picture that a mesh file names or contains. Empty, with a warning, when it is missing, because files are often
+// distributed without their pictures.
 std::optional<std::int64_t> picture_of_file(LoadContext& context, const sdf::Element& element, const NamedMesh& named,
                                             const MeshPicture& picture, PictureUse use) {
   if (picture.none()) return std::nullopt;
@@ -129,8 +131,8 @@ std::optional<std::int64_t> picture_of_file(LoadContext& context, const sdf::Ele
   }
 }
 
-// What the file says where SDF is silent.
-Appearance with_file(LoadContext& context, const sdf::Element& element, const NamedMesh& named, const LookWords& file_look,
+// Adds the values of the file that SDF does not define.
+Appearance with_file_appearance(LoadContext& context, const sdf::Element& element, const NamedMesh& named, const LookAttributes& file_look,
                      int material, Appearance a) {
   a.look.add(file_look);
   if (material >= 0 && static_cast<std::size_t>(material) < named.parts->materials.size()) {
@@ -145,7 +147,7 @@ Appearance with_file(LoadContext& context, const sdf::Element& element, const Na
     if (!a.look.colour_map) a.look.colour_map = picture_of_file(context, element, named, m.colour_map, PictureUse::kColour);
     if (!a.look.normal_map) a.look.normal_map = picture_of_file(context, element, named, m.normal_map, PictureUse::kDirections);
   }
-  finish(context, a);
+  complete_appearance(context, a);
   return a;
 }
 
@@ -154,14 +156,14 @@ bool same(const VisualDef& a, const VisualDef& b) {
          a.shininess == b.shininess && a.alpha == b.alpha && a.look == b.look;
 }
 
-// How often the visual asks for its mesh to be made finer.
+// Number of subdivisions that the visual requests.
 int read_display(const LoadContext& context, const sdf::ElementPtr& visual) {
   const sdf::ElementPtr display = written(visual, "tactus:display");
   if (!display) return 0;
   Attributes attributes(context, *display);
   const double times = attributes.required_quantity("subdivide", "1", 0, 6);
   attributes.done();
-  if (times != std::floor(times)) context.refuse(*display, "has a subdivide that is no whole number");
+  if (times != std::floor(times)) context.refuse(*display, "has a subdivide that is not a whole number");
   return static_cast<int>(times);
 }
 
@@ -172,24 +174,24 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
   ShapeDef& shape = appearance.def.shape;
   shape.kind = ShapeKind::kMesh;
   if (shape.material < 0) shape.material = material_of_file(context, named, -1);
-  LookWords file_look;
-  if (!named.parts->look.empty()) file_look = read_look_words(context, *element_of("tactus:look", named.parts->look, named.file));
+  LookAttributes file_look;
+  if (!named.parts->look.empty()) file_look = read_look(context, *element_of("tactus:look", named.parts->look, named.file));
 
-  // Materials that look alike are one.
-  std::set<int> met;
+  // Materials with equal appearance are merged.
+  std::set<int> seen;
   std::vector<std::pair<VisualDef, std::set<int>>> kinds;
   for (const MeshPart& part : named.parts->parts) {
-    if (!is_chosen(part, named.choice) || part.indices.empty() || !met.insert(part.material).second) continue;
-    const VisualDef def = with_file(context, element, named, file_look, part.material, appearance).def;
+    if (!is_chosen(part, named.choice) || part.indices.empty() || !seen.insert(part.material).second) continue;
+    const VisualDef def = with_file_appearance(context, element, named, file_look, part.material, appearance).def;
     const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind.first, def); });
     if (known != kinds.end()) known->second.insert(part.material);
     else kinds.emplace_back(def, std::set<int>{part.material});
   }
-  if (kinds.empty()) whole_mesh(context, named, element);  // refuses it with its reason
+  if (kinds.empty()) collision_mesh(context, named, element);  // throws with the reason
   for (auto& [def, materials] : kinds) {
-    // Without a look nobody asks where it lies in a picture: the mesh that collides is shared.
+    // Without a look, texture coordinates are not needed, and the collision mesh is shared.
     const bool shared = kinds.size() == 1 && def.look < 0 && subdivide == 0;
-    def.shape.mesh = shared ? whole_mesh(context, named, element) : seen_mesh(context, named, materials, subdivide, element);
+    def.shape.mesh = shared ? collision_mesh(context, named, element) : display_mesh(context, named, materials, subdivide, element);
     context.world.visuals.push_back(def);
   }
 }
@@ -208,13 +210,13 @@ void add_visuals(LoadContext& context, const sdf::Link& link, int body, int mate
       add_mesh_visual(context, visual, std::move(appearance), subdivide);
       continue;
     }
-    if (subdivide > 0) context.refuse(*element, "asks for a finer mesh of a shape that is none: only a <mesh> has triangles to divide");
+    if (subdivide > 0) context.refuse(*element, "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
     const auto shape = read_shape(context, *visual.Geom(), element, pose);
     if (!shape) continue;
     const ShapeDef named = appearance.def.shape;
     appearance.def.shape = *shape;
     appearance.def.shape.name = named.name, appearance.def.shape.body = named.body, appearance.def.shape.material = named.material;
-    finish(context, appearance);
+    complete_appearance(context, appearance);
     context.world.visuals.push_back(appearance.def);
   }
 }

@@ -1,4 +1,4 @@
-// What is seen of a link: the shapes of its visuals and how each is drawn.
+// Visuals of a link: their shapes and their appearance.
 #pragma once
 
 #include <sdf/Link.hh>
@@ -7,9 +7,9 @@
 
 namespace tactus::sim {
 
-// Appends the link's visuals: one for each, and of a mesh whose file has several materials one for each of those. Colours and
-// pictures are those that SDF says, then those of the mesh file. Warns of a script whose colour is not known and of a picture
-// that a mesh file names and that is not to be had.
+// Appends the visuals of the link: one each, and for a mesh file with several materials one per material. Colours and
+// pictures come from SDF, else from the mesh file. Warns of a script with an unknown colour and of a missing picture
+// that a mesh file names.
 void add_visuals(LoadContext& context, const sdf::Link& link, int body, int material);
 
 }  // namespace tactus::sim

@@ -6,7 +6,7 @@
 import math
 
 RADIUS_M, BUMP_M = 0.060, 0.003
-AROUND, DOWN = 48, 30  # vertices of a ring; rings of faces between the poles
+AROUND, DOWN = 48, 30  # vertices per ring; rings of faces between the poles
 WAVES_AROUND, WAVES_DOWN = 6, 10
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes what looks_bench.sdf shows: a ball with texture coordinates whose material names its pictures (tiled_ball.obj, .mtl),
+"""Writes the files of looks_bench.sdf: a ball with texture coordinates whose material names its pictures (tiled_ball.obj, .mtl),
 the same ball without pictures (plain_ball.obj), tiles in colour (tiles.png), their normals (tiles_normal.png) and a room with
-windows that lies around (room.png).
+windows as the environment (room.png).
 
   make_looks.py FOLDER
 """
@@ -26,7 +26,7 @@ def png(rows):
 
 
 def in_tile(i):
-    """-1 .. 1 across the tile that pixel i lies in."""
+    """-1 .. 1 across the tile of pixel i."""
     size = SIDE // 4
     return (i % size + 0.5) / size * 2 - 1
 
@@ -40,13 +40,13 @@ def tiles():
 
 
 def slope(t):
-    """Of a pillow: flat in the middle, steep towards its edge."""
+    """Slope of a pillow: flat in the middle, steep towards its edge."""
     return -2.4 * t ** 5
 
 
 def normals():
     def direction(x, y):
-        # Green points up in the picture (glTF 2.0, 3.9.3), rows count from its top.
+        # Green points up in the picture (glTF 2.0, 3.9.3); rows count from its top.
         n = (-slope(in_tile(x)), slope(in_tile(y)), 1.0)
         length = math.sqrt(sum(c * c for c in n))
         return tuple(round((c / length + 1) * 127.5) for c in n)
@@ -54,7 +54,7 @@ def normals():
 
 
 def room():
-    """Twice as wide as high, as scene_t.lcm says: dark walls, a floor, a bright ceiling lamp and windows."""
+    """Twice as wide as high, as scene_t.lcm requires: dark walls, a floor, a bright ceiling lamp and windows."""
     wide, high = 256, 128
     def colour(x, y):
         elevation = 90 - (y + 0.5) / high * 180  # degrees
@@ -71,7 +71,7 @@ def room():
 
 
 def ball(head):
-    """A sphere of rings and columns; the picture lies on it three times around and not upside down."""
+    """A sphere of rings and columns; the picture is repeated around it, upright."""
     lines = head
     for r in range(UP + 1):
         polar = math.pi * r / UP

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes many_bodies.sdf: N boxes, balls and cylinders that rain into a tray, all of one size, so that worlds of every N are
-alike; a hand stirs in them. The same N gives the same file.
+"""Writes many_bodies.sdf: N boxes, balls and cylinders that fall into a tray, all of one size, so that worlds of every N are
+similar; a hand stirs them. The same N gives the same file.
 
   make_many_bodies.py [N] > many_bodies.sdf       N: 1 .. 3000, default 100
 """
@@ -36,11 +36,11 @@ def main():
     if not 1 <= count <= 3000:
         sys.exit("make_many_bodies.py: N must lie between 1 and 3000")
     numbers = random.Random(count)
-    side = max(3, math.ceil(math.sqrt(count / 3)))  # three layers when all lie
+    side = max(3, math.ceil(math.sqrt(count / 3)))  # three layers when all lie at rest
     pitch, half = 1.6 * SIZE_M, 0.8 * SIZE_M * side + 0.02
     far, up = 2.6 * half, 2.2 * half
     print(f"""<?xml version="1.0"?>
-<!-- Written by make_many_bodies.py {count}: a tray of {count} bodies, and a hand that stirs in them. -->
+<!-- Written by make_many_bodies.py {count}: a tray of {count} bodies, and a hand that stirs them. -->
 <sdf version="1.9" xmlns:tactus="https://tactus.dev/sdf">
   <world name="many_bodies">
     <gravity>0 0 -9.81</gravity>

@@ -7,7 +7,7 @@ import os
 
 PEG_RADIUS_M, PEG_LENGTH_M, CHAMFER_M = 0.0145, 0.080, 0.002
 HOLE_RADIUS_M, PLATE_M, THICK_M = 0.015, 0.120, 0.030
-AROUND = 48  # a multiple of 8, so that the corners of the plate fall on vertices
+AROUND = 48  # a multiple of 8, so that plate corners are vertices
 
 
 def ring(radius, z):

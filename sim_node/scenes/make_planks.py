@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes planks.png: the relief of four boards, drawn as 0.4 m by 0.4 m, white 2 mm over black, 16 bits; a scene may scale it.
+"""Writes planks.png: the height map of four boards, drawn as 0.4 m by 0.4 m, white 2 mm over black, 16 bits; a scene may scale it.
 
   make_planks.py > planks.png
 
-Four boards run along u. Their edges are rounded, so that the light breaks there; the grain is waves that run along the
-boards and wander a little.
+Four boards run along u. Their edges are rounded and reflect the light; the grain consists of waves along the boards
+that deviate a little.
 """
 import math
 import struct
@@ -14,7 +14,7 @@ import zlib
 SIDE_PX, SIDE_MM = 256, 400
 BOARD_MM, BOARDS = 100, 4
 EDGE_MM = 14  # how far the rounding of an edge reaches into a board
-GRAIN = 0.12  # share of the height that the grain takes
+GRAIN = 0.12  # fraction of the height used by the grain
 JOINTS_MM = (60, 260, 160, 340)  # where the end of each board lies
 
 
@@ -41,7 +41,7 @@ def height(u_mm, v_mm):
 
 
 def level(u_mm, v_mm):
-    """In steps of 1/4095: 0.5 um are finer than a finger feels, and the file is half as large."""
+    """In steps of 1/4095: 0.5 um are below the resolution of a finger, and the file is half as large."""
     return 65535 * round(4095 * height(u_mm, v_mm)) // 4095
 
 

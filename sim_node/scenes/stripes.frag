@@ -1,4 +1,4 @@
-// Stripes of a colour around a body, lit as everything else; of looks_bench.sdf. What is given: visual_node/README.md.
+// Coloured stripes around a body, with the standard lighting; for looks_bench.sdf. Inputs: visual_node/README.md.
 uniform float width_m;
 uniform vec3 tint;
 

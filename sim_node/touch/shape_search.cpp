@@ -10,13 +10,13 @@
 namespace tactus::sim {
 namespace {
 
-// Of one surface, the nearest: more than a touch model holds of all.
+// Per surface, the nearest ones; more than the touch model holds for all surfaces.
 constexpr std::size_t kMaxMeetings = 64;
 
-// Of each place and direction the nearest.
-class Meetings : public NearestFirst {
+// Keeps the nearest pair for each place and direction.
+class MeetingCollector : public NearestFirst {
  public:
-  Meetings(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolMeeting>& out)
+  MeetingCollector(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolMeeting>& out)
       : same_direction_(same_direction), to_tool_(to_tool), out_(out) {}
 
   bool known(const PointPair& p) const override {
@@ -29,7 +29,7 @@ class Meetings : public NearestFirst {
   }
 
   bool take(const PointPair& p) override {
-    // Its height over the plane, whatever the detector calls the gap of two points that are not above each other.
+    // The height over the plane: the detector's gap differs for points that are not above each other.
     const Eigen::Vector3d normal = -p.normal;
     out_.push_back({{p.on_b_m, normal, normal.dot(place(p) - p.on_b_m), p.triangle_b}, to_tool_ * place(p)});
     return out_.size() < kMaxMeetings;
@@ -52,15 +52,15 @@ ShapeSearch::ShapeSearch(const WorldDef& world, int tool, const Settings& settin
       tool_(detector_->add(tool_shape(world.tools[static_cast<std::size_t>(tool)]), world)) {}
 
 void ShapeSearch::add(const ShapeDef& shape, const WorldDef& world) {
-  numbers_.push_back(detector_->add(shape, world));
-  prepare_nearest_first(*detector_, tool_, numbers_.back());
+  detector_ids_.push_back(detector_->add(shape, world));
+  prepare_nearest_first(*detector_, tool_, detector_ids_.back());
 }
 
 void ShapeSearch::query(std::size_t shape, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& tool_pose,
                         double reach_m, std::vector<ToolMeeting>& out) {
   out.clear();
-  Meetings meetings(same_direction_, tool_pose.inverse(Eigen::Isometry), out);
-  nearest_first(*detector_, tool_, tool_pose, numbers_[shape], pose, reach_m + kSkin_m, meetings, pairs_);
+  MeetingCollector meetings(same_direction_, tool_pose.inverse(Eigen::Isometry), out);
+  nearest_first(*detector_, tool_, tool_pose, detector_ids_[shape], pose, reach_m + kSkin_m, meetings, pairs_);
 }
 
 }  // namespace tactus::sim

@@ -1,5 +1,6 @@
-// What a tool does to the bodies that it touches: the opposite of the force that the hand feels. The haptic loop and the
-// simulation are not in step, so 0, 1 or 2 messages come a step; cumulative impulses keep the books right. Pure.
+// Forces of a tool on the bodies that it touches: the opposite of the force on the hand. The haptic loop and the
+// simulation are not synchronized, so that 0, 1 or 2 messages arrive per step; cumulative impulses make the total
+// exact. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +11,8 @@
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_applied_t.hpp>
 #include <vector>
+#include <tactus/header_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
 
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/ids.h"
@@ -28,55 +31,58 @@ struct Push {
 
 class ToolPush {
  public:
-  // reach_m: of each body, how far from its centre of mass a force may act; what is told beyond is drawn in.
+  // reach_m: for each body, the maximum distance of a force from its centre of mass; points beyond are moved to this
+  // distance.
   ToolPush(const Settings& settings, const Ids& ids, std::vector<double> reach_m)
       : settings_(settings), ids_(ids), reach_m_(std::move(reach_m)) {}
 
-  // The pushes for the step that follows `now`. news: messages of the tool since the last call, in order. What they say
-  // was felt since those before is applied as a mean force; what is still owed or was given too much, because a step had
-  // no message or two, is made up for over 5 steps. Without news the force is held, then fades. A new haptic process
-  // counts its impulses from zero; forces on contacts that this simulation never named are ignored.
-  const std::vector<Push>& step(sync::SimTime now, std::span<const tool_state_t> news, std::span<const BodyMotion> bodies);
-  // The same while the world stands still: what is felt meanwhile pushes nothing, then or later.
-  void hold(sync::SimTime now, std::span<const tool_state_t> news, std::span<const BodyMotion> bodies);
-  // After the step: books the work that the pushes did.
-  void settle(std::span<const BodyMotion> bodies);
+  // Pushes for the step that follows `now`. new_messages: messages of the tool since the last call, in order. The
+  // impulse that they report since the previous messages is applied as a mean force. The remaining difference, caused
+  // by steps with no message or with two, is corrected over 5 steps. Without messages the force is held, then fades.
+  // A new haptic process counts its impulses from zero. Forces on contact ids that this simulation never issued are
+  // ignored.
+  const std::vector<Push>& step(sync::SimTime now, std::span<const tool_state_t> new_messages, std::span<const BodyMotion> bodies);
+  // The same while the world is paused: impulses received meanwhile are never applied.
+  void hold(sync::SimTime now, std::span<const tool_state_t> new_messages, std::span<const BodyMotion> bodies);
+  // Call after the step: adds the work of the pushes.
+  void add_work(std::span<const BodyMotion> bodies);
 
   void archive(StateArchive& a, std::size_t bodies);
-  // The world began anew under new ids: what the hand said before is of another life. The next message begins new books.
-  void forget();
+  // Call when the world starts again under new ids: drops the impulses reported under the old ids. The next message
+  // starts new sums.
+  void reset();
 
-  // What was applied for each contact, the latest first, at most `most`.
-  void books(std::vector<touch_applied_t>& out, std::size_t most) const;
+  // Impulse and energy applied for each contact, most recent first.
+  void applied_impulses(std::vector<touch_applied_t>& out, std::size_t max_count) const;
 
  private:
-  static constexpr double kMakeUpSteps = 5;
-  static constexpr std::size_t kRemembered = 64;
+  static constexpr double kCorrectionSteps = 5;
+  static constexpr std::size_t kMaxContacts = 64;
 
-  struct Account {
+  struct ContactImpulses {
     int body = -1;
     Eigen::Vector3d point{0, 0, 0};
-    Eigen::Vector3d told{0, 0, 0};     // cumulative impulse on the tool as of the newest message, N s
-    Eigen::Vector3d felt{0, 0, 0};     // of that, in the newest messages
-    Eigen::Vector3d owed{0, 0, 0};     // to the body, not applied yet, N s
+    Eigen::Vector3d reported{0, 0, 0};     // cumulative impulse on the tool in the newest message, N s
+    Eigen::Vector3d received{0, 0, 0};     // the part reported in the newest messages, N s
+    Eigen::Vector3d pending{0, 0, 0};     // to the body, not applied yet, N s
     Eigen::Vector3d mean_N{0, 0, 0};   // on the body, over the newest messages
     Eigen::Vector3d applied{0, 0, 0};  // to the body, N s
-    Eigen::Vector3d velocity{0, 0, 0};  // of the point, before the step, m/s
+    Eigen::Vector3d velocity{0, 0, 0};  // of the point before the step, m/s
     double energy_J = 0;
     sync::SimTime used{};
   };
   bool accept(const header_t& header);
-  void take(std::span<const tool_state_t> news, sync::SimTime now, std::span<const BodyMotion> bodies);
-  void note(const tool_constraint_t& c, sync::SimTime now, std::span<const BodyMotion> bodies);
+  void receive(std::span<const tool_state_t> new_messages, sync::SimTime now, std::span<const BodyMotion> bodies);
+  void add_constraint(const tool_constraint_t& c, sync::SimTime now, std::span<const BodyMotion> bodies);
 
   Settings settings_;
   const Ids& ids_;
   std::vector<double> reach_m_;
-  std::map<std::int64_t, Account> accounts_;
+  std::map<std::int64_t, ContactImpulses> impulses_;
   std::int64_t incarnation_ = 0, replaced_ = 0;
   std::int64_t last_seq_ = -1;
-  std::int64_t last_publish_ns_ = 0;  // 0: none of this incarnation yet
-  std::optional<sync::SimTime> heard_;
+  std::int64_t last_publish_ns_ = 0;  // 0: no message of this incarnation yet
+  std::optional<sync::SimTime> last_message_;
   std::vector<Push> pushes_;
 };
 

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/pointing.h"
@@ -15,20 +20,20 @@ using sync::SimTime;
 
 namespace {
 
-// A plane of the same shape belongs to the surface followed before when its normal has turned by less than this a step.
+// A plane belongs to the surface tracked before when its normal has turned by less than this in a step.
 const double kSameSurface = std::cos(60 * M_PI / 180);
-// Margin of a tool with a shape over a surface of triangles, m: each pair of them within it is looked at, so the time grows
-// with its square. Design: what a proxy may move on two models (haptic setting proxy_reach), at rest.
+// Margin of a shaped tool over a triangle mesh, m. All triangle pairs within it are checked, so the time grows with
+// its square. Design: the distance that a proxy may move on two models (haptic setting proxy_reach), at rest.
 constexpr double kMeshMargin_m = 0.003;
-// And of a tool with a shape, when it meets a place of the tool not further than this from the one before. Design: what
-// rolls moves by less in a step, and the corners of what a hand holds lie further apart.
+// For a shaped tool, the point on the tool must also be within this distance of the previous one. Design: a rolling
+// contact moves by less in a step, and the corners of a handheld object are further apart.
 constexpr double kSameFeature_m = 0.004;
-// A surface out of reach is forgotten after this, unless it is touched.
-constexpr sync::Nanoseconds kForget{50'000'000};
-// A begin is not dated back further than a message can be late before it counts as lost.
-constexpr sync::Nanoseconds kLatestNews{20'000'000};
-constexpr double kFelt_N = 1e-4;  // below, a force is rounding
-// Of places in the world, m.
+// A surface out of reach is dropped after this time, unless it is touched.
+constexpr sync::Nanoseconds kForgetAfter{50'000'000};
+// Maximum back-dating of a begin: the age at which a message counts as lost.
+constexpr sync::Nanoseconds kMaxMessageAge{20'000'000};
+constexpr double kMinForce_N = 1e-4;  // smaller forces are rounding
+// Rounding of positions in the world, m.
 constexpr double kRounding_m = 1e-9;
 
 sync::Nanoseconds ns(double s) { return sync::from_seconds(s); }
@@ -87,18 +92,19 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   model_.pages = 1;
   proxy_ = device_ = world.bodies[static_cast<std::size_t>(tool_body_)].pose.translation();
   if (shaped)
-    proxy_turn_ = device_turn_ = Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(tool_body_)].pose.linear()).normalized();
+    proxy_orientation_ = device_orientation_ =
+        Eigen::Quaterniond(world.bodies[static_cast<std::size_t>(tool_body_)].pose.linear()).normalized();
 }
 
-void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surface, const Vector3d& tool_point_m) {
+void ToolTouch::track(SimTime now, const SurfacePlane& plane, std::size_t surface, const Vector3d& tool_point_m) {
   Near* best = nullptr;
-  double alike = shape_ ? -1 : kSameSurface;
+  double best_score = shape_ ? -1 : kSameSurface;
   for (Near& n : near_) {
     const double cosine = n.plane.normal.dot(plane.normal);
-    if (n.surface != surface || n.seen == now || cosine <= kSameSurface) continue;
-    // Of a shape the same place of the tool; the nearer, the liker.
+    if (n.surface != surface || n.last_seen == now || cosine <= kSameSurface) continue;
+    // For a shaped tool, also compare the points on the tool; a nearer point scores higher.
     const double off = shape_ ? (n.tool_point_m - tool_point_m).norm() / kSameFeature_m : 0;
-    if (off < 1 && cosine - off > alike) best = &n, alike = cosine - off;
+    if (off < 1 && cosine - off > best_score) best = &n, best_score = cosine - off;
   }
   if (best == nullptr) {
     best = &near_.emplace_back();
@@ -107,28 +113,28 @@ void ToolTouch::follow(SimTime now, const SurfacePlane& plane, std::size_t surfa
   }
   best->plane = plane;
   best->tool_point_m = tool_point_m;
-  best->seen = now;
+  best->last_seen = now;
   best->gap_m = plane.distance_m - radius_m_;
 }
 
-// Of a tool with a shape: all places that may meet the surface.
-void ToolTouch::meet(SimTime now, std::size_t surface, const BodyMotion& body, double reach_m) {
+// For a shaped tool: tracks all places that may meet the surface.
+void ToolTouch::track_shape(SimTime now, std::size_t surface, const BodyMotion& body, double reach_m) {
   const auto pose = [](const Vector3d& position, const Eigen::Quaterniond& orientation) {
     Eigen::Isometry3d p(orientation);
     p.translation() = position;
     return p;
   };
   shape_->query(surface, pose(body.position_m, body.orientation) * surfaces_[surface].traits.in_body,
-                pose(proxy_, proxy_turn_), reach_m, met_);
-  for (const ToolMeeting& m : met_) follow(now, m.plane, surface, m.tool_point_m);
+                pose(proxy_, proxy_orientation_), reach_m, meetings_);
+  for (const ToolMeeting& m : meetings_) track(now, m.plane, surface, m.tool_point_m);
 }
 
-void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
+void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
   const double reach = reach_m();
   candidates_.clear();
   fixed_.near(proxy_, reach + kRounding_m, candidates_);
-  const auto look_at = [&](const Moving& m) {
-    // The position alone first: there may be a thousand of them.
+  const auto add_candidate = [&](const Moving& m) {
+    // Check the position first, because there may be a thousand bodies.
     const BodyMotion& body = bodies[static_cast<std::size_t>(m.body)];
     const double about = m.bound_m + reach + kRounding_m;
     if ((proxy_ - body.position_m).squaredNorm() > about * about) return;
@@ -136,12 +142,12 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
     const double within = s.shape.bound_m() + reach;
     if ((proxy_ - body.to_world(s.centre_in_body)).squaredNorm() <= within * within) candidates_.push_back(m.surface);
   };
-  if (!only_) std::for_each(moving_.begin(), moving_.end(), look_at);
-  if (only_)
-    for (const int body : *only_)
+  if (!allowed_bodies_) std::for_each(moving_.begin(), moving_.end(), add_candidate);
+  if (allowed_bodies_)
+    for (const int body : *allowed_bodies_)
       for (std::size_t i = first_of_[static_cast<std::size_t>(body)]; i < first_of_[static_cast<std::size_t>(body) + 1]; ++i)
-        look_at(moving_[i]);
-  // As the scene has them, so that numbers are given out in one order.
+        add_candidate(moving_[i]);
+  // In scene order, so that ids are issued in a fixed order.
   std::sort(candidates_.begin(), candidates_.end());
   for (const int candidate : candidates_) {
     const auto i = static_cast<std::size_t>(candidate);
@@ -149,7 +155,7 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
     const BodyMotion& body = bodies[static_cast<std::size_t>(s.traits.body)];
     if (shape_) {
       const bool meshed = s.traits.kind == ShapeKind::kMesh || s.traits.kind == ShapeKind::kHeightfield;
-      meet(now, i, body, reach - bound_m_ - (meshed ? std::max(0.0, settings_.touch_margin_m - kMeshMargin_m) : 0));
+      track_shape(now, i, body, reach - bound_m_ - (meshed ? std::max(0.0, settings_.touch_margin_m - kMeshMargin_m) : 0));
       continue;
     }
     const Vector3d place = s.from_body * body.to_body(proxy_);
@@ -157,13 +163,13 @@ void ToolTouch::look_around(SimTime now, std::span<const BodyMotion> bodies) {
     for (SurfacePlane plane : found_) {
       plane.point = body.to_world(s.traits.in_body * plane.point);
       plane.normal = body.orientation * (s.traits.in_body.linear() * plane.normal);
-      follow(now, plane, i, Vector3d::Zero());
+      track(now, plane, i, Vector3d::Zero());
     }
   }
-  // What is out of reach has gone by at least that much.
+  // A surface out of reach has a gap of at least this margin.
   for (Near& n : near_)
-    if (n.seen != now) n.gap_m = std::max(n.gap_m, settings_.touch_margin_m);
-  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.seen > kForget; });
+    if (n.last_seen != now) n.gap_m = std::max(n.gap_m, settings_.touch_margin_m);
+  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.last_seen > kForgetAfter; });
 }
 
 double ToolTouch::mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const {
@@ -200,51 +206,52 @@ void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<co
   events.push_back(e);
 }
 
-// From one message to the next: does the tool touch this surface, and since when? The proxy never passes a surface, so the
-// instant follows from the device, which does: where its gap to the plane became zero.
-void ToolTouch::judge(Near& n, SimTime when, SimTime before, SimTime now, std::span<const BodyMotion> bodies,
+// Updates the contact from one message to the next. The proxy never passes a surface, but the device does: the onset
+// is the instant at which the gap of the device to the plane became zero.
+void ToolTouch::update_contact(Near& n, SimTime when, SimTime before, SimTime now, std::span<const BodyMotion> bodies,
                       std::vector<contact_event_t>& events) {
-  const Vector3d place = shape_ ? Vector3d(device_ + device_turn_ * n.tool_point_m) : device_;
+  const Vector3d place = shape_ ? Vector3d(device_ + device_orientation_ * n.tool_point_m) : device_;
   const double gap = (place - n.plane.point).dot(n.plane.normal) - radius_m_;
-  const Vector3d past = velocity_of(n) - body_of(n, bodies).velocity_at(n.plane.point);
-  const bool touches = n.force_N > kFelt_N || n.gap_m <= settings_.touch_gap_m;
-  SimTime met = when;
-  if (n.device_gap_known && n.device_gap_m > 0 && gap <= 0)
-    met = before + sync::Nanoseconds(std::llround(static_cast<double>((when - before).count()) * n.device_gap_m / (n.device_gap_m - gap)));
-  met = std::clamp(met, now - kLatestNews, now);
+  const Vector3d relative_velocity = velocity_of(n) - body_of(n, bodies).velocity_at(n.plane.point);
+  const bool touches = n.force_N > kMinForce_N || n.gap_m <= settings_.touch_gap_m;
+  SimTime onset = when;
+  if (n.has_device_gap && n.device_gap_m > 0 && gap <= 0)
+    onset = before + sync::Nanoseconds(std::llround(static_cast<double>((when - before).count()) * n.device_gap_m /
+                                                   (n.device_gap_m - gap)));
+  onset = std::clamp(onset, now - kMaxMessageAge, now);
   if (touches && (!n.touching || n.apart)) {
-    // The speed of the message before, since the present one may have been stopped already.
-    n.closing_m_s = std::max(n.closing_m_s, -past.dot(n.plane.normal));
+    // Use the speed of the previous message, because the surface may already have stopped the device.
+    n.closing_m_s = std::max(n.closing_m_s, -relative_velocity.dot(n.plane.normal));
     const bool is_new = !n.touching;
     n.touching = true;
-    if (is_new) emit(n, contact_event_t::BEGIN, met, bodies, events);
-    const bool rested = !n.has_hit || met - n.last_hit >= ns(settings_.hit_interval_s);
-    if (n.closing_m_s >= settings_.hit_speed_m_s && rested) {
-      emit(n, contact_event_t::HIT, met, bodies, events);
+    if (is_new) emit(n, contact_event_t::BEGIN, onset, bodies, events);
+    const bool hit_allowed = !n.has_hit || onset - n.last_hit >= ns(settings_.hit_interval_s);
+    if (n.closing_m_s >= settings_.hit_speed_m_s && hit_allowed) {
+      emit(n, contact_event_t::HIT, onset, bodies, events);
       n.has_hit = true;
-      n.last_hit = met;
+      n.last_hit = onset;
     }
     n.apart = false;
   } else if (n.touching && !n.apart && !touches && n.gap_m > settings_.touch_end_gap_m) {
     n.apart = true;
-    n.apart_since = std::clamp(when, now - kLatestNews, now);
+    n.apart_since = std::clamp(when, now - kMaxMessageAge, now);
   }
-  n.closing_m_s = std::max(0.0, -past.dot(n.plane.normal));
+  n.closing_m_s = std::max(0.0, -relative_velocity.dot(n.plane.normal));
   n.device_gap_m = gap;
-  n.device_gap_known = true;
+  n.has_device_gap = true;
 }
 
-void ToolTouch::take(const tool_state_t& m, SimTime now, std::span<const BodyMotion> bodies,
+void ToolTouch::receive(const tool_state_t& m, SimTime now, std::span<const BodyMotion> bodies,
                      std::vector<contact_event_t>& events) {
   const SimTime when = m.header.sim_time_ns >= 0 ? std::min(sync::sim_time(m.header.sim_time_ns), now) : now;
-  const SimTime before = last_stamp_ < when && when - last_stamp_ < kLatestNews ? last_stamp_ : when;
+  const SimTime before = last_stamp_ < when && when - last_stamp_ < kMaxMessageAge ? last_stamp_ : when;
   last_stamp_ = when;
-  known_ = true;
-  heard_ = now;
+  has_message_ = true;
+  last_message_ = now;
   device_ = to_eigen(m.device.position_m);
   velocity_ = to_eigen(m.device_velocity_m_s);
   if (shape_) {
-    device_turn_ = to_eigen(m.device.orientation).normalized();
+    device_orientation_ = to_eigen(m.device.orientation).normalized();
     spin_ = to_eigen(m.device_spin_rad_s);
   }
   for (Near& n : near_) {
@@ -254,23 +261,23 @@ void ToolTouch::take(const tool_state_t& m, SimTime now, std::span<const BodyMot
       n.force_N = std::max(0.0, to_eigen(c.force_N).dot(n.plane.normal));
       n.impulse_N_s = std::max(n.impulse_N_s, to_eigen(c.impulse_N_s).dot(n.plane.normal));
     }
-    judge(n, when, before, now, bodies, events);
+    update_contact(n, when, before, now, bodies, events);
   }
 }
 
-// Where the tool is now.
-void ToolTouch::hear(const tool_state_t& m) {
+// The newest pose and velocity of the proxy.
+void ToolTouch::set_proxy(const tool_state_t& m) {
   proxy_ = to_eigen(m.proxy.position_m);
   proxy_velocity_ = to_eigen(m.proxy_velocity_m_s);
-  if (shape_) proxy_turn_ = to_eigen(m.proxy.orientation).normalized();
+  if (shape_) proxy_orientation_ = to_eigen(m.proxy.orientation).normalized();
 }
 
-void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news,
+void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages,
                        std::vector<contact_event_t>& events) {
-  if (!news.empty()) hear(news.back());
-  look_around(now, bodies);
-  for (const tool_state_t& m : news) take(m, now, bodies, events);
-  const bool lost = !known_ || now - heard_ > ns(settings_.tool_stale_s);
+  if (!new_messages.empty()) set_proxy(new_messages.back());
+  find_surfaces(now, bodies);
+  for (const tool_state_t& m : new_messages) receive(m, now, bodies, events);
+  const bool lost = !has_message_ || now - last_message_ > ns(settings_.tool_stale_s);
   for (Near& n : near_) {
     if (!n.touching) continue;
     const bool over = n.apart && now - n.apart_since >= ns(settings_.contact_end_time_s);
@@ -288,7 +295,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.gap_m < b.gap_m; });
   model_.planes.clear();
   for (const Near& n : near_) {
-    if (n.seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
+    if (n.last_seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
     touch_plane_t& p = model_.planes.emplace_back();
@@ -321,7 +328,7 @@ void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact
     const SurfaceTraits& traits = surfaces_[n.surface].traits;
     const BodyMotion& body = body_of(n, bodies);
     const bool tool_is_b = traits.body < tool_body_;
-    const Vector3d on_body = n.plane.point, on_tool = proxy_ + arm(n, proxy_turn_);
+    const Vector3d on_body = n.plane.point, on_tool = proxy_ + arm(n, proxy_orientation_);
     contact_t c{};
     c.contact_id = n.contact_id;
     c.kind = contact_t::POINT;
@@ -337,9 +344,10 @@ void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact
     c.area_m2 = static_cast<float>(hertz_point_area(n.force_N, curved, surfaces_[n.surface].compliance_1_Pa));
     c.normal_force_N = static_cast<float>(n.force_N);
     c.impulse_N_s = static_cast<float>(n.impulse_N_s);
-    // b's surface past a's; the tool's surface moves with its proxy, whose velocity is that of the device along the plane.
-    const Vector3d past = velocity_of(n) - body.velocity_at(n.plane.point);
-    const Vector3d tangential = past - past.dot(n.plane.normal) * n.plane.normal;
+    // Velocity of b's surface relative to a's. The tool's surface moves with its proxy, which has the velocity of the
+    // device along the plane.
+    const Vector3d relative_velocity = velocity_of(n) - body.velocity_at(n.plane.point);
+    const Vector3d tangential = relative_velocity - relative_velocity.dot(n.plane.normal) * n.plane.normal;
     c.sliding_velocity_m_s = to_vec3f(tool_is_b ? tangential : Vector3d(-tangential));
     c.point_count = 1;
     const Vector3d in_tool = shape_ ? n.tool_point_m : Vector3d(on_tool - proxy_);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/model/archive_motion.h"
@@ -9,7 +11,7 @@
 namespace tactus::sim {
 namespace {
 
-// Of surfaces near one tool.
+// Maximum number of surfaces near one tool.
 constexpr std::size_t kMaxNear = 1 << 16;
 
 }  // namespace
@@ -20,16 +22,16 @@ void ToolTouch::archive(StateArchive& a) {
     auto surface = static_cast<std::int64_t>(n.surface);
     a(surface);
     a.require(surface >= 0 && surface < static_cast<std::int64_t>(surfaces_.size()),
-              "the state is one of another scene");
+              "the state belongs to another scene");
     n.surface = static_cast<std::size_t>(surface);
-    a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.seen), a(n.gap_m);
+    a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.last_seen), a(n.gap_m);
     a(n.touching), a(n.apart), a(n.apart_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);
-    a(n.device_gap_m), a(n.device_gap_known), a(n.closing_m_s);
+    a(n.device_gap_m), a(n.has_device_gap), a(n.closing_m_s);
     if (shape_) a(n.tool_point_m);
   });
   a.fixed(surfaces_, [&](Surface& s) { a(s.friction_static), a(s.friction_dynamic); });
-  a(known_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(heard_), a(last_stamp_);
-  if (shape_) a(spin_), a(proxy_turn_), a(device_turn_);
+  a(has_message_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(last_message_), a(last_stamp_);
+  if (shape_) a(spin_), a(proxy_orientation_), a(device_orientation_);
   a.message(model_);
 }
 
@@ -46,18 +48,18 @@ void ToolTouch::set_friction(int body, double friction) {
   }
 }
 
-void ToolTouch::feel(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> news) {
-  if (!news.empty()) {
-    hear(news.back());
-    velocity_ = to_eigen(news.back().device_velocity_m_s);
+void ToolTouch::update_at_rest(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages) {
+  if (!new_messages.empty()) {
+    set_proxy(new_messages.back());
+    velocity_ = to_eigen(new_messages.back().device_velocity_m_s);
     if (shape_) {
-      spin_ = to_eigen(news.back().device_spin_rad_s);
-      device_turn_ = to_eigen(news.back().device.orientation).normalized();
+      spin_ = to_eigen(new_messages.back().device_spin_rad_s);
+      device_orientation_ = to_eigen(new_messages.back().device.orientation).normalized();
     }
   }
-  // What was seen at this instant before is looked for anew.
-  for (Near& n : near_) n.seen = std::min(n.seen, now - sync::Nanoseconds(1));
-  look_around(now, bodies);
+  // Surfaces found earlier at this instant must be found again.
+  for (Near& n : near_) n.last_seen = std::min(n.last_seen, now - sync::Nanoseconds(1));
+  find_surfaces(now, bodies);
   write_model(now, bodies);
 }
 

@@ -1,4 +1,9 @@
-// The state of the whole simulation as bytes, and back.
+// Saves and restores the state of the whole simulation.
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
+
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/archive_motion.h"
 #include "sim_node/model/envelope.h"
@@ -7,7 +12,7 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMaxEvents = 1 << 16;
-constexpr std::int64_t kMaxSteps = 31'000'000'000;  // not quite a year
+constexpr std::int64_t kMaxSteps = 31'000'000'000;  // just under a year
 
 }  // namespace
 
@@ -21,20 +26,20 @@ void Simulation::archive(StateArchive& a) {
     tool.touch.archive(a);
     tool.push.archive(a, bodies);
     a(tool.orientation);
-    if (a.reads()) tool.news.clear();
+    if (a.reads()) tool.new_messages.clear();
   });
   a.list(events_, kMaxEvents, [&](contact_event_t& e) { a.message(e); });
   a.list(tool_contacts_, kMaxEvents, [&](contact_t& c) { a.message(c); });
   a.fixed(models_, [&](touch_model_t& m) { a.message(m); });
   a.list(wrenches_, kMaxWrenches, [&](Wrench& w) {
     a.index(w.body, bodies);
-    a.require(w.body >= 0, "the state holds a push of nothing");
+    a.require(w.body >= 0, "the state holds a force on no body");
     a(w.force_N), a(w.torque_N_m), a(w.steps);
     a.require(w.steps >= 0 && w.steps <= kMaxSteps, "the state holds a number out of range");
   });
   a(held_);
-  shown_.resize(held_ ? bodies : 0);
-  a.fixed(shown_, [&](BodyMotion& m) { sim::archive(a, m); });
+  held_motions_.resize(held_ ? bodies : 0);
+  a.fixed(held_motions_, [&](BodyMotion& m) { sim::archive(a, m); });
   game_.archive(a, bodies);
 }
 
@@ -68,7 +73,7 @@ void Simulation::begin_life(std::int64_t incarnation) {
   for (contact_t& c : tool_contacts_) c.contact_id = ids_.renamed(c.contact_id);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].touch.rename();
-    tools_[i].push.forget();
+    tools_[i].push.reset();
     for (touch_plane_t& p : models_[i].planes) p.contact_id = ids_.renamed(p.contact_id);
     models_[i].applied.clear();
     models_[i].applied_count = 0;

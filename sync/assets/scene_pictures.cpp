@@ -1,5 +1,7 @@
 #include "sync/assets/scene_pictures.h"
 
+#include <tactus/material_def_t.hpp>
+
 namespace tactus::sync {
 
 Pictures pictures_of(const SceneReceiver& scenes) {

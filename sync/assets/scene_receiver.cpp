@@ -1,6 +1,12 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <utility>
 
 #include "sync/assets/scene_exchange.h"

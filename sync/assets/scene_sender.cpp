@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <stdexcept>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
 
 #include "sync/assets/scene_exchange.h"
 

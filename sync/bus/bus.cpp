@@ -10,6 +10,8 @@
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
 #include <system_error>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/header_t.hpp>
 
 #include "sync/bus/udp_reader.h"
 #include "sync/virtual_time/virtual_time.h"

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tactus/header_t.hpp>
 #include <vector>
 
 #include "lcmtypes/channels.h"

@@ -1,5 +1,5 @@
 // The options by which a tool finds the bus of a running cluster: those of a node, and the environment of
-// scripts/attach.
+// tactus attach.
 #pragma once
 
 #include <CLI/CLI.hpp>

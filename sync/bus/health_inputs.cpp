@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tactus/input_health_t.hpp>
 
 namespace tactus::sync {
 

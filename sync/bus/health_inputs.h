@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>
 
 namespace tactus::sync {

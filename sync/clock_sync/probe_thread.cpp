@@ -1,6 +1,7 @@
 #include "sync/clock_sync/probe_thread.h"
 
 #include <random>
+#include <tactus/clock_probe_t.hpp>
 
 namespace tactus::sync {
 

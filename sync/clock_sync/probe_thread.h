@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <tactus/clock_probe_t.hpp>
 #include <thread>
 
 #include "sync/clock_sync/clock_probe.h"

@@ -1,6 +1,7 @@
 #include "sync/clocks/clock_maps.h"
 
 #include <cmath>
+#include <tactus/header_t.hpp>
 
 namespace tactus::sync {
 namespace {

@@ -1,3 +1,6 @@
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+
 #include "sync/degradation/degraded_stream.h"
 
 namespace tactus::sync {

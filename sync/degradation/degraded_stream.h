@@ -11,7 +11,10 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,11 @@
 #include "sync/degradation/snapshot.h"
 
 #include <algorithm>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/random/keyed_random.h"

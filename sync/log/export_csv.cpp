@@ -1,6 +1,7 @@
 #include "sync/log/export_csv.h"
 
 #include <cstdio>
+#include <tactus/header_t.hpp>
 
 #include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <sstream>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 #include "sync/time/time.h"
 

@@ -1,5 +1,11 @@
 #include "sync/node/live_settings.h"
 
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
+
 #include "sync/bus/decode.h"
 
 namespace tactus::sync {

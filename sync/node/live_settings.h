@@ -4,6 +4,7 @@
 
 #include <string>
 #include <tactus/scene_t.hpp>
+#include <tactus/setting_change_t.hpp>
 #include <vector>
 
 #include "sync/node/node.h"

@@ -2,7 +2,16 @@
 
 #include <algorithm>
 #include <iostream>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/decision_t.hpp>
+#include <tactus/degradation_t.hpp>
 #include <tactus/degraded_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <utility>
 
 namespace tactus::sync {

@@ -17,7 +17,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/degradation_t.hpp>
 #include <tactus/playout_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
 

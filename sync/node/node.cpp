@@ -9,6 +9,9 @@
 #include <cstdlib>
 #include <iostream>
 #include <utility>
+#include <tactus/input_health_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/degradation/profile_exchange.h"

@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <tactus/node_health_t.hpp>
+#include <tactus/tag_request_t.hpp>
 #include <vector>
 
 #include "sync/bus/bus.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <tactus/presentation_t.hpp>
 
 #include "sync/node/node.h"
 #include "sync/node/tick_source.h"

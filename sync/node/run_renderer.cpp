@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <tactus/presentation_t.hpp>
 
 #include "sync/node/live_settings.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 namespace tactus::sync {
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <string>
 #include <tactus/map_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
 #include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <utility>
 #include <vector>
 

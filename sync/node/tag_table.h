@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <tactus/tag_def_t.hpp>
 #include <tactus/tag_list_t.hpp>
 #include <tactus/tag_values_t.hpp>
 #include <utility>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tactus/tag_def_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/bus/identity.h"

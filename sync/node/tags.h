@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <tactus/tag_def_t.hpp>
 #include <tactus/tag_list_t.hpp>
 #include <tactus/tag_request_t.hpp>
 #include <tactus/tag_values_t.hpp>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tactus/playout_entry_t.hpp>
 #include <utility>
 
 #include "sync/playout/exchange.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <tactus/playout_entry_t.hpp>
 #include <utility>
 #include <vector>
 

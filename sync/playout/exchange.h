@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <tactus/playout_entry_t.hpp>
 #include <tactus/playout_request_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <vector>

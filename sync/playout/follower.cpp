@@ -1,6 +1,7 @@
 #include "sync/playout/follower.h"
 
 #include <algorithm>
+#include <tactus/playout_entry_t.hpp>
 
 namespace tactus::sync {
 

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/decision_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "lcmtypes/channels.h"
 

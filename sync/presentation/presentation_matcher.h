@@ -24,6 +24,7 @@
 #include <string>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/degraded_t.hpp>
+#include <tactus/header_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>

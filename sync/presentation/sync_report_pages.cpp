@@ -1,5 +1,8 @@
 #include "sync/presentation/sync_report_pages.h"
 
+#include <tactus/modality_report_t.hpp>
+#include <tactus/pair_report_t.hpp>
+
 #include "lcmtypes/channels.h"
 #include "sync/presentation/thresholds.h"
 

@@ -1,6 +1,10 @@
 #include "sync/relay/decimator.h"
 
 #include <cmath>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/degradation/degraded_stream.h"

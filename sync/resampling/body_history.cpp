@@ -1,6 +1,7 @@
 #include "sync/resampling/body_history.h"
 
 #include <algorithm>
+#include <tactus/body_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

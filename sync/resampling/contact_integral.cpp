@@ -1,6 +1,7 @@
 // Integrals of contact over a tick, for the slow senses.
 #include <algorithm>
 #include <map>
+#include <tactus/contact_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 

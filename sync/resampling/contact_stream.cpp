@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 namespace tactus::sync {
 namespace {

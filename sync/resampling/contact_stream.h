@@ -7,8 +7,13 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 #include <vector>
 
 #include "sync/bus/page_assembler.h"

@@ -4,7 +4,11 @@
 #include <charconv>
 #include <cstdio>
 #include <functional>
+#include <tactus/log_info_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"

@@ -11,6 +11,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/log/log_reader.h"

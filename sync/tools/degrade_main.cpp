@@ -5,6 +5,8 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"
@@ -67,7 +69,7 @@ int main(int argc, char** argv) try {
   }
   if (modalities.empty())
     throw std::runtime_error(
-        "no sense is heard on this bus, nothing was changed; run it inside the cluster: scripts/degrade");
+        "no sense is heard on this bus, nothing was changed; run it inside the cluster: tactus degrade");
   for (const sync::Rule& rule : profile.parsed->rules)
     if (!modalities.contains(rule.modality))
       throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +

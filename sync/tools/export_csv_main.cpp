@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/log/export_csv.h"

@@ -9,6 +9,14 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
 #include <tuple>
 
 #include "sync/bus/decode.h"

@@ -6,6 +6,10 @@
 #include <iostream>
 #include <optional>
 #include <set>
+#include <tactus/node_health_t.hpp>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"
@@ -98,8 +102,8 @@ int main(int argc, char** argv) try {
   if (!answer)
     throw std::runtime_error(asks ? "no sync_node answers on this bus yet; the request may still take effect when "
                                     "one goes on. Where there is "
-                                    "none, run it inside the cluster: scripts/playout"
-                                  : "no sync_node speaks on this bus; run it inside the cluster: scripts/playout");
+                                    "none, run it inside the cluster: tactus playout"
+                                  : "no sync_node speaks on this bus; run it inside the cluster: tactus playout");
   print(*answer);
   return 0;
 } catch (const std::exception& e) {

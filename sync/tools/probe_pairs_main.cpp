@@ -2,7 +2,7 @@
 //
 //   in, out  datagrams of its own (sync/clock_sync/pair_probe.h) to the group, on a port beside the bus
 //
-// Behind scripts/cluster doctor. Prints one JSON object and ends, whatever the others do.
+// Behind tactus cluster doctor. Prints one JSON object and ends, whatever the others do.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/node/node.h"
 #include "sync/relay/relay.h"
@@ -25,7 +26,7 @@ constexpr sync::Nanoseconds kNotePeriod{500'000'000};
 std::string read_rules(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw std::runtime_error("--rules " + path + " cannot be read; give a file of rules, as scripts/spread/relays/wide.xml");
+  if (!file || !(text << file.rdbuf())) throw std::runtime_error("--rules " + path + " cannot be read; give a file of rules, as scripts/python/tactus/cluster/relays/wide.xml");
   if (text.str().size() > kMaxRulesBytes) throw std::runtime_error("--rules " + path + " is larger than 1 MiB; give a file of rules");
   return text.str();
 }
@@ -56,7 +57,7 @@ int main(int argc, char** argv) try {
   options.add_to(app, descriptor);
   app.add_option("--listen", listen, "where other relays reach this one: [ADDRESS:]PORT");
   app.add_option("--to", to, "where another site's relay listens, and what the line to it carries: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
-  app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/spread/relays/ has some");
+  app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/python/tactus/cluster/relays/ has some");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   std::optional<sync::LineEnd> here;

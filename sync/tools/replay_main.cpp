@@ -14,6 +14,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
@@ -56,7 +61,7 @@ std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Ass
   return std::find_if(assets.begin(), assets.end(), [](const sync::Asset& a) { return a.kind == asset_ref_t::SCENE; });
 }
 
-// What scripts/replay must know of a log before it starts anything.
+// What tactus replay must know of a log before it starts anything.
 void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& assets, double length_s) {
   nlohmann::json j;
   j["scene"] = sync::printable(origin.info.scene);

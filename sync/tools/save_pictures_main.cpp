@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
+#include <tactus/picture_chunk_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
 
 #include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"
@@ -54,7 +56,7 @@ int main(int argc, char** argv) try {
       throw std::runtime_error(
           "no \"" + sync::printable(node) +
           "\" that changes settings while it runs answers; docs/settings.md says which settings are live, "
-          "scripts/attach watch which nodes there are");
+          "tactus attach watch which nodes there are");
     if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
     std::cout << sync::printable(reply->text) << std::endl;
   }

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
 
 #include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"
@@ -104,7 +106,7 @@ int main(int argc, char** argv) try {
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
   const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kPatience);
   if (!reply)
-    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: scripts/simulation");
+    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulation");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
   std::cout << sync::printable(reply->text) << std::endl;
   return 0;

@@ -15,6 +15,9 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/decode.h"
@@ -150,7 +153,7 @@ int main(int argc, char** argv) try {
   if (once_s == 0) return 0;
   const sync::HostTime now = sync::host_now();
   if (heard.messages() == 0)
-    throw std::runtime_error("heard nothing on port " + std::to_string(bus_options.port) + "; start spy with scripts/spy, or give its --port");
+    throw std::runtime_error("heard nothing on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
   auto lines = screen.draw(heard, now, 160, sync::spy::Channels::kMax + 8);
   lines.pop_back();  // the keys
   for (const std::string& line : lines) std::cout << line << "\n";

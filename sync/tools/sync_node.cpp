@@ -19,6 +19,15 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "sync/clock_sync/clock_agreement.h"
 #include "sync/clock_sync/clock_probe.h"

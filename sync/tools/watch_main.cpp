@@ -11,6 +11,8 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <iostream>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/node/node.h"
@@ -73,7 +75,7 @@ int main(int argc, char** argv) try {
     show(table, now, json, in_place);
     if (once && table.empty())
       throw std::runtime_error("heard no node on port " + std::to_string(bus_options.port) +
-                               " in one second; start watch with scripts/attach, or give its --port");
+                               " in one second; start watch with tactus attach, or give its --port");
     if (once) break;
   }
   return 0;

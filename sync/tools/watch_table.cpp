@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/pair_report_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/text/printable.h"

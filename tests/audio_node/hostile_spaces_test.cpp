@@ -5,6 +5,10 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/signal/plausible.h"

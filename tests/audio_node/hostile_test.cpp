@@ -5,6 +5,11 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/vec3f_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/signal/plausible.h"

@@ -1,6 +1,13 @@
 #include <chrono>
 #include <limits>
 #include <random>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <thread>
 
 #include "sync/bus/decode.h"

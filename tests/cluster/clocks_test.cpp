@@ -1,5 +1,9 @@
 // Two hosts whose clocks differ: they agree on time, and what one presents is known on the other.
 #include <nlohmann/json.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "tests/cluster/support/run_script.h"
 #include "tests/cluster/support/running.h"
@@ -22,10 +26,10 @@ bool time_namespaces(RunScript& run) {
   return run.processes.wait_for_exit("probe", 20) == 0;
 }
 
-// One scenario of scripts/measure_clocks.
+// One scenario of tests/measure/measure_clocks.
 json measured(RunScript& run, const std::string& scenario) {
   const std::filesystem::path file = run.folder.path() / (scenario + ".json");
-  run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/measure_clocks").string(),
+  run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "tests/measure/measure_clocks").string(),
                                   "--seconds", "16", "--only", scenario, "--json", file});
   const int status = run.processes.wait_for_exit("measure", 90);
   UNSCOPED_INFO(run.processes.said("measure"));
@@ -38,7 +42,7 @@ json measured(RunScript& run, const std::string& scenario) {
 
 }  // namespace
 
-TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced") {
+TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced", "[exclusive]") {
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
   const json row = measured(run, scenario);
@@ -52,7 +56,7 @@ TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle,
   CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
 }
 
-TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly") {
+TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly", "[exclusive]") {
   RunScript run;
   if (!time_namespaces(run)) return;
   Running r;

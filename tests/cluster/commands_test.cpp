@@ -1,4 +1,8 @@
 // Commands to the simulation of a running cluster, by the program that people use.
+#include <tactus/body_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
+
 #include "tests/cluster/support/profiles.h"
 
 using namespace tactus;
@@ -48,7 +52,7 @@ TEST_CASE("A world that is paused stands still while every process lives on, tak
   Commanded c;
   c.start();
   CHECK_THAT(c.ask({"step"}, 1), Catch::Contains("pause it"));
-  CHECK_THAT(c.ask({"pause"}), Catch::Contains("stands still"));
+  CHECK_THAT(c.ask({"pause"}), Catch::Contains("is paused at"));
   c.listen(0.5);
   const std::int64_t stood_ns = c.sim_ns();
   c.listen(2);
@@ -61,7 +65,7 @@ TEST_CASE("A world that is paused stands still while every process lives on, tak
   CHECK(c.wait_for([&] { return c.sim_ns() == stood_ns + 25'000'000; }));
   c.listen(0.5);
   CHECK(c.sim_ns() == stood_ns + 25'000'000);
-  CHECK_THAT(c.ask({"resume"}), Catch::Contains("goes on"));
+  CHECK_THAT(c.ask({"resume"}), Catch::Contains("resumes at"));
   const std::int64_t hits = c.ear.hits();
   CHECK(c.wait_for([&] { return c.ear.hits() > hits + 2; }));
   CHECK(c.newest->clock.rate > 0.5);

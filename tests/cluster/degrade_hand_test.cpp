@@ -1,7 +1,9 @@
 // Touch and warmth made worse on purpose, one way at a time: the hand feels it, and no other sense notices.
 #include <cmath>
 #include <set>
+#include <tactus/header_t.hpp>
 #include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
 #include "tests/cluster/support/profiles.h"
@@ -145,7 +147,7 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
 
 }  // namespace
 
-TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it") {
+TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it", "[exclusive]") {
   Degraded c;
   c.start();
   // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
@@ -182,7 +184,7 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
   CHECK(error_N(clean, c.feel(4)) < 0.05 * peak_N);
 }
 
-TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice") {
+TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice", "[exclusive]") {
   Degraded c;
   c.start();
   // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.

@@ -38,7 +38,7 @@ TEST_CASE("The log of a run becomes tables that agree with what the run says of 
              "visual_node", "--out", run.out()});
   REQUIRE(run.finish(120) == 0);
   const auto tables = run.out("tables");
-  run.output_of({"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/export").string(), run.out(),
+  run.output_of({"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "export", run.out(),
                  "--out", tables});
   const json schema = json::parse(contents(tables / "schema.json"), nullptr, false);
   REQUIRE_FALSE(schema.is_discarded());
@@ -61,7 +61,7 @@ TEST_CASE("The log of a run becomes tables that agree with what the run says of 
   for (std::size_t i = 0; i < z.size(); ++i)
     REQUIRE(z[i] == Approx(std::stod(own.rows[i].at("force_z_N"))).margin(1e-3));
 
-  run.output_of({"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/export").string(), run.out(),
+  run.output_of({"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "export", run.out(),
                  "--out", tables, "--wide", "--channels", "TOOL_STATE", "--since", "1", "--until", "2"});
   const Rows wide = read(tables / "TOOL_STATE.csv");
   REQUIRE_FALSE(wide.rows.empty());

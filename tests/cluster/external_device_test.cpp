@@ -2,6 +2,8 @@
 #include <signal.h>
 
 #include <cstdlib>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "tests/cluster/support/running.h"
 
@@ -52,7 +54,7 @@ struct WithDriver : Running {
 
 }  // namespace
 
-TEST_CASE("A device that a program drives is felt, lost when it is killed or frozen, and felt again") {
+TEST_CASE("A device that a program drives is felt, lost when it is killed or frozen, and felt again", "[exclusive]") {
   const std::string language = GENERATE("C++", "Python");
   CAPTURE(language);
   WithDriver c;
@@ -80,7 +82,7 @@ TEST_CASE("A device that a program drives is felt, lost when it is killed or fro
   CHECK(c.ear.bad("haptic_node") == 0);
 }
 
-TEST_CASE("A simulated string device taps the floor like any other hand") {
+TEST_CASE("A simulated string device taps the floor like any other hand", "[exclusive]") {
   Running c;
   c.processes.start("sim_node", {tapping_scene()});
   c.processes.start("haptic_node", {"--device", "spidar:desktop,offset=0/0/0.03"});
@@ -90,7 +92,7 @@ TEST_CASE("A simulated string device taps the floor like any other hand") {
   CHECK(c.ear.wait_until([&] { return c.ear.hits() >= 3; }, kPatience_s));
 }
 
-TEST_CASE("Two programs that drive one device lose it, until one of them is gone") {
+TEST_CASE("Two programs that drive one device lose it, until one of them is gone", "[exclusive]") {
   WithDriver c;
   c.start_touch();
   c.start_driver("C++");

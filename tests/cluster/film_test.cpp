@@ -1,4 +1,5 @@
 // A run that is over, drawn again from its log.
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/world_state_t.hpp>
 

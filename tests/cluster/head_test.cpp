@@ -4,6 +4,7 @@
 #include <fstream>
 #include <numbers>
 #include <tactus/device_state_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/cluster/support/running.h"
@@ -83,7 +84,7 @@ struct WithHead : Running {
 
 }  // namespace
 
-TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays when it is lost") {
+TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays when it is lost", "[exclusive]") {
   WithHead c;
   c.start_all();
   const Pixels at_rest = c.seen({0, 0, 0}, 0);
@@ -125,7 +126,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
 }
 
 TEST_CASE(
-    "A wand that a program moves turns the light to where it is, and the light stays there when it is lost") {
+    "A wand that a program moves turns the light to where it is, and the light stays there when it is lost", "[exclusive]") {
   WithHead c;
   c.start_all();
   c.start_head("wand");

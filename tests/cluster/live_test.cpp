@@ -1,6 +1,7 @@
 // The live page in a real browser: what a person does there is done by scripts/live/page/test, and its effect is
 // read from the bus, that is from the log of the run.
 #include <nlohmann/json.hpp>
+#include <tactus/body_state_t.hpp>
 #include <tactus/degradation_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/node_health_t.hpp>
@@ -8,6 +9,7 @@
 #include <tactus/sim_reply_t.hpp>
 #include <tactus/tag_request_t.hpp>
 #include <tactus/tool_state_t.hpp>
+#include <tactus/vec3_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/channels.h"
@@ -286,7 +288,7 @@ TEST_CASE(
 
   const std::filesystem::path recorded = run.out() / "run.lcmlog";
   run.processes.spawn("open", {"env", "TACTUS_BIN=" + programs().string(),
-                               (repository() / "scripts/live/open").string(), recorded});
+                               (repository() / "scripts/tactus").string(), "live", "open", recorded});
   const std::string shown_at = address_of(run.processes, "open");
   INFO(run.processes.said("open"));
   REQUIRE_FALSE(shown_at.empty());

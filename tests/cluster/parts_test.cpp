@@ -1,5 +1,6 @@
 // A run that is recorded in parts.
 #include <nlohmann/json.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/log/log_parts.h"

@@ -35,7 +35,7 @@ double settled_asynchrony_ms(Running& c, const std::string& a, const std::string
 
 }  // namespace
 
-TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs") {
+TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs", "[exclusive]") {
   Running c;
   c.start();
   // 100 ms of a base of 200 ms come at 5 % of the time: within 4 s and a half of it.
@@ -50,7 +50,7 @@ TEST_CASE("Sound and picture are as far apart as an experiment asks, changed whi
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for") {
+TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for", "[exclusive]") {
   Running c;
   c.start();
   ask_for(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
@@ -67,7 +67,7 @@ TEST_CASE("Who decides when the senses present may die: they keep it, and it com
   CHECK(ask_for(c, {}).find("experiment") != std::string::npos);
 }
 
-TEST_CASE("In the serial loop of 2005 all senses go on, one after the other") {
+TEST_CASE("In the serial loop of 2005 all senses go on, one after the other", "[exclusive]") {
   Running c;
   c.start();
   CHECK(ask_for(c, {"itouch2005"}).find("one loop") != std::string::npos);
@@ -75,7 +75,7 @@ TEST_CASE("In the serial loop of 2005 all senses go on, one after the other") {
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("What the display takes after the fence is in what is reported as presented, and is made up for") {
+TEST_CASE("What the display takes after the fence is in what is reported as presented, and is made up for", "[exclusive]") {
   Running c;
   c.start();
   c.processes.kill("visual_node");

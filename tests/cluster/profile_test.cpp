@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/cluster/support/profiles.h"
 
@@ -19,7 +20,7 @@ int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
 
 }  // namespace
 
-TEST_CASE("A profile put in force while the cluster runs degrades its own sense alone, and can be taken away") {
+TEST_CASE("A profile put in force while the cluster runs degrades its own sense alone, and can be taken away", "[exclusive]") {
   Running c;
   c.start();
   const auto before = c.rates(1);
@@ -40,7 +41,7 @@ TEST_CASE("A profile put in force while the cluster runs degrades its own sense 
 }
 
 TEST_CASE(
-    "A scene that brings a profile degrades the sense that it names, and no other, until somebody takes it away") {
+    "A scene that brings a profile degrades the sense that it names, and no other, until somebody takes it away", "[exclusive]") {
   Running c;
   std::stringstream text;
   text << std::ifstream(tapping_scene()).rdbuf();

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 #include <tactus/game_state_t.hpp>
+#include <tactus/node_health_t.hpp>
 #include <thread>
 
 #include "sync/log/log_header.h"
@@ -52,7 +53,7 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and its file is whole up to there") {
+TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and its file is whole up to there", "[exclusive]") {
   Folder folder;
   Processes processes(folder.path(), Running::kRunId);
   Sender sender;
@@ -69,7 +70,7 @@ TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and
   for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
 }
 
-TEST_CASE("A recorder whose disk is full says so, and its file is whole up to there") {
+TEST_CASE("A recorder whose disk is full says so, and its file is whole up to there", "[exclusive]") {
   Folder folder;
   const std::filesystem::path small = folder.path() / "small";
   std::filesystem::create_directory(small);
@@ -102,7 +103,7 @@ TEST_CASE("A recorder whose disk is full says so, and its file is whole up to th
   umount(small.c_str());
 }
 
-TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and what others say besides") {
+TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and what others say besides", "[exclusive]") {
   Folder folder;
   Processes processes(folder.path(), Running::kRunId);
   Sender sender;

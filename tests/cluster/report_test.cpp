@@ -23,7 +23,7 @@ TEST_CASE(
   const auto page = run.folder.path() / "page.html", table = run.folder.path() / "table.json";
   const std::vector<std::string> words{"env",
                                        "TACTUS_BIN=" + programs().string(),
-                                       (repository() / "scripts/report").string(),
+                                       (repository() / "scripts/tactus").string(), "report",
                                        run.out("clean"),
                                        run.out("late"),
                                        "--out",

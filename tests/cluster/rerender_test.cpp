@@ -24,7 +24,7 @@ json changed_of(const json& result, const std::string& sense) {
 
 }  // namespace
 
-TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone") {
+TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);
@@ -34,7 +34,7 @@ TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a m
   std::ofstream(late) << R"(<profile name="late"><degrade modality="audio" delay="40ms"/></profile>)";
   // It ends with 1 when a byte differs, or an onset of sound is more than 1 ms off.
   const std::string said = run.output_of(
-      {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/rerender").string(), run.out() / "run.lcmlog", "--degrade", late,
+      {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "rerender", run.out() / "run.lcmlog", "--degrade", late,
        "--twice", "--live", "--set", "visual:width=320", "--set", "visual:height=240", "--json", table});
   INFO(said);
   const json result = json::parse(contents(table));

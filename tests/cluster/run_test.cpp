@@ -59,7 +59,7 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   for (const auto& [channel, counts] : summary["bus"].items()) check_keys(counts, {"messages", "bytes", "gaps"});
 }
 
-TEST_CASE("In two groups every sense presents what it owes, and the world keeps its rate") {
+TEST_CASE("In two groups every sense presents what it owes, and the world keeps its rate", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -73,7 +73,7 @@ TEST_CASE("In two groups every sense presents what it owes, and the world keeps 
   }
 }
 
-TEST_CASE("Without audio_node the others run as before, in the default scene") {
+TEST_CASE("Without audio_node the others run as before, in the default scene", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -133,7 +133,7 @@ TEST_CASE("What is wrong is said in one sentence before anything starts") {
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
 }
 
-TEST_CASE("A busy port is named, with the remedy, when the machine's network is used") {
+TEST_CASE("A busy port is named, with the remedy, when the machine's network is used", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "30", "--network", "host", "--without", "visual_node", "--out", run.out("a")}, "first");
   const auto up = [&] {
@@ -156,7 +156,7 @@ TEST_CASE("A busy port is named, with the remedy, when the machine's network is 
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
 
-TEST_CASE("Two runs at once do not hear each other") {
+TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
   RunScript run;
   const std::vector<std::string> names{"a", "b"};
   for (const std::string& name : names)

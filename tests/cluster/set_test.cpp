@@ -1,5 +1,6 @@
 // Settings of a node of a running cluster, changed by the program that people use.
 #include <cmath>
+#include <tactus/tool_state_t.hpp>
 
 #include "tests/cluster/support/running.h"
 

@@ -142,18 +142,18 @@ void check_all_but(const std::string& degraded) {
 
 }  // namespace
 
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, when no sense is degraded") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, when no sense is degraded", "[exclusive]") {
   check_all_but("");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and warms and is felt, with sound degraded") {
+TEST_CASE("A 3 ms contact between two video frames flashes and warms and is felt, with sound degraded", "[exclusive]") {
   check_all_but("audio");
 }
-TEST_CASE("A 3 ms contact between two video frames sounds and warms and is felt, with vision degraded") {
+TEST_CASE("A 3 ms contact between two video frames sounds and warms and is felt, with vision degraded", "[exclusive]") {
   check_all_but("visual");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with touch degraded") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with touch degraded", "[exclusive]") {
   check_all_but("haptic");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and sounds and is felt, with warmth degraded") {
+TEST_CASE("A 3 ms contact between two video frames flashes and sounds and is felt, with warmth degraded", "[exclusive]") {
   check_all_but("thermal");
 }

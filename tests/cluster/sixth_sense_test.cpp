@@ -2,6 +2,10 @@
 #include <signal.h>
 
 #include <nlohmann/json.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "tests/cluster/support/profiles.h"
 #include "tests/cluster/support/run_script.h"
@@ -29,7 +33,7 @@ const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
 
 TEST_CASE(
     "A sixth sense joins a running cluster: it is in health, in the report and in the summary, with a debt and "
-    "asynchronies") {
+    "asynchronies", "[exclusive]") {
   Running c;
   auto& reports = c.ear.bus().queue<sync_report_t>(channels::kSyncReport, 256);
   c.processes.start("recorder");
@@ -78,7 +82,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sense") {
+TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sense", "[exclusive]") {
   Running c;
   c.start();
   c.processes.start("wind_node");

@@ -27,7 +27,7 @@ const json& channel(const json& all, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("A look at the bus of a running cluster lists its channels with rates, losses and ages") {
+TEST_CASE("A look at the bus of a running cluster lists its channels with rates, losses and ages", "[exclusive]") {
   Running c;
   c.start();
   const std::string file = c.folder.path() / "spy.json";

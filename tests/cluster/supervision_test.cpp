@@ -1,5 +1,6 @@
 // The real supervision: what scripts/run does when nodes die.
 #include <nlohmann/json.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/cluster/support/ear.h"
 #include "tests/cluster/support/run_script.h"
@@ -28,7 +29,7 @@ std::int64_t run_id_of(RunScript& run) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
+TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
   RunScript run;
   // The network of this test, so that it can listen.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
@@ -65,7 +66,7 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone") {
   CHECK(nothing_lives(5));
 }
 
-TEST_CASE("A node that keeps dying is left lost and named, and the others go on") {
+TEST_CASE("A node that keeps dying is left lost and named, and the others go on", "[exclusive]") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
@@ -84,20 +85,20 @@ TEST_CASE("A node that keeps dying is left lost and named, and the others go on"
   CHECK(run.processes.said("run").find("thermal_node: could not be kept running") != std::string::npos);
 }
 
-TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
+TEST_CASE("tactus attach runs a command inside the cluster's own network") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out",
              run.out()});
   run_id_of(run);
-  const std::string attach = repository() / "scripts/attach";
+  const std::string tactus = repository() / "scripts/tactus";
   // Its own network: the logger there hears the cluster, and here nobody does.
   const std::string log = run.folder.path() / "heard.lcmlog";
-  run.output_of({attach, run.out(), "timeout", "3", "lcm-logger", log}, 124);
+  run.output_of({tactus, "attach", run.out(), "timeout", "3", "lcm-logger", log}, 124);
   CHECK(std::filesystem::file_size(log) > 10000);
-  const std::string processes = run.output_of({attach, run.out(), "sh", "-c", "cat /proc/[0-9]*/comm"});
+  const std::string processes = run.output_of({tactus, "attach", run.out(), "sh", "-c", "cat /proc/[0-9]*/comm"});
   CHECK(processes.find("sim_node") != std::string::npos);
   CHECK(processes.find("cluster_test") == std::string::npos);
-  run.output_of({attach, run.out(), "pkill", "-KILL", "-x", "thermal_node"});
+  run.output_of({tactus, "attach", run.out(), "pkill", "-KILL", "-x", "thermal_node"});
   // The supervisor has noticed: what dies while the run is being stopped is no death.
   const std::filesystem::path deaths = run.out() / "cluster/services/thermal_node/deaths";
   for (int i = 0; i < 600 && !std::filesystem::exists(deaths); ++i)
@@ -105,5 +106,5 @@ TEST_CASE("scripts/attach runs a command inside the cluster's own network") {
   run.processes.signal("run", SIGINT);
   run.finish(kPatience_s);
   CHECK(run.processes.said("run").find("thermal_node died once") != std::string::npos);
-  run.output_of({attach, run.out(), "true"}, 1);
+  run.output_of({tactus, "attach", run.out(), "true"}, 1);
 }

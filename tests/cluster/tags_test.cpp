@@ -2,6 +2,10 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/node/tag_table.h"
 #include "tests/cluster/support/running.h"
@@ -69,7 +73,7 @@ std::string scene_with(const Folder& folder, const std::string& element) {
 
 }  // namespace
 
-TEST_CASE("Variables of every node are told while somebody asks, each tick of theirs, and to nobody else") {
+TEST_CASE("Variables of every node are told while somebody asks, each tick of theirs, and to nobody else", "[exclusive]") {
   Tagged c;
   c.start();
   c.listen(2);
@@ -115,7 +119,7 @@ TEST_CASE("Variables of every node are told while somebody asks, each tick of th
   CHECK(c.messages == before);
 }
 
-TEST_CASE("One line of a scene lets what is heard make what is felt weaker") {
+TEST_CASE("One line of a scene lets what is heard make what is felt weaker", "[exclusive]") {
   Tagged c;
   // Each hit that sounded takes half a newton off the largest force, down to half a newton.
   c.processes.start_all(scene_with(

@@ -1,4 +1,9 @@
 // The promises of isolation, with the senses on two machines; and with a log in the place of the world.
+#include <tactus/input_health_t.hpp>
+#include <tactus/modality_report_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pair_report_t.hpp>
+
 #include "tests/cluster/support/two_machines.h"
 
 using namespace tactus;
@@ -14,7 +19,7 @@ std::vector<std::string> without(const std::string& node) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the others go on at their rates") {
+TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the others go on at their rates", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
@@ -32,7 +37,7 @@ TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the oth
 }
 
 TEST_CASE(
-    "DEGRADE-2 on two machines: visual_node, frozen over there for 2 s, disturbs nobody and then shows now") {
+    "DEGRADE-2 on two machines: visual_node, frozen over there for 2 s, disturbs nobody and then shows now", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
@@ -58,7 +63,7 @@ TEST_CASE(
 
 TEST_CASE(
     "DEGRADE-3 on two machines: when sim_node dies the force fades, all on both report it, and go on with the "
-    "next one") {
+    "next one", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   REQUIRE(m.ear().wait_until([&] { return m.ear().force_N() > 0; }, kPatience_s));
@@ -85,7 +90,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again rejoins alone") {
+TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again rejoins alone", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   for (const std::string& node : kNodes) {
@@ -99,7 +104,7 @@ TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again 
   for (const std::string& node : kNodes) CHECK(m.ear().rejoined(node) == 1);
 }
 
-TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that of the wrong clock") {
+TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that of the wrong clock", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto source = static_cast<std::int32_t>(sync::fnv1a_32("sync_node"));
@@ -131,7 +136,7 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
 
 TEST_CASE(
     "While lcm-logplayer replays a log, one sense is stopped, another frozen and a third killed, and the rest "
-    "render on") {
+    "render on", "[exclusive]") {
   Folder folder;
   {
     Running c;

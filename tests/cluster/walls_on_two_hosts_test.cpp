@@ -1,6 +1,7 @@
 // Two walls of one room on two hosts whose clocks differ: each frame shows the same instant and the same head on
 // both, however slow one of them is, and neither waits for the other.
 #include <tactus/frame_shown_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/cluster/support/two_machines.h"
 
@@ -124,7 +125,7 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Two walls on two hosts show the same instant and the same head in 99 of 100 frames") {
+TEST_CASE("Two walls on two hosts show the same instant and the same head in 99 of 100 frames", "[exclusive]") {
   TwoHosts c;
   if (!c.start()) return;
   c.watch(100);
@@ -132,7 +133,7 @@ TEST_CASE("Two walls on two hosts show the same instant and the same head in 99 
 }
 
 TEST_CASE(
-    "Beside a wall that draws ten pictures a second another keeps its rate, and what both show is the same") {
+    "Beside a wall that draws ten pictures a second another keeps its rate, and what both show is the same", "[exclusive]") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
   c.watch(20);
@@ -146,7 +147,7 @@ TEST_CASE(
   CHECK(share < 0.3);  // 10 of 60, and what else the machine has to do
 }
 
-TEST_CASE("Walls that wait for one another show the same, and one that is dead is waited for no longer") {
+TEST_CASE("Walls that wait for one another show the same, and one that is dead is waited for no longer", "[exclusive]") {
   TwoHosts c;
   if (!c.start({}, "wait")) return;
   c.watch(100);

@@ -43,7 +43,7 @@ struct TwoWalls : Running {
 
 }  // namespace
 
-TEST_CASE("Of two walls of a room each shows every event, and one that is frozen or killed is missed by nobody") {
+TEST_CASE("Of two walls of a room each shows every event, and one that is frozen or killed is missed by nobody", "[exclusive]") {
   TwoWalls c;
   c.start_all();
   CHECK(c.draws_on(TwoWalls::kLeft));

@@ -150,7 +150,7 @@ TEST_CASE(
   c.x({"key", "space"});
   CHECK(c.hear_until([&] { return c.rate > 0; }));
   const std::string said = c.processes.said("visual_node");
-  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("as at its first instant"));
+  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
 
   c.x({"key", "F11"});
   c.ear.listen(1);
@@ -240,7 +240,7 @@ TEST_CASE("The mouse in the window is a device that points at what is seen under
   CHECK(c.goes_on("visual_node"));
 }
 
-TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go") {
+TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go", "[exclusive]") {
   Desktop c;
   c.start_server();
   const std::string run = std::to_string(Running::kRunId);
@@ -332,7 +332,7 @@ TEST_CASE(
   // It goes on before it knows: the picture that is being drawn, and the ticks it owes beside load.
   CHECK(c.ear.wait_until(
       [&] {
-        return c.processes.said("visual_node").find("the display server of the window is gone: draws on, with ") !=
+        return c.processes.said("visual_node").find("the display server of the window is gone; drawing continues with ") !=
                std::string::npos;
       },
       kPatience_s));
@@ -360,7 +360,7 @@ TEST_CASE("A display server that stands still ends the node in a sentence, and n
   c.processes.signal("Xvfb", SIGSTOP);
   CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
   CHECK_THAT(c.processes.said("visual_node"),
-             Catch::Contains("the display server does not answer: the node ends"));
+             Catch::Contains("the display server does not answer, so the node ends"));
   CHECK(c.others_live());
   c.check_rates_hold(before, 1, "visual_node");
 }

@@ -1,6 +1,11 @@
 // Any bytes, read as a log whose messages everybody hears who listens to a whole bus: the summary, the tables, the
 // spy, the live page, and what puts pages and pieces together again.
 #include <cstdlib>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "scripts/live/page_session.h"
 #include "sync/tools/channel_table.h"

@@ -2,6 +2,43 @@
 // to is read to the same message. (Whatever ends a text is read as its NUL, and a NUL within ends it when it is
 // encoded: those bytes are others, and may be fewer or refused.)
 #include <cstdlib>
+#include <tactus/answer_t.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/clock_probe_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/question_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
 

@@ -2,6 +2,11 @@
 // No force beyond the limit, whatever the messages say.
 #include <cmath>
 #include <cstdlib>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/rendering/session.h"

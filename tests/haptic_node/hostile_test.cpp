@@ -5,6 +5,10 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/valid.h"

@@ -1,6 +1,14 @@
 // A recorded run felt again by the program itself, held tick by tick against a session that lived through it.
 #include <cmath>
 #include <random>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/rendering/session.h"

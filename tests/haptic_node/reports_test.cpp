@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
 
 #include "haptic_node/contact/contact_impulses.h"
 #include "haptic_node/contact/pending_onsets.h"

@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/touch_input.h"
 #include "sync/degradation/degraded_stream.h"

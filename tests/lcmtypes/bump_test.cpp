@@ -1,6 +1,8 @@
 #include "lcmtypes/bump.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/lcmtypes/samples.h"
 
@@ -16,18 +18,18 @@ TEST_CASE("The dominant axis of the normal chooses the projection, cyclically") 
   CHECK(axes({0.1, -0.2, 0.9}) == std::array{2, 0, 1});
   CHECK(axes({0.9, 0.1, -0.2}) == std::array{0, 1, 2});
   CHECK(axes({0.1, 0.9, -0.2}) == std::array{1, 2, 0});
-  SECTION("whichever way it points") {
+  SECTION("for both signs of the normal") {
     CHECK(axes({0, 0, -1}) == axes({0, 0, 1}));
     CHECK(axes({-1, 0, 0}) == axes({1, 0, 0}));
     CHECK(axes({0, -1, 0}) == axes({0, 1, 0}));
   }
-  SECTION("and of equals z goes before x before y") {
+  SECTION("and ties prefer z over x over y") {
     CHECK(axes({1, 1, 1}) == axes({0, 0, 1}));
     CHECK(axes({1, 1, 0}) == axes({1, 0, 0}));
   }
 }
 
-TEST_CASE("A point lies in the map where its two coordinates, in repetitions, say") {
+TEST_CASE("A point lies in the map at its two coordinates, in repetitions") {
   material_def_t material{};
   material.bump_size_u_m = 0.5, material.bump_size_v_m = 0.25;
   const Vector3d point(1, 2, 3);
@@ -36,7 +38,7 @@ TEST_CASE("A point lies in the map where its two coordinates, in repetitions, sa
   CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
 }
 
-TEST_CASE("A relief out of range is not let in, one that is not there may say anything finite") {
+TEST_CASE("A relief out of range is rejected, a missing one may have any finite numbers") {
   test::Samples samples(1);
   scene_t scene{};
   samples.fill(scene);

@@ -3,6 +3,41 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <random>
+#include <tactus/answer_t.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/question_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/uniform_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"
@@ -14,7 +49,7 @@ using namespace tactus::test;
 
 namespace {
 
-// A list of one type beside that of hostile_test: what is sent most, lists of lists, strings, text.
+// Another list of types, besides that of hostile_test: the most frequent ones, lists of lists, strings, text.
 #define EVERY_KIND                                                                                                \
   world_state_t, contact_frame_t, contact_events_t, touch_model_t, tool_state_t, device_state_t, thermal_state_t, \
       thermal_device_t, presented_t, node_health_t, sync_report_t, clock_map_t, media_clock_t, frame_shown_t,     \
@@ -27,7 +62,7 @@ const Schema& schema() {
   return s;
 }
 
-// By the other account of the wire format, tests/lcmtypes/schema.h.
+// By the independent reader of the wire format, tests/lcmtypes/schema.h.
 double number_at(const std::vector<std::uint8_t>& bytes, const Spot& spot) {
   const auto raw = [&](auto number) {
     std::uint8_t swapped[sizeof number];
@@ -45,7 +80,7 @@ double number_at(const std::vector<std::uint8_t>& bytes, const Spot& spot) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("Every number of a message is found by its path, as the other account of the wire has it", "",
+TEMPLATE_TEST_CASE("Every number of a message is found by its path, in agreement with the independent reader", "",
                    EVERY_KIND) {
   const std::string type = TestType::getTypeName();
   REQUIRE(message_type(type));
@@ -71,7 +106,7 @@ TEMPLATE_TEST_CASE("Every number of a message is found by its path, as the other
 }
 
 TEMPLATE_TEST_CASE(
-    "Bytes that are cut short or poisoned are refused or read as what they say, never beyond their end", "",
+    "Truncated or corrupted bytes are rejected or read consistently, never beyond their end", "",
     EVERY_KIND) {
   const std::string type = TestType::getTypeName();
   Samples samples(12);
@@ -88,7 +123,7 @@ TEMPLATE_TEST_CASE(
       const auto whole = path.read(bytes), part = path.read(damaged);
       if (part && !path.is_text()) {
         const double a = std::get<double>(*part), b = std::get<double>(*whole);
-        CHECK((a == b));  // what is all there is the same as before
+        CHECK((a == b));  // a complete value is unchanged
       }
     }
     damaged = bytes;
@@ -101,7 +136,7 @@ TEMPLATE_TEST_CASE(
   for (const FieldPath& path : paths) CHECK_FALSE(path.read(other));
 }
 
-TEMPLATE_TEST_CASE("All numbers and texts of a message are visited in order, each by the path that reads it", "",
+TEMPLATE_TEST_CASE("All numbers and texts of a message are visited in order, each with the path that reads it", "",
                    EVERY_KIND) {
   const std::string name = TestType::getTypeName();
   const MessageType& type = *message_type(name);
@@ -127,7 +162,7 @@ TEMPLATE_TEST_CASE("All numbers and texts of a message are visited in order, eac
     });
     CHECK(whole);
     CHECK(at == spots.size());
-    // Cut short anywhere it is not whole, and what is visited is what there is.
+    // Truncated anywhere, the message is incomplete, and the intact part is visited.
     for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 50) {
       std::size_t visited = 0;
       const std::vector<std::uint8_t> part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
@@ -157,7 +192,7 @@ TEST_CASE("A list of fixed length is read like one of counted length") {
   CHECK_FALSE(FieldPath(type, "uniforms[2].values[0]").number(bytes));
 }
 
-TEST_CASE("Every channel carries a type that is described") {
+TEST_CASE("Every channel carries a described type") {
   CHECK(channel_types().size() >= 30);
   for (const Channel& c : channel_types()) CHECK(message_type(c.type));
   REQUIRE(type_on("TOOL_STATE"));
@@ -165,7 +200,7 @@ TEST_CASE("Every channel carries a type that is described") {
   CHECK(type_on("NOTHING") == nullptr);
 }
 
-TEST_CASE("A path that names nothing is refused with the names that are nearest") {
+TEST_CASE("A path without a target is rejected with the nearest names") {
   const MessageType& tool = *message_type("tool_state_t");
   const auto sentence = [&](const char* path) -> std::string {
     try {
@@ -176,17 +211,17 @@ TEST_CASE("A path that names nothing is refused with the names that are nearest"
     return "accepted";
   };
   CHECK_THAT(sentence("forse_N.z"), Catch::StartsWith("tool_state_t has no field \"forse_N\"; nearest: force_N"));
-  CHECK_THAT(sentence("force_N"), Catch::Contains("is no number; it has x, y, z"));
+  CHECK_THAT(sentence("force_N"), Catch::Contains("is not a number; it has x, y, z"));
   CHECK_THAT(sentence("force_N.z.w"), Catch::Contains("has no fields"));
   CHECK_THAT(sentence("constraints.body"), Catch::Contains("say which, as in constraints[0]"));
-  CHECK_THAT(sentence("tool[0]"), Catch::Contains("is no list"));
+  CHECK_THAT(sentence("tool[0]"), Catch::Contains("is not a list"));
   CHECK_THAT(sentence("constraints[-1].body"), Catch::Contains("as a number"));
   CHECK_THAT(sentence("constraints[].body"), Catch::Contains("as a number"));
   CHECK_THAT(sentence(""), Catch::Contains("which field"));
   CHECK(sentence("constraints[3].force_N.x") == "accepted");
 }
 
-TEST_CASE("The unit of a variable is told by its name, or by that of what it is part of") {
+TEST_CASE("The unit of a variable is in its name, or in that of its parent") {
   const auto unit = [](const char* type, const char* path) { return FieldPath(*message_type(type), path).unit(); };
   CHECK(unit("tool_state_t", "force_N.z") == "N");
   CHECK(unit("tool_state_t", "device_velocity_m_s.x") == "m/s");

@@ -1,6 +1,7 @@
 #include "lcmtypes/friction_map.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/material_def_t.hpp>
 
 using namespace tactus;
 using Eigen::Vector3d;
@@ -17,26 +18,26 @@ FrictionMap checkered(double size_u_m, double size_v_m, double black, double whi
 
 }  // namespace
 
-TEST_CASE("Friction at a place is that of the grey there, linear between the middles of the pixels") {
+TEST_CASE("Friction at a place is that of the grey there, bilinear between pixel centres") {
   const FrictionMap map = checkered(0.4, 0.2, 0.5, 1.5);
   const Vector3d up(0, 0, 1);
-  CHECK(map.factor(up, {0.1, 0.05, 0}) == Approx(0.5));  // the middle of the lower left pixel
+  CHECK(map.factor(up, {0.1, 0.05, 0}) == Approx(0.5));  // the centre of the lower left pixel
   CHECK(map.factor(up, {0.3, 0.05, 7}) == Approx(1.5));
   CHECK(map.factor(up, {0.1, 0.15, 0}) == Approx(1.5));
   CHECK(map.factor(up, {0.2, 0.05, 0}) == Approx(1.0));
   CHECK(map.factor(up, {0.15, 0.05, 0}) == Approx(0.75));
   CHECK(map.factor(up, {0.2, 0.1, 0}) == Approx(1.0));
-  SECTION("it repeats without end") {
+  SECTION("it repeats in all directions") {
     CHECK(map.factor(up, {0.1 + 0.8, 0.05 - 0.6, 0}) == Approx(0.5));
     CHECK(map.factor(up, {0.0, 0.05, 0}) == Approx(1.0));
   }
-  SECTION("and lies on each side of a body as a relief does") {
+  SECTION("and lies on each side of a body like a relief") {
     CHECK(map.factor({1, 0, 0}, {9, 0.3, 0.05}) == Approx(1.5));     // y, z
     CHECK(map.factor({0, -1, 0}, {0.05, 9, 0.15}) == Approx(0.75));  // z, x: a quarter of the way along u
   }
 }
 
-TEST_CASE("Of a pair the factor of one surface counts with its root, as the geometric mean has it") {
+TEST_CASE("The factor of one surface of a pair counts with its square root, as in the geometric mean") {
   const double tool = 0.8, surface = 0.3, factor = 0.2;
   CHECK(std::sqrt(tool * surface) * pair_factor(factor) == Approx(std::sqrt(tool * (surface * factor))));
 }

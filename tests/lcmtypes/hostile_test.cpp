@@ -1,9 +1,47 @@
-// What a hostile or damaged message can do to a receiver: nothing.
+// Hostile and damaged messages must not harm a receiver.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <tactus/answer_t.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/clock_probe_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/pose_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/question_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/sync_report_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <utility>
 
 #include "sync/bus/decode.h"
@@ -14,8 +52,7 @@ namespace {
 std::atomic<std::size_t> largest_allocation{0};
 }
 
-// Watches every allocation of this test program, so that a message that claims a billion elements is caught
-// claiming.
+// Tracks every allocation of this test program, to detect memory for a message that claims a billion elements.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   std::size_t seen = largest_allocation;
   while (size > seen && !largest_allocation.compare_exchange_weak(seen, size)) {
@@ -42,7 +79,7 @@ const Schema& schema() {
 template <class Message>
 constexpr bool kIsAsset = std::is_same_v<Message, scene_t> || std::is_same_v<Message, mesh_t>;
 
-// The border as nodes use it.
+// The validation that nodes use.
 template <class Message>
 std::optional<Message> border(const Bytes& bytes) {
   if constexpr (kIsAsset<Message>)
@@ -51,7 +88,7 @@ std::optional<Message> border(const Bytes& bytes) {
     return sync::decode<Message>(bytes.data(), bytes.size());
 }
 
-// No element takes more than 512 bytes of memory per byte on the wire; 4 kB for what is not proportional.
+// Memory limit: 512 bytes for each byte on the wire, and 4 kB of constant overhead.
 template <class Message>
 bool refused_cheaply(const Bytes& bytes) {
   largest_allocation = 0;
@@ -80,7 +117,7 @@ Bytes encoded_sample(Samples& samples) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("A valid message comes through unchanged", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("A valid message is received unchanged", "", EVERY_MESSAGE) {
   Samples samples(1);
   for (int i = 0; i < 200; ++i) {
     const Bytes bytes = encoded_sample<TestType>(samples);
@@ -91,7 +128,7 @@ TEMPLATE_TEST_CASE("A valid message comes through unchanged", "", EVERY_MESSAGE)
   }
 }
 
-TEMPLATE_TEST_CASE("A message cut off anywhere, or with anything behind it, is refused", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("A message truncated anywhere, or with extra bytes, is rejected", "", EVERY_MESSAGE) {
   Samples samples(2);
   for (int i = 0; i < 5; ++i) {
     Bytes bytes = encoded_sample<TestType>(samples);
@@ -105,7 +142,7 @@ TEMPLATE_TEST_CASE("A message cut off anywhere, or with anything behind it, is r
   }
 }
 
-TEMPLATE_TEST_CASE("A message of another type is refused", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("A message of another type is rejected", "", EVERY_MESSAGE) {
   Samples samples(3);
   Bytes bytes = encoded_sample<TestType>(samples);
   for (std::size_t bit = 0; bit < 64; ++bit) {
@@ -121,7 +158,7 @@ TEMPLATE_TEST_CASE("A message of another type is refused", "", EVERY_MESSAGE) {
   }
 }
 
-TEMPLATE_TEST_CASE("A number that is none, in any field, is refused", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("A number that is not finite, in any field, is rejected", "", EVERY_MESSAGE) {
   Samples samples(4);
   for (int i = 0; i < 5; ++i) {
     const Bytes bytes = encoded_sample<TestType>(samples);
@@ -142,7 +179,7 @@ TEMPLATE_TEST_CASE("A number that is none, in any field, is refused", "", EVERY_
   }
 }
 
-TEMPLATE_TEST_CASE("A length that lies is refused without room being made for it", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("A false length is rejected without allocation", "", EVERY_MESSAGE) {
   Samples samples(5);
   for (int i = 0; i < 20; ++i) {
     const Bytes bytes = encoded_sample<TestType>(samples);
@@ -161,13 +198,13 @@ TEMPLATE_TEST_CASE("A length that lies is refused without room being made for it
       }
       if (spot.type != "string") continue;
       Bytes lying = bytes;
-      put(lying, spot.offset, std::int32_t{0});  // a string has its final zero at least
+      put(lying, spot.offset, std::int32_t{0});  // a string has at least its final zero
       REQUIRE(refused_cheaply<TestType>(lying));
     }
   }
 }
 
-TEMPLATE_TEST_CASE("An enumeration out of range is refused", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("An enumeration out of range is rejected", "", EVERY_MESSAGE) {
   Samples samples(6);
   for (int i = 0; i < 20; ++i) {
     const Bytes bytes = encoded_sample<TestType>(samples);
@@ -186,7 +223,7 @@ TEMPLATE_TEST_CASE("An enumeration out of range is refused", "", EVERY_MESSAGE) 
   }
 }
 
-TEMPLATE_TEST_CASE("A page outside its pages is refused", "", contact_events_t, contact_frame_t, world_state_t,
+TEMPLATE_TEST_CASE("A page outside its pages is rejected", "", contact_events_t, contact_frame_t, world_state_t,
                    scene_manifest_t, sync_report_t) {
   Samples samples(7);
   const int wrong[][2] = {{0, 0}, {1, 1}, {-1, 1}, {5, 3}, {0, -1}, {std::numeric_limits<int>::max(), 2}};
@@ -200,7 +237,7 @@ TEMPLATE_TEST_CASE("A page outside its pages is refused", "", contact_events_t, 
   }
 }
 
-TEMPLATE_TEST_CASE("Noise is refused, damage is refused or harmless", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("Noise is rejected, damage is rejected or harmless", "", EVERY_MESSAGE) {
   Samples samples(8);
   const auto byte = [&] { return static_cast<std::uint8_t>(samples.whole(0, 255)); };
   for (int i = 0; i < 2000; ++i) {
@@ -208,7 +245,7 @@ TEMPLATE_TEST_CASE("Noise is refused, damage is refused or harmless", "", EVERY_
     for (auto& b : noise) b = byte();
     REQUIRE(refused_cheaply<TestType>(noise));
     if (noise.size() < 8) continue;
-    put(noise, 0, TestType::getHash());  // of the right type, the rest noise
+    put(noise, 0, TestType::getHash());  // the right type, otherwise noise
     largest_allocation = 0;
     (void)border<TestType>(noise);
     REQUIRE(largest_allocation <= 512 * noise.size() + 4096);
@@ -226,7 +263,7 @@ TEMPLATE_TEST_CASE("Noise is refused, damage is refused or harmless", "", EVERY_
   }
 }
 
-TEST_CASE("A name that no reader could print is refused") {
+TEST_CASE("An unprintable name is rejected") {
   Samples samples(10);
   node_health_t health{};
   presented_t presented{};
@@ -244,7 +281,7 @@ TEST_CASE("A name that no reader could print is refused") {
   }
 }
 
-TEST_CASE("A time that would overflow is refused") {
+TEST_CASE("A time that would overflow is rejected") {
   Samples samples(11);
   contact_frame_t frame{};
   samples.fill(frame);
@@ -259,7 +296,7 @@ TEST_CASE("A time that would overflow is refused") {
   CHECK(!valid(frame));
 }
 
-TEST_CASE("A message that would be fragmented is refused, though it is valid") {
+TEST_CASE("A valid message that would be fragmented is rejected") {
   Samples samples(9);
   world_state_t m{};
   samples.fill(m);
@@ -272,7 +309,7 @@ TEST_CASE("A message that would be fragmented is refused, though it is valid") {
   CHECK(!border<world_state_t>(bytes));
 }
 
-TEST_CASE("The schema names every field of every type that is sent") {
+TEST_CASE("The schema names every field of every published type") {
   CHECK(schema().structs().size() >= 30);
   for (const auto& [name, fields] : schema().structs()) {
     INFO(name);

@@ -2,13 +2,16 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <tactus/material_def_t.hpp>
+#include <tactus/measured_mode_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/lcmtypes/samples.h"
 
 using namespace tactus;
 
-TEST_CASE("A scene whose measured modes cannot be is not let in") {
+TEST_CASE("A scene with invalid measured modes is rejected") {
   test::Samples samples(1);
   scene_t scene{};
   samples.fill(scene);

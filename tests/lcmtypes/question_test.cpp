@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/valid.h"
@@ -32,7 +33,7 @@ TEST_CASE("The largest question fits in one datagram") {
   CHECK(q.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
 }
 
-TEST_CASE("A question that cannot be answered as it stands is refused") {
+TEST_CASE("A question without a valid answer is rejected") {
   CHECK(valid(choice()));
   CHECK(valid(number()));
   const auto refused = [](question_t q, auto change) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 using namespace tactus;
 using Eigen::Vector2d;
@@ -47,7 +48,7 @@ HeightMap waves(int columns, int rows) {
 
 }  // namespace
 
-TEST_CASE("The slopes of a sine are its derivative, and upwards in the picture is along v") {
+TEST_CASE("The slopes of a sine are its derivative, and up in the picture is along v") {
   const HeightMap map = waves(64, 128);
   const Relief relief = make_relief(map, rough(0.4, 0.2, 0.002));
   const double w = 2 * std::numbers::pi;
@@ -55,8 +56,8 @@ TEST_CASE("The slopes of a sine are its derivative, and upwards in the picture i
     for (double v = 0.007; v < 1; v += 0.043) {
       const double du = 0.002 / 0.4 * w * (0.3 * std::cos(w * (u + 2 * v)) - 0.2 * std::sin(w * u));
       const double dv = 0.002 / 0.2 * w * 2 * 0.3 * std::cos(w * (u + 2 * v));
-      // Central differences over a step of s radians lose s^2 / 6 of each wave, linear interpolation s^2 / 8 more;
-      // 2 pi / 64 in both directions.
+      // Central differences over a step of s radians lose s^2 / 6 of each wave, linear interpolation s^2 / 8
+      // more; 2 pi / 64 in both directions.
       const double lost = std::pow(w / 64, 2) * (1 / 6. + 2 / 8.);
       const Vector2d s = relief.slope({u, v});
       CHECK(std::abs(s.x() - du) < lost * 0.002 / 0.4 * w * 0.5 + 2e-5);
@@ -66,7 +67,7 @@ TEST_CASE("The slopes of a sine are its derivative, and upwards in the picture i
     }
 }
 
-TEST_CASE("A relief repeats, and neither its height nor its slope jumps anywhere") {
+TEST_CASE("A relief repeats, and its height and slope are continuous everywhere") {
   const Relief relief = make_relief(noise(16, 12, 3), rough(0.02, 0.03, 0.001));
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-3, 3);
@@ -74,14 +75,14 @@ TEST_CASE("A relief repeats, and neither its height nor its slope jumps anywhere
     const Vector2d at(anywhere(random), anywhere(random)), far = at + Vector2d(5, -4);
     CHECK(relief.height_m(at) == Approx(relief.height_m(far)).margin(1e-12));
     CHECK((relief.slope(at) - relief.slope(far)).norm() < 1e-9);
-    // Also over the edges of pixels: a step of 1e-7 of the map changes little, whichever way.
+    // Also across pixel edges: a step of 1e-7 of the map changes little, in any direction.
     const Vector2d near = at + 1e-7 * Vector2d(anywhere(random), anywhere(random));
     CHECK(std::abs(relief.height_m(at) - relief.height_m(near)) < 1e-8);
     CHECK((relief.slope(at) - relief.slope(near)).norm() < 1e-4);
   }
 }
 
-TEST_CASE("Of ridges the slope is the derivative of the height, along u and along v") {
+TEST_CASE("For ridges the slope is the derivative of the height, along u and along v") {
   const HeightMap along_u = ridges(24, 5, 11);
   HeightMap along_v{5, 24, 65535, {}};
   for (int r = 0; r < 24; ++r)
@@ -97,12 +98,12 @@ TEST_CASE("Of ridges the slope is the derivative of the height, along u and alon
   }
 }
 
-TEST_CASE("The normal of a relief leans away from where it rises, in the plane of the surface") {
+TEST_CASE("The normal of a relief leans away from the rising side, in the plane of the surface") {
   CHECK(relief_normal({0, 0, 1}, {0, 0}) == Vector3d(0, 0, 1));
   CHECK((relief_normal({0, 0, 1}, {1, 0}) - Vector3d(-1, 0, 1).normalized()).norm() < 1e-12);
   CHECK((relief_normal({0, 0, -1}, {1, 0}) - Vector3d(-1, 0, -1).normalized()).norm() < 1e-12);
   CHECK((relief_normal({0, 1, 0}, {0.5, 0.25}) - Vector3d(-0.25, 1, -0.5).normalized()).norm() < 1e-12);
-  SECTION("whose tilt is the slope along it, of a surface that is oblique too") {
+  SECTION("with the tilt of the slope along it, also on an oblique surface") {
     const Vector3d n = Vector3d(0.3, -0.2, 0.8).normalized();
     const Vector3d m = relief_normal(n, {0.4, -0.7});
     Vector3d along(0.4, -0.7, 0);

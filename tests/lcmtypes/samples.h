@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lcmtypes/valid.h"
+#include "tests/lcmtypes/all_messages.h"
 
 namespace tactus::test {
 

@@ -1,9 +1,8 @@
-// Reads the .lcm files themselves and walks an encoded message by them: an account of the wire format that shares
-// no code with lcm-gen. It tells where in the bytes each field lies, so that tests can put poison into any of
-// them.
+// Reads the .lcm files themselves and parses an encoded message by them: an implementation of the wire format
+// independent of lcm-gen. It gives the offset of each field, so that tests can corrupt any of them.
 //
-// Wire format of LCM: an 8-byte fingerprint, then the fields in order, big endian; a string is its length with the
-// final zero (int32), then its bytes; a nested struct is its fields.
+// Wire format of LCM: an 8-byte fingerprint, then the fields in order, big endian; a string is its length including
+// the final zero (int32), then its bytes; a nested struct is its fields.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +19,12 @@ namespace tactus::test {
 
 struct FieldDef {
   std::string type, name;
-  std::string count;        // name of the field that holds the array's length, or that length; empty: a scalar
+  std::string count;        // name of the field with the array's length, or that length; empty: a scalar
   bool enumerated = false;  // constants are listed under it
 };
 using StructDef = std::vector<FieldDef>;
 
-// Where one scalar lies in the bytes.
+// The place of one scalar in the bytes.
 struct Spot {
   std::string path;  // "contacts[0].normal.x"
   std::string type;  // primitive type, "string" for the length of a string
@@ -75,7 +74,7 @@ class Schema {
     for (std::string line; std::getline(lines, line, ';');) {
       std::smatch m;
       if (std::regex_search(line, std::regex(R"(^\s*const\s)"))) {
-        // A constant that is no whole number names a value, and there are others.
+        // A constant that is not an integer is a special value of a number, not an enumeration.
         if (!fields.empty() && !std::regex_search(line, std::regex(R"(\bdouble\b)"))) fields.back().enumerated = true;
       } else if (std::regex_search(line, m, std::regex(R"(^\s*(\w+)\s+(\w+)\s*(?:\[(\w+)\])?\s*$)"))) {
         fields.push_back({m[1], m[2], m[3], false});

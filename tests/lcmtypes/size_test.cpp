@@ -1,5 +1,24 @@
-// Every message at its documented maximum fits one datagram.
+// Every message of its documented maximum size fits one datagram.
 #include <catch2/catch.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"
@@ -19,7 +38,7 @@ std::vector<Item> full(test::Samples& samples, int count) {
 }
 }  // namespace
 
-TEST_CASE("A page of 7 planes and 7 books of a touch model fits a datagram") {
+TEST_CASE("A page of 7 planes and 7 applied entries of a touch model fits a datagram") {
   test::Samples samples(1);
   touch_model_t m{};
   samples.fill(m);
@@ -55,7 +74,7 @@ TEST_CASE("A page holds at least 3 contacts of 4 points, 13 events, 18 bodies") 
   CHECK(sync::encode(world).size() <= kMax);
 }
 
-TEST_CASE("A health report with both histograms full, 8 inputs and a long note fits a datagram") {
+TEST_CASE("A health message with both histograms full, 8 inputs and a long note fits a datagram") {
   test::Samples samples(1);
   node_health_t m{};
   samples.fill(m);

@@ -5,7 +5,7 @@
 using namespace tactus;
 using Catch::Contains;
 
-TEST_CASE("The device of a tool is parsed whole, without a look at its file") {
+TEST_CASE("The device of a tool is parsed completely, without access to its file") {
   CHECK(parse_tool_device("virtual_hand").kind == ToolDevice::Kind::kVirtualHand);
   CHECK(parse_tool_device("virtual_hand").file.empty());
   CHECK(parse_tool_device("virtual_hand:a b.csv").file == "a b.csv");
@@ -25,7 +25,7 @@ TEST_CASE("The device of a tool is parsed whole, without a look at its file") {
   CHECK(parse_tool_device("external:left arm,offset=0/0/1").name == "left arm");
 }
 
-TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
+TEST_CASE("An invalid device of a tool is reported in one sentence") {
   for (const char* unknown : {"", "phantom", "evil:x.csv", "playback2:x.csv", "VIRTUAL_HAND"})
     CHECK_THROWS_WITH(parse_tool_device(unknown), Contains("unknown") && Contains("use virtual_hand"));
   CHECK_THROWS_WITH(parse_tool_device("playback"), Contains("name the file"));
@@ -39,11 +39,11 @@ TEST_CASE("What is wrong with the device of a tool is said in one sentence") {
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,rate=0"), Contains("above 0"));
   CHECK_THROWS_WITH(parse_tool_device("virtual_hand:x.csv,scale=2"), Contains("no options"));
   CHECK_THROWS_WITH(parse_tool_device("external"), Contains("give it the name"));
-  CHECK_THROWS_WITH(parse_tool_device("spidar"), Contains("name its frame"));
+  CHECK_THROWS_WITH(parse_tool_device("spidar"), Contains("name the frame"));
   CHECK_THROWS_WITH(parse_tool_device("spidar:cave,scale=2"), Contains("no option \"scale\"") && Contains("offset"));
 }
 
-TEST_CASE("The motion file of a device is named anew, its options stay") {
+TEST_CASE("The motion file of a device is replaced, its options stay") {
   CHECK(with_device_file("playback:x.csv,rate=2,scale=3", "/a/b.csv") == "playback:/a/b.csv,rate=2,scale=3");
   CHECK(with_device_file("virtual_hand:x.csv", "/a/b.csv") == "virtual_hand:/a/b.csv");
   CHECK_THROWS_WITH(with_device_file("playback:x.csv", "/a,b/x.csv"), Contains("comma"));

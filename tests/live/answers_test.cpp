@@ -1,6 +1,7 @@
 #include "scripts/live/answers.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/sync/support/memory_sink.h"

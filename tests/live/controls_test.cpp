@@ -2,6 +2,11 @@
 #include "scripts/live/controls.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/degradation_t.hpp>
+#include <tactus/device_state_t.hpp>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/tag_request_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/degradation/profile.h"

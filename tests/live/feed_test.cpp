@@ -2,6 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
 

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/device_state_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

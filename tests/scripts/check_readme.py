@@ -23,7 +23,9 @@ def dry(words):
     """The command that checks the arguments of this one without doing its work; None where there is none."""
     if words[0] == "./scripts/run" and "--help" not in words:
         arguments = [w for w in words[1:] if not w.endswith(".sdf")]  # the reader's own scene is not here
-        return ["python3", "scripts/supervise/main.py", "--arguments-only", *arguments]
+        return ["scripts/tactus", "--module", "tactus.launch.main", "--arguments-only", *arguments]
+    if words[0] == "./scripts/tactus":
+        return [*words[:2], "--help"]
     return [words[0], "--help"]
 
 

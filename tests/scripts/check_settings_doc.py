@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that docs/settings.md is what scripts/generate_settings makes of every settings.csv.
+"""Checks that docs/settings.md is what cmake/generate_settings.py makes of every settings.csv.
 
   check_settings_doc.py ROOT            exits 1 and says what to do when it is not
   check_settings_doc.py ROOT --write    writes it
@@ -14,7 +14,7 @@ import tempfile
 
 def generate(root, out):
     tables = sorted(glob.glob(os.path.join(root, "*", "settings.csv")))
-    subprocess.run([sys.executable, os.path.join(root, "scripts", "generate_settings"), "markdown", out, *tables], check=True)
+    subprocess.run([sys.executable, os.path.join(root, "cmake", "generate_settings.py"), "markdown", out, *tables], check=True)
 
 
 def main():

@@ -6,7 +6,7 @@ import sys
 import tempfile
 import unittest
 
-TOOL = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "generate_settings")
+TOOL = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cmake", "generate_settings.py")
 GOOD = 'rate,Hz,50,1,100,Rate,design\nmode,fast|slow,fast,,,Mode,"Smith, 1999"\nname,text,,,,Name,design\nloud,bool,false,,,Loud,design\n'
 
 

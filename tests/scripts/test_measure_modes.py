@@ -4,7 +4,7 @@ import importlib.util
 import os
 import unittest
 
-PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "measure_modes")
+PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "measure", "measure_modes")
 loader = importlib.machinery.SourceFileLoader("measure_modes", PATH)
 measure_modes = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_modes", loader))
 loader.exec_module(measure_modes)

@@ -4,7 +4,7 @@ import importlib.util
 import os
 import unittest
 
-PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "measure_motion")
+PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "measure", "measure_motion")
 loader = importlib.machinery.SourceFileLoader("measure_motion", PATH)
 measure_motion = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_motion", loader))
 loader.exec_module(measure_motion)

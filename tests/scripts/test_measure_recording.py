@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/measure_recording counts what is lost, and by whom: against logs and tables of which it is known."""
+"""tests/measure/measure_recording counts what is lost, and by whom: against logs and tables of which it is known."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "measure_recording"
+SCRIPT = pathlib.Path(__file__).resolve().parents[1] / "measure" / "measure_recording"
 sys.dont_write_bytecode = True
 loader = importlib.machinery.SourceFileLoader("measure_recording", str(SCRIPT))
 measure_recording = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_recording", loader))

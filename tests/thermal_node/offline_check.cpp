@@ -1,5 +1,11 @@
 // A recorded run felt again by the program itself: the temperature of the skin.
 #include <cmath>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 
 #include "tests/audio_node/support/recorded_run.h"

@@ -1,6 +1,7 @@
 #include "scripts/trial_runner/enforcement.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/node_health_t.hpp>
 
 using namespace tactus;
 using namespace tactus::conductor;

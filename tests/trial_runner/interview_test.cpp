@@ -1,6 +1,8 @@
 #include "scripts/trial_runner/interview.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/answer_t.hpp>
+#include <tactus/question_t.hpp>
 
 using namespace tactus;
 using namespace tactus::conductor;

@@ -2,6 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/picture_chunk_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::conductor;

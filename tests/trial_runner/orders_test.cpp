@@ -1,6 +1,7 @@
 #include "scripts/trial_runner/orders.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 #include <tactus/sim_command_t.hpp>
 
 using namespace tactus;

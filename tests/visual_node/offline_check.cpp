@@ -1,4 +1,4 @@
-// A recorded run drawn by the program itself, without bus and screen.
+// A recorded run rendered by the program itself, without bus and screen.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +10,12 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/degradation_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/identity.h"
@@ -40,17 +45,17 @@ struct Folder {
 
 struct Done {
   int status;
-  std::string said;
-  // What follows these words.
+  std::string output;
+  // The text after these words.
   std::string after(const std::string& words) const {
-    const auto at = said.find(words);
+    const auto at = output.find(words);
     REQUIRE(at != std::string::npos);
-    const std::string rest = said.substr(at + words.size());
+    const std::string rest = output.substr(at + words.size());
     return rest.substr(0, rest.find_first_of(" ,\n"));
   }
 };
 
-// The program beside this one.
+// The program in the folder of this test.
 Done render(const Folder& folder, const std::string& log, const std::string& video,
             std::vector<std::string> more = {}) {
   const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
@@ -58,19 +63,19 @@ Done render(const Folder& folder, const std::string& log, const std::string& vid
                                  "width=320",         "--set", "height=240"};
   if (!video.empty()) words.insert(words.end(), {"--video", folder.file(video)});
   words.insert(words.end(), more.begin(), more.end());
-  const std::string said = folder.file("said.txt");
+  const std::string output = folder.file("said.txt");
   const pid_t child = fork();
   if (child == 0) {
     std::vector<char*> raw;
     for (std::string& w : words) raw.push_back(w.data());
     raw.push_back(nullptr);
-    dup2(open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDERR_FILENO);
+    dup2(open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDERR_FILENO);
     execv(raw[0], raw.data());
     _exit(127);
   }
   int status = -1;
   waitpid(child, &status, 0);
-  std::ifstream text(said);
+  std::ifstream text(output);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, std::string(std::istreambuf_iterator<char>(text), {})};
 }
 
@@ -85,7 +90,7 @@ header_t stamp(double at_s, std::int64_t seq) {
 
 const std::vector<double> kHits{0.5, 0.9013, 1.2004, 1.71, 2.25};
 
-// A ball that crosses the picture at 0.3 m/s, and hits at times that fall between the frames.
+// A ball that crosses the picture at 0.3 m/s, and hits at times between the frames.
 void record(const std::string& path, const std::string& profile = "") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, -0.5, 0}), shape_def_t::SPHERE, {0.2, 0, 0});
@@ -141,12 +146,12 @@ std::vector<std::vector<std::uint8_t>> frames_of(const Folder& folder, const std
 }  // namespace
 
 TEST_CASE(
-    "A log drawn twice gives the same pixels and the same file, and every event in the frame that it is due in") {
+    "A log rendered twice gives the same pixels and file, and every event is in its due frame") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done first = render(folder, "run.lcmlog", "a.mp4", {"--frames", folder.file("frames.csv")}),
              again = render(folder, "run.lcmlog", "b.mp4");
-  CAPTURE(first.said);
+  CAPTURE(first.output);
   REQUIRE(first.status == 0);
   REQUIRE(again.status == 0);
   CHECK(first.after("pixels ") == again.after("pixels "));
@@ -154,15 +159,15 @@ TEST_CASE(
   CHECK_FALSE(std::filesystem::exists(folder.file("a.mp4.part.mp4")));
 
   const auto frames = frames_of(folder, "a.mp4");
-  // The frames of three seconds, but for those before the scene was taken in.
+  // The frames of three seconds, except those before the scene is loaded.
   CHECK(frames.size() > 170);
   CHECK(frames.size() <= 181);
-  std::map<std::uint32_t, std::int64_t> seen;  // event: number of the frame that shows it first
+  std::map<std::uint32_t, std::int64_t> seen;  // event: number of the first frame that shows it
   std::int64_t last = -1, first_number = -1;
   for (const auto& luma : frames) {
     const auto newest = visual::read_marker(luma, kWidth, kHeight, 0);
     REQUIRE(newest);
-    if (last >= 0) CHECK(newest->frame == last + 1);  // none is left out, none repeated
+    if (last >= 0) CHECK(newest->frame == last + 1);  // none is skipped, none repeated
     last = newest->frame;
     if (first_number < 0) first_number = last;
     for (int row = 0; row < visual::kMarkerRows; ++row) {
@@ -178,7 +183,7 @@ TEST_CASE(
   std::getline(table, line);  // frame,host_ns,pixels of the first
   const std::int64_t first_ns = std::stoll(line.substr(line.find(',') + 1));
   for (std::size_t i = 0; i < kHits.size(); ++i) {
-    // The log holds whole microseconds and tells each hit at a whole millisecond: the first frame after that shows it.
+    // The log stores whole microseconds and publishes each hit at a whole millisecond: the next frame shows it.
     const double told_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
     INFO("hit at " << kHits[i]);
     const double since_first_ns = static_cast<double>(kLogBegins_ns - first_ns) + told_s * 1e9;
@@ -186,7 +191,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Another log, and the same one with another setting, give other pixels") {
+TEST_CASE("Another log, and the same log with another setting, give other pixels") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done plain = render(folder, "run.lcmlog", "a.mp4");
@@ -196,7 +201,7 @@ TEST_CASE("Another log, and the same one with another setting, give other pixels
   CHECK(plain.after("pixels ") != coarse.after("pixels "));
 }
 
-TEST_CASE("The profile that a run was degraded by is left out unless the log is drawn as recorded") {
+TEST_CASE("The profile of a run is ignored unless the log is rendered as recorded") {
   const Folder folder;
   const std::string profile = R"(<profile name="slow"><degrade modality="visual" frame_rate="10Hz"/></profile>)";
   record(folder.file("plain.lcmlog"));
@@ -206,36 +211,36 @@ TEST_CASE("The profile that a run was degraded by is left out unless the log is 
   CHECK(render(folder, "slow.lcmlog", "b.mp4").after("pixels ") == plain);
   const std::string slow = render(folder, "slow.lcmlog", "c.mp4", {"--as-recorded"}).after("pixels ");
   CHECK(slow != plain);
-  // Another profile may be laid on the raw log instead.
+  // Another profile may be applied to the raw log instead.
   CHECK(render(folder, "plain.lcmlog", "d.mp4", {"--degrade", folder.file("slow.xml")}).after("pixels ") != plain);
 }
 
-TEST_CASE("What is there already is not written over, by whatever name") {
+TEST_CASE("An existing file is not overwritten, under any name") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
-  std::ofstream(folder.file("old.mp4")) << "a film of somebody's";
+  std::ofstream(folder.file("old.mp4")) << "another film";
   std::filesystem::create_symlink(folder.file("run.lcmlog"), folder.file("link.mp4"));
   const std::string log = bytes_of(folder.file("run.lcmlog"));
   for (const char* video : {"old.mp4", "run.lcmlog", "link.mp4"}) {
     const Done done = render(folder, "run.lcmlog", video);
     CHECK(done.status == 1);
-    CHECK_THAT(done.said, Catch::Contains("not written over"));
+    CHECK_THAT(done.output, Catch::Contains("not written over"));
   }
   const Done snapshot = render(folder, "run.lcmlog", "new.mp4", {"--snapshot", folder.file("run.lcmlog")});
   CHECK(snapshot.status == 1);
-  CHECK_THAT(snapshot.said, Catch::Contains("the log itself"));
+  CHECK_THAT(snapshot.output, Catch::Contains("the log itself"));
   CHECK(bytes_of(folder.file("run.lcmlog")) == log);
-  CHECK(bytes_of(folder.file("old.mp4")) == "a film of somebody's");
+  CHECK(bytes_of(folder.file("old.mp4")) == "another film");
 }
 
-TEST_CASE("What is no log of a run is refused in one sentence, and leaves no file") {
+TEST_CASE("A file that is not a log of a run is rejected in one sentence, and leaves no file") {
   const Folder folder;
   const auto refusal = [&](const std::string& log) {
     const Done done = render(folder, log, "x.mp4");
     CHECK(done.status == 1);
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4")));
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4.part.mp4")));
-    return done.said;
+    return done.output;
   };
   CHECK_THAT(refusal("none.lcmlog"), Catch::Contains("cannot read"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
@@ -245,10 +250,10 @@ TEST_CASE("What is no log of a run is refused in one sentence, and leaves no fil
   record(folder.file("run.lcmlog"));
   const Done no_video = render(folder, "run.lcmlog", "");
   CHECK(no_video.status == 1);
-  CHECK_THAT(no_video.said, Catch::Contains("--video"));
+  CHECK_THAT(no_video.output, Catch::Contains("--video"));
 }
 
-TEST_CASE("A damaged log is drawn as far as it is intact, and the damage is counted") {
+TEST_CASE("A damaged log is rendered up to its damage, and the damage is counted") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   std::string bytes = bytes_of(folder.file("run.lcmlog"));
@@ -256,24 +261,24 @@ TEST_CASE("A damaged log is drawn as far as it is intact, and the damage is coun
   bytes.resize(bytes.size() - 10);
   std::ofstream(folder.file("damaged.lcmlog"), std::ios::binary) << bytes;
   const Done done = render(folder, "damaged.lcmlog", "a.mp4");
-  CAPTURE(done.said);
+  CAPTURE(done.output);
   CHECK(done.status == 0);
-  CHECK_THAT(done.said, Catch::Contains("2 regions"));
+  CHECK_THAT(done.output, Catch::Contains("2 regions"));
   CHECK(frames_of(folder, "a.mp4").size() > 160);
 }
 
-TEST_CASE("A snapshot of a log is written beside its video, and each wall of a room may be drawn from it") {
+TEST_CASE("A snapshot of a log is written beside its video, and each wall of a room can be rendered from it") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done left = render(folder, "run.lcmlog", "left.mp4",
                            {"--snapshot", folder.file("left.png"), "--set", "room=cave4", "--set", "wall=left"});
   const Done front = render(folder, "run.lcmlog", "front.mp4", {"--set", "room=cave4", "--set", "wall=front"});
-  CAPTURE(left.said);
+  CAPTURE(left.output);
   REQUIRE(left.status == 0);
   REQUIRE(front.status == 0);
   CHECK(bytes_of(folder.file("left.png")).substr(1, 3) == "PNG");
   CHECK(left.after("pixels ") != front.after("pixels "));
-  // The same numbers in both: frames that are locked by time are the same ones.
+  // The same numbers in both: frames locked by time are equal.
   const auto a = frames_of(folder, "left.mp4"), b = frames_of(folder, "front.mp4");
   REQUIRE(a.size() == b.size());
   REQUIRE(a.size() > 170);

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -2,6 +2,10 @@
 //   in   CONTACT_EVENTS, CONTACTS, SCENE       out   PRESENTED of every hit, wind.csv
 #include <fstream>
 #include <map>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/run_renderer.h"

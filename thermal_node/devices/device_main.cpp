@@ -12,6 +12,10 @@
 // source and incarnation of your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/thermal_device_t.hpp>
+#include <tactus/thermal_state_t.hpp>
 
 #include "sync/node/node.h"
 #include "thermal_node/devices/node_config.h"

@@ -1,5 +1,7 @@
 #include "thermal_node/devices/external.h"
 
+#include <tactus/thermal_device_t.hpp>
+
 namespace tactus::thermal {
 
 void External::receive(const thermal_device_t& m, sync::HostTime arrival) {

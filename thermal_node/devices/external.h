@@ -2,6 +2,8 @@
 // Pure.
 #pragma once
 
+#include <tactus/thermal_device_t.hpp>
+
 #include "thermal_node/devices/device.h"
 
 namespace tactus::thermal {

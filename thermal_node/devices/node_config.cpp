@@ -1,5 +1,6 @@
 #include "thermal_node/devices/node_config.h"
 
+#include <tactus/tool_def_t.hpp>
 #include <utility>
 
 namespace tactus::thermal {

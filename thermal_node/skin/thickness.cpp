@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <tactus/shape_def_t.hpp>
 
 namespace tactus::thermal {
 namespace {

@@ -1,5 +1,5 @@
-// A call of the display server that does not come back would hold the node for ever, and nobody would start it
-// again: a thread watches, and ends the process with one sentence instead.
+// Watchdog for blocking calls to the display server. A call that never returns would hang the node and a supervisor
+// would never restart it, so a thread ends the process with one sentence.
 #pragma once
 
 #include <atomic>
@@ -11,14 +11,15 @@ namespace tactus::visual {
 
 class CallGuard {
  public:
-  // design: so many looks, so far apart, find the same call under way: 5 s. A desktop under load may need one.
-  static constexpr int kMaxLooks = 10, kLook_ms = 500;
+  // Design: the process ends when kMaxChecks consecutive checks, kCheckInterval_ms apart, find the same call in
+  // progress: after 5 s. A call on a loaded desktop may take 1 s.
+  static constexpr int kMaxChecks = 10, kCheckInterval_ms = 500;
 
   CallGuard();
-  // Around each call. Never waits. Of one thread.
+  // Runs `call`, under the watchdog. Never waits. Call from one thread only.
   template <class Call>
   void during(Call&& call) {
-    calls_.fetch_add(1, std::memory_order_relaxed);  // odd: under way
+    calls_.fetch_add(1, std::memory_order_relaxed);  // odd: a call is in progress
     call();
     calls_.fetch_add(1, std::memory_order_relaxed);
   }

@@ -5,7 +5,7 @@
 namespace tactus::visual {
 
 std::string why_context_is_lost() {
-  // libepoxy would abort the process where nobody has it.
+  // libepoxy aborts the process when the driver has none of these.
   if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
       epoxy_has_gl_extension("GL_ARB_robustness")) {
     switch (glGetGraphicsResetStatus()) {
@@ -15,11 +15,12 @@ std::string why_context_is_lost() {
       default: return "the graphics device was reset";
     }
   }
-  // Errors of its own making are none of its end; the loop asks once a frame, so that few are left unread.
+  // Other errors do not mean that the context is lost. The loop calls this once a frame, so few errors are left
+  // unread.
   for (int i = 0; i < 16; ++i) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return {};
-    if (error == GL_CONTEXT_LOST) return "the graphics device has forgotten what it was given";
+    if (error == GL_CONTEXT_LOST) return "the graphics device has lost its data";
   }
   return {};
 }

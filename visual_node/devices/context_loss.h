@@ -1,11 +1,13 @@
-// Whether the device still knows what it was given. A driver that was reset, updated or taken away forgets it all.
+// Detects the loss of an OpenGL context. A driver that is reset, updated or removed loses all objects of the
+// context.
 #pragma once
 
 #include <string>
 
 namespace tactus::visual {
 
-// Of the context that is current: why it is no more, as a clause; empty: it is there, as far as the driver tells.
+// Checks the current context. Returns the reason of its loss as a clause, or an empty string while the driver
+// reports no loss.
 std::string why_context_is_lost();
 
 }  // namespace tactus::visual

@@ -1,4 +1,4 @@
-// Where the pictures go: nowhere (a context without a display server) or a window. EGL and GLFW stay behind this.
+// The OpenGL context and its output: headless (no display server) or a window. Hides EGL and GLFW.
 #pragma once
 
 #include <memory>
@@ -11,57 +11,58 @@
 
 namespace tactus::visual {
 
-// What a person did in a window.
+// User input of a window.
 struct Inputs {
-  std::vector<int> keys;  // pressed, in order: as overlay/keys.h has them
-  // Where the cursor is while the left button is held: shares of the window from its upper left.
+  std::vector<int> keys;  // pressed, in order; codes as in overlay/keys.h
+  // Position of the cursor while the left button is held: fractions of the window's width and height, from its
+  // upper left corner.
   std::optional<std::pair<float, float>> aim;
-  std::vector<Button> buttons;  // of any gamepad, pressed anew
+  std::vector<Button> buttons;  // newly pressed, of any gamepad
 };
 
 struct WindowOptions {
   int width = 640, height = 480;
   bool full_screen = false;
   int monitor = 0;           // 0: the first
-  bool quad_buffer = false;  // a buffer for each eye
+  bool quad_buffer = false;  // one buffer for each eye (quad-buffered stereo)
 };
 
 class Display {
  public:
   virtual ~Display() = default;
-  // What draws, e.g. "llvmpipe (LLVM 15.0.6, 256 bits) on EGL device 0".
+  // The renderer, e.g. "llvmpipe (LLVM 15.0.6, 256 bits) on EGL device 0".
   const std::string& description() const { return description_; }
-  // Shows the picture in this framebuffer; without a window it does nothing. halves: its left half to the left
-  // eye, its right half to the right one, where the display can.
+  // Shows the picture of this framebuffer; does nothing without a window. halves: shows its left half to the left
+  // eye and its right half to the right eye, if the display can.
   virtual void show(unsigned framebuffer, int width, int height, bool halves = false) = 0;
-  // True once a person has closed the window.
+  // True once the user has closed the window.
   virtual bool closed() = 0;
-  // Why nothing can be drawn with it any more, as a clause; empty: it can.
+  // The reason why this display can no longer draw, as a clause; empty while it can.
   virtual std::string lost() = 0;
-  // It is lost since there is no display server any more that a window could be opened on again.
+  // True when the display is lost because the display server is gone, so no new window can be opened.
   virtual bool server_gone() { return false; }
-  // True when show() adds a wait for the screen to what the fence knows.
+  // True when the screen adds a delay after the fence of show().
   virtual bool has_screen() const = 0;
-  // Since it was asked last.
+  // The input since the last call.
   virtual Inputs take_inputs() { return {}; }
   virtual void toggle_full_screen() {}
-  // One sentence on what does not go as it was asked for; told once, then empty.
+  // One sentence about a request that could not be met; returned once, then empty.
   std::string take_trouble() { return std::exchange(trouble_, {}); }
 
  protected:
   std::string description_, trouble_;
 };
 
-// An OpenGL 3.3 core context is current in the calling thread afterwards. Tries the EGL device of that index (-1:
-// none in particular), then every device, then surfaceless, then the default display. Throws std::runtime_error
-// with one sentence that lists what was tried.
+// Makes an OpenGL 3.3 core context current in the calling thread. Tries the EGL device of this index (-1: no
+// preference), then every device, then surfaceless, then the default display. Throws std::runtime_error with one
+// sentence that lists all attempts.
 std::unique_ptr<Display> make_headless(int egl_device);
 
-// A window of the desktop. Throws std::runtime_error with one sentence when there is no display server.
+// Opens a window on the desktop. Throws std::runtime_error with one sentence when there is no display server.
 std::unique_ptr<Display> make_window(const std::string& title, const WindowOptions& options);
 
-// A software renderer draws with one thread, so that the 1 kHz loops keep a core, unless the user has said
-// otherwise. Call before anything else.
+// Configures a software renderer: one thread, so that the 1 kHz loops keep a core, unless the user has configured
+// it. Call this first in the process.
 void quiet_software_renderer();
 
 }  // namespace tactus::visual

@@ -5,16 +5,16 @@
 
 namespace tactus::visual {
 
-std::vector<Button> Gamepad::pressed(const GamepadStand& now) {
+std::vector<Button> Gamepad::pressed(const GamepadState& now) {
   std::array<bool, kButtons> held = now.held;
-  for (const GamepadStand::Stick& s : now.sticks) {
-    // A stick points one way: the one in which it is pushed farther.
+  for (const GamepadState::Stick& s : now.sticks) {
+    // A stick counts as an arrow in the direction of its larger axis.
     const bool sideways = std::abs(s.x) >= std::abs(s.y);
-    const float far = sideways ? s.x : s.y;
-    const Button way =
-        sideways ? (far < 0 ? Button::kLeft : Button::kRight) : (far < 0 ? Button::kUp : Button::kDown);
-    const auto i = static_cast<std::size_t>(way);
-    held[i] = held[i] || std::abs(far) > (before_[i] ? kLetGo : kPushed);
+    const float deflection = sideways ? s.x : s.y;
+    const Button arrow =
+        sideways ? (deflection < 0 ? Button::kLeft : Button::kRight) : (deflection < 0 ? Button::kUp : Button::kDown);
+    const auto i = static_cast<std::size_t>(arrow);
+    held[i] = held[i] || std::abs(deflection) > (before_[i] ? kReleased : kPushed);
   }
   std::vector<Button> out;
   for (std::size_t i = 0; i < kButtons; ++i)

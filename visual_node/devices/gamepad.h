@@ -1,5 +1,5 @@
-// Which buttons of a gamepad were pressed since it was looked at last; a stick that is pushed is the pad of
-// arrows. Pure: the window hands in how the gamepad stands.
+// Detects newly pressed buttons of a gamepad; a pushed stick counts as an arrow of the D-pad. Pure: the caller
+// passes the state of the gamepad.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace tactus::visual {
 
-// By their places on the Xbox controller, which GLFW's and the W3C's standard mapping have.
+// Named by position on the Xbox controller, as in the standard mappings of GLFW and the W3C.
 enum class Button { kA, kB, kX, kY, kLeft, kRight, kUp, kDown };
 inline constexpr std::size_t kButtons = 8;
 
-struct GamepadStand {
+struct GamepadState {
   std::array<bool, kButtons> held{};  // in the order of Button
-  // Of each stick, -1 .. 1 from left to right and from up to down.
+  // Axes of each stick, -1 .. 1: left to right, and up to down.
   struct Stick {
     float x = 0, y = 0;
   };
@@ -23,13 +23,13 @@ struct GamepadStand {
 
 class Gamepad {
  public:
-  // Design: past the half is meant, and what rests within a third has been let go.
-  static constexpr float kPushed = 0.6f, kLetGo = 0.35f;
+  // Design: a deflection above 0.6 is deliberate; below 0.35, about a third, the stick is at rest.
+  static constexpr float kPushed = 0.6f, kReleased = 0.35f;
 
-  // What was pressed anew. What is held at the first look counts as pressed before.
-  std::vector<Button> pressed(const GamepadStand& now);
-  // It was taken away.
-  void forget() { *this = {}; }
+  // Returns the newly pressed buttons. Buttons held at the first call do not count as newly pressed.
+  std::vector<Button> pressed(const GamepadState& now);
+  // The gamepad was disconnected.
+  void reset() { *this = {}; }
 
  private:
   std::array<bool, kButtons> before_{};

@@ -75,20 +75,20 @@ std::vector<Candidate> candidates(int egl_device) {
   return list;
 }
 
-// Null, and why in `reason`, when this one cannot.
+// Returns null, with the cause in `reason`, when this candidate has no suitable context.
 std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) {
   if (c.display == EGL_NO_DISPLAY) return reason = "no such display", nullptr;
   if (!eglInitialize(c.display, nullptr, nullptr))
     return reason = "eglInitialize failed, " + error_text(), nullptr;
-  const auto give_up = [&](const std::string& why) {
+  const auto reject = [&](const std::string& why) {
     reason = why + ", " + error_text();
     eglTerminate(c.display);
     return nullptr;
   };
   if (!epoxy_has_egl_extension(c.display, "EGL_KHR_surfaceless_context"))
-    return give_up("no contexts without a surface");
-  if (!eglBindAPI(EGL_OPENGL_API)) return give_up("no OpenGL");
-  // One that says when it is lost, where the driver can; the last two are left out where it cannot.
+    return reject("no contexts without a surface");
+  if (!eglBindAPI(EGL_OPENGL_API)) return reject("no OpenGL");
+  // A context that reports its loss, if the driver supports that; otherwise the last two attributes are left out.
   std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                    3,
                                    EGL_CONTEXT_MINOR_VERSION,
@@ -103,17 +103,17 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
     constexpr std::array<EGLint, 3> any{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLint found = 0;
     if (!eglChooseConfig(c.display, any.data(), &config, 1, &found) || found == 0)
-      return give_up("no OpenGL configuration");
+      return reject("no OpenGL configuration");
   }
   EGLContext context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
   if (context == EGL_NO_CONTEXT) {
     attributes[6] = EGL_NONE;
     context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, attributes.data());
   }
-  if (context == EGL_NO_CONTEXT) return give_up("no OpenGL 3.3 core context");
+  if (context == EGL_NO_CONTEXT) return reject("no OpenGL 3.3 core context");
   if (!eglMakeCurrent(c.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     eglDestroyContext(c.display, context);
-    return give_up("its context cannot be made current");
+    return reject("its context cannot be made current");
   }
   return std::make_unique<Headless>(c.display, context, c.name);
 }
@@ -122,21 +122,21 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
 
 void quiet_software_renderer() {
   setenv("LP_NUM_THREADS", "1", 0);
-  // For every picture it takes and gives back some MB in blocks of 64 KiB: kept here, they are not cleared and
-  // mapped anew by the kernel, which took a quarter of the time. The second is the most that malloc allows; both
-  // are far above what a picture needs.
+  // The renderer allocates and frees some MB in blocks of 64 KiB for every picture. With these thresholds malloc
+  // keeps the memory, so the kernel does not clear and map it again, which took a quarter of the time. The second
+  // value is the maximum of malloc; both are far above the needs of a picture.
   mallopt(M_TRIM_THRESHOLD, 64 << 20);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  // Mesa keeps compiled shaders under the home that the password file names, and complains where that cannot be
-  // written: in a user namespace it is root's.
+  // Mesa stores compiled shaders in the home folder of the password file and complains when it cannot write
+  // there: in a user namespace that is the home of root.
   const passwd* me = getpwuid(getuid());
-  const bool told = std::getenv("XDG_CACHE_HOME") || std::getenv("MESA_SHADER_CACHE_DIR");
-  if (!told && (me == nullptr || access(me->pw_dir, W_OK) != 0)) setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
-  setenv("EGL_LOG_LEVEL", "fatal", 0);  // what failed is in our own sentence
+  const bool cache_set = std::getenv("XDG_CACHE_HOME") || std::getenv("MESA_SHADER_CACHE_DIR");
+  if (!cache_set && (me == nullptr || access(me->pw_dir, W_OK) != 0)) setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+  setenv("EGL_LOG_LEVEL", "fatal", 0);  // our own message names the failures
 }
 
 std::unique_ptr<Display> make_headless(int egl_device) {
-  // libepoxy would abort the process.
+  // libepoxy would abort the process without this library.
   if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
     throw std::runtime_error("libEGL.so.1 is missing; install libegl1, libegl-mesa0 and libgl1-mesa-dri");
   std::string tried;

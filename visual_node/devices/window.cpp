@@ -14,14 +14,14 @@
 #include "visual_node/devices/context_loss.h"
 #include "visual_node/devices/display.h"
 
-// Of GLFW, whose header for it would bring X11's.
+// Declared here because GLFW's header for them includes the headers of X11.
 extern "C" void* glfwGetX11Display();
 extern "C" unsigned long glfwGetX11Window(GLFWwindow* window);
 
 namespace tactus::visual {
 namespace {
 
-// XErrorEvent of X11's header, and two of its codes.
+// Copy of XErrorEvent in the X11 headers, and two of its error codes.
 struct ProtocolError {
   int type;
   void* display;
@@ -32,17 +32,17 @@ constexpr unsigned char kBadWindow = 3, kBadDrawable = 9;
 
 constexpr std::size_t kMaxKeys = 64;  // between two frames
 
-// A mark is moved on while an arrow is held; no other key means more when it is held.
+// Only the arrows repeat while held: they move a slider.
 bool repeats(int key) {
   return key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN;
 }
 
-GamepadStand stand_of(const GLFWgamepadstate& s) {
+GamepadState state_of(const GLFWgamepadstate& s) {
   constexpr std::array<int, kButtons> kAs{GLFW_GAMEPAD_BUTTON_A,         GLFW_GAMEPAD_BUTTON_B,
                                           GLFW_GAMEPAD_BUTTON_X,         GLFW_GAMEPAD_BUTTON_Y,
                                           GLFW_GAMEPAD_BUTTON_DPAD_LEFT, GLFW_GAMEPAD_BUTTON_DPAD_RIGHT,
                                           GLFW_GAMEPAD_BUTTON_DPAD_UP,   GLFW_GAMEPAD_BUTTON_DPAD_DOWN};
-  GamepadStand out;
+  GamepadState out;
   for (std::size_t i = 0; i < kButtons; ++i) out.held[i] = s.buttons[kAs[i]] == GLFW_PRESS;
   out.sticks = {{{s.axes[GLFW_GAMEPAD_AXIS_LEFT_X], s.axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
                  {s.axes[GLFW_GAMEPAD_AXIS_RIGHT_X], s.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]}}};
@@ -55,7 +55,7 @@ class Window : public Display {
     if (!glfwInit()) refuse();
     choose_monitor(o.monitor);
     stay_on_monitor();
-    // EGL knows no buffers for two eyes; the desktop's own contexts may.
+    // EGL has no stereo buffers; the native contexts of the desktop may have them.
     if (o.quad_buffer) open(title, o, GLFW_NATIVE_CONTEXT_API, true);
     if (!window_) {
       if (o.quad_buffer)
@@ -65,7 +65,7 @@ class Window : public Display {
     }
     if (!window_) refuse();
     glfwMakeContextCurrent(window_);
-    glfwSwapInterval(0);  // the loop has its own pace and waits for no screen
+    glfwSwapInterval(0);  // the loop has its own pace and does not wait for the screen
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       auto& keys = static_cast<Window*>(glfwGetWindowUserPointer(w))->keys_;
@@ -83,7 +83,7 @@ class Window : public Display {
     if (o.full_screen) toggle_full_screen();
   }
   ~Window() override {
-    if (!lost_) glfwTerminate();  // what is asked of a display server that is gone ends the process
+    if (!lost_) glfwTerminate();  // a call to a display server that is gone would end the process
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
@@ -113,7 +113,7 @@ class Window : public Display {
     }
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
     if (!mode) {
-      trouble_ = "no monitor is known: the window stays as it is";
+      trouble_ = "no monitor was found: the window keeps its size";
       return;
     }
     glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
@@ -126,7 +126,8 @@ class Window : public Display {
   void put(unsigned framebuffer, int width, int height, bool halves) {
     int window_width = 0, window_height = 0;
     glfwGetFramebufferSize(window_, &window_width, &window_height);
-    // What is iconified or has no size shows nothing; a desktop may let its swap wait until it is seen again.
+    // Show nothing in a window that is iconified or has no size; a desktop may block its buffer swap until it
+    // is visible.
     if (window_width > 0 && window_height > 0 && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) {
       glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
       glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
@@ -170,10 +171,10 @@ class Window : public Display {
     for (int i = 0; i <= GLFW_JOYSTICK_LAST; ++i) {
       GLFWgamepadstate state;
       if (!glfwGetGamepadState(i, &state)) {
-        gamepads_[static_cast<std::size_t>(i)].forget();
+        gamepads_[static_cast<std::size_t>(i)].reset();
         continue;
       }
-      const auto pressed = gamepads_[static_cast<std::size_t>(i)].pressed(stand_of(state));
+      const auto pressed = gamepads_[static_cast<std::size_t>(i)].pressed(state_of(state));
       all.insert(all.end(), pressed.begin(), pressed.end());
     }
     return all;
@@ -184,22 +185,22 @@ class Window : public Display {
     GLFWmonitor** monitors = glfwGetMonitors(&count);
     if (count == 0) return;
     if (number >= count)
-      trouble_ = "there is no monitor " + std::to_string(number) + "; the last of " + std::to_string(count) +
-                 ", counted from 0, is taken";
+      trouble_ = "there is no monitor " + std::to_string(number) + "; using the last of " + std::to_string(count) +
+                 ", counted from 0";
     monitor_ = monitors[std::clamp(number, 0, count - 1)];
   }
 
-  // A software renderer needs memory for all of a window, seen or not.
+  // A software renderer allocates memory for the whole window, visible or not.
   void stay_on_monitor() {
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
-    const int most_width = mode ? mode->width : 4096, most_height = mode ? mode->height : 4096;
-    if (windowed_width_ > most_width || windowed_height_ > most_height)
+    const int max_width = mode ? mode->width : 4096, max_height = mode ? mode->height : 4096;
+    if (windowed_width_ > max_width || windowed_height_ > max_height)
       trouble_ += std::string(trouble_.empty() ? "" : "; ") +
-                  "the window is larger than its monitor: it is made " +
-                  std::to_string(std::min(windowed_width_, most_width)) + " x " +
-                  std::to_string(std::min(windowed_height_, most_height)) + " pixels";
-    windowed_width_ = std::clamp(windowed_width_, 1, most_width);
-    windowed_height_ = std::clamp(windowed_height_, 1, most_height);
+                  "the window is larger than its monitor; it is reduced to " +
+                  std::to_string(std::min(windowed_width_, max_width)) + " x " +
+                  std::to_string(std::min(windowed_height_, max_height)) + " pixels";
+    windowed_width_ = std::clamp(windowed_width_, 1, max_width);
+    windowed_height_ = std::clamp(windowed_height_, 1, max_height);
   }
 
   void open(const std::string& title, const WindowOptions& o, int api, bool stereo) {
@@ -220,8 +221,8 @@ class Window : public Display {
     }
   }
 
-  // Xlib says why and ends the process when its server goes away, unless both are led elsewhere. It is in GLFW's
-  // hands: found, not linked.
+  // Xlib prints the cause and ends the process when its server goes away, unless both handlers are replaced. GLFW
+  // loads Xlib at run time, so this function looks up its symbols and does not link it.
   void survive_the_server() {
     using ErrorHandler = int (*)(void*);
     using ExitHandler = void (*)(void*, void*);
@@ -229,7 +230,7 @@ class Window : public Display {
     using SetError = ErrorHandler (*)(ErrorHandler);
     using SetExit = void (*)(void*, ExitHandler, void*);
     void* library = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-    if (!library) return;  // a desktop without it
+    if (!library) return;  // a desktop without X11
     const auto set_error = reinterpret_cast<SetError>(dlsym(library, "XSetIOErrorHandler"));
     const auto set_exit = reinterpret_cast<SetExit>(dlsym(library, "XSetIOErrorExitHandler"));
     void* display = set_error && set_exit ? glfwGetX11Display() : nullptr;
@@ -239,7 +240,7 @@ class Window : public Display {
     if (const auto number = reinterpret_cast<Number>(dlsym(library, "XConnectionNumber")))
       connection_ = number(display);
     set_error([](void*) { return 0; });
-    // Likewise an error of a window that another program has destroyed.
+    // Likewise ignore errors about a window that another program has destroyed.
     const auto set_protocol = reinterpret_cast<SetProtocol>(dlsym(library, "XSetErrorHandler"));
     if (set_protocol)
       set_protocol([](void*, const ProtocolError* e) {
@@ -250,7 +251,7 @@ class Window : public Display {
         display, [](void*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   }
 
-  // Asked before every swap: Mesa's never ends once the connection is known to be broken.
+  // Called before every swap: Mesa's swap never returns once the connection is broken.
   bool server_hung_up() const {
     if (connection_ < 0) return false;
     pollfd fd{connection_, 0, 0};
@@ -271,13 +272,13 @@ class Window : public Display {
   bool quad_ = false, lost_ = false;
   CallGuard guard_;
   int connection_ = -1;                        // to the X server
-  unsigned long x11_window_ = 0;               // 0: another desktop
-  static inline unsigned long destroyed_ = 0;  // Xlib hands its handler nothing to know us by
+  unsigned long x11_window_ = 0;               // 0: not X11
+  static inline unsigned long destroyed_ = 0;  // static: Xlib passes no user data to its handler
   int windowed_x_ = 0, windowed_y_ = 0, windowed_width_, windowed_height_;
   std::vector<int> keys_;
-  // Where the mouse was by the same events that say whether it is held. glfwGetCursorPos asks the server where it
-  // is now, when it may have been let go and moved on already: only for a mouse that has not moved yet, or whose
-  // window has moved under it, which no event of the mouse tells.
+  // Position of the mouse by the same events that report its button. glfwGetCursorPos asks the server for the
+  // position now, when the button may be released and the mouse may have moved. It is used only for a mouse that
+  // has not moved yet, or whose window has moved under it, which no mouse event reports.
   std::optional<std::array<double, 2>> cursor_;
   std::array<Gamepad, GLFW_JOYSTICK_LAST + 1> gamepads_;
 };

@@ -4,22 +4,22 @@
 
 namespace tactus::visual {
 
-void AgreedDelay::ask(RoomTime sent, sync::Nanoseconds delay) {
-  const sync::Nanoseconds before = asked_.empty() ? target_.delay : asked_.back().delay;
-  if (delay == before || sent <= (asked_.empty() ? target_.sent : asked_.back().sent)) return;
-  if (asked_.size() < kAsked) asked_.push_back({sent, delay});
+void AgreedDelay::request(RoomTime sent, sync::Nanoseconds delay) {
+  const sync::Nanoseconds before = requests_.empty() ? target_.delay : requests_.back().delay;
+  if (delay == before || sent <= (requests_.empty() ? target_.sent : requests_.back().sent)) return;
+  if (requests_.size() < kMaxRequests) requests_.push_back({sent, delay});
 }
 
 sync::Nanoseconds AgreedDelay::value(RoomTime t) const {
   const double passed_s = std::clamp(sync::to_seconds(t - target_.sent), 0.0, 1e6);
-  const sync::Nanoseconds most = sync::from_seconds(passed_s * sync::PlayoutFollower::kSlew);
-  return from_ + std::clamp(target_.delay - from_, -most, most);
+  const sync::Nanoseconds max_change = sync::from_seconds(passed_s * sync::PlayoutFollower::kSlew);
+  return from_ + std::clamp(target_.delay - from_, -max_change, max_change);
 }
 
 sync::Nanoseconds AgreedDelay::at(RoomTime t, RoomTime by) {
-  for (; !asked_.empty() && asked_.front().sent <= by; asked_.pop_front()) {
-    from_ = value(asked_.front().sent);
-    target_ = asked_.front();
+  for (; !requests_.empty() && requests_.front().sent <= by; requests_.pop_front()) {
+    from_ = value(requests_.front().sent);
+    target_ = requests_.front();
   }
   return value(t);
 }

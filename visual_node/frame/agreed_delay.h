@@ -1,5 +1,6 @@
-// The presentation delay at an instant of the room's clock, from what PLAYOUT asks for: slewed as a sense does it,
-// but by when it was asked for and not by when it was heard, so that all walls have it alike. Pure.
+// The presentation delay at an instant of the room's clock, as PLAYOUT requests it. It slews as in the other
+// modalities, but from the send time of the request and not from its arrival, so that all walls have the same
+// delay. Pure.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +13,26 @@ namespace tactus::visual {
 
 class AgreedDelay {
  public:
-  // PLAYOUT comes ten times a second: what is asked for in the last second or two.
-  static constexpr std::size_t kAsked = 16;
+  // PLAYOUT is sent at 10 Hz: the requests of the last second or two.
+  static constexpr std::size_t kMaxRequests = 16;
 
-  // Asked for at `sent`, from there on.
-  void ask(RoomTime sent, sync::Nanoseconds delay);
-  // Of the frame that is due at t; what was asked for after `by` is of later frames. Call with ever later `by`.
+  // Requests `delay` from `sent` on.
+  void request(RoomTime sent, sync::Nanoseconds delay);
+  // The delay of the frame that is due at t. Requests after `by` count for later frames. `by` must not decrease
+  // from call to call.
   sync::Nanoseconds at(RoomTime t, RoomTime by);
   void restart() { *this = {}; }
 
  private:
-  struct Asked {
+  struct Request {
     RoomTime sent;
     sync::Nanoseconds delay;
   };
   sync::Nanoseconds value(RoomTime t) const;
 
-  std::deque<Asked> asked_;    // not in force yet, in order of time
-  Asked target_{};             // in force
-  sync::Nanoseconds from_{0};  // the delay when it came into force
+  std::deque<Request> requests_;    // pending, in order of time
+  Request target_{};             // in force
+  sync::Nanoseconds from_{0};  // the delay at the start of target_
 };
 
 }  // namespace tactus::visual

@@ -1,4 +1,4 @@
-// A frame as all walls of a room agree on it without a word: from its number alone.
+// A frame that all walls of a room derive from its number alone, without communication.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@ namespace tactus::visual {
 
 struct AgreedFrame {
   std::int64_t number = 0;
-  // Of those before it, how many this wall leaves out.
+  // Number of frames before it that this wall skipped.
   std::int64_t skipped = 0;
-  RoomTime due;         // when it is to be seen
-  sync::HostTime here;  // the same, on the clock of this wall's host
-  sync::SimTime world;  // the instant of the world that it shows
-  // What happens then has happened so long before it is due.
+  RoomTime due;         // when it must be visible
+  sync::HostTime here;  // `due` on the clock of this wall's host
+  sync::SimTime world;  // shown instant of the world
+  // Presentation delay: `here` minus the host time of `world`.
   sync::Nanoseconds delay{0};
-  // Where the head is then, and which sample that was read from: its header.publish_time_ns; -1: none.
+  // The head at the due time, and header.publish_time_ns of the sample that it derives from; -1: none.
   sync::Sample<sync::BodyPose> head;
   std::int64_t head_ns = -1;
-  std::int64_t head_seq = 0;  // of that sample
+  std::int64_t head_seq = 0;  // header.seq of that sample
 };
 
 }  // namespace tactus::visual

@@ -5,7 +5,7 @@
 
 namespace tactus::visual {
 
-bool owed(const contact_event_t& event) {
+bool is_expected(const contact_event_t& event) {
   return event.kind == contact_event_t::BEGIN || event.kind == contact_event_t::HIT;
 }
 
@@ -19,7 +19,7 @@ std::vector<contact_event_t> EventLedger::take(const std::vector<contact_event_t
                                                sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
   std::vector<contact_event_t> to_flash;
   for (const contact_event_t& event : due) {
-    if (!owed(event)) continue;
+    if (!is_expected(event)) continue;
     const sync::HostTime happened = map.to_host(sync::sim_time(event.time_ns));
     const sync::HostTime scheduled = schedule_ ? schedule_(event.event_id, happened) : happened + delay;
     presentation_t r{};
@@ -44,7 +44,7 @@ std::vector<presentation_t> EventLedger::presented(sync::HostTime t) {
   for (presentation_t& r : in_frame_) {
     r.presented_ns = sync::to_ns(t);
     r.outcome = policy_.outcome(sync::Nanoseconds(r.presented_ns - r.scheduled_ns));
-    // It was foretold to be in time, and was shown.
+    // Predicted to be in time, and shown.
     if (r.outcome == presentation_t::DROPPED_LATE) r.outcome = presentation_t::LATE;
     reports.push_back(r);
   }

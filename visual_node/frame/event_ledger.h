@@ -1,4 +1,4 @@
-// Books what becomes of every contact event that vision owes: exactly one report each. Pure.
+// Records the outcome of every expected contact event: exactly one report for each. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,32 @@
 
 namespace tactus::visual {
 
-// Vision owes every begin and every hit.
-bool owed(const contact_event_t& event);
+// Vision must present every begin and every hit.
+bool is_expected(const contact_event_t& event);
 
-// When an event that happened then is to be presented.
+// The scheduled presentation of an event that happened at `happened`.
 using Schedule = std::function<sync::HostTime(std::int64_t event_id, sync::HostTime happened)>;
 
 class EventLedger {
  public:
-  // rule: what becomes of an event that could not be shown in time.
+  // rule: the outcome of an event that could not be shown in time.
   explicit EventLedger(const Settings& settings, sync::Late rule = sync::Late::kShowNewest)
       : policy_{.rule = rule} {
     set(settings);
   }
-  // Without one: the delay of the frame after the event.
+  // Without a schedule an event is scheduled at its time plus the delay of the frame.
   void set_schedule(Schedule schedule) { schedule_ = std::move(schedule); }
-  // Other settings from now on; what is booked stays.
+  // Applies new settings; recorded events stay.
   void set(const Settings& settings);
 
-  // Of the events due for the frame that is expected to be presented at t: those to flash. An event that would be
-  // shown too late is dropped and reported so. held: no frame before could have shown it for so long, on purpose.
+  // Returns those of the events due for the frame expected at t that must flash. An event that would be shown too
+  // late is dropped and reported as such. held: how long a profile has held the picture, so that no earlier frame
+  // could show it.
   std::vector<contact_event_t> take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
                                     sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0),
                                     sync::Nanoseconds held = sync::Nanoseconds(0));
-  // The frame was presented at t: reports of the events that it showed first, and of those dropped since.
+  // The frame was presented at t: returns the reports of the events that it showed first, and of those dropped
+  // since.
   std::vector<presentation_t> presented(sync::HostTime t);
 
  private:

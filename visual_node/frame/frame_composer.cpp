@@ -1,6 +1,10 @@
 #include "visual_node/frame/frame_composer.h"
 
 #include <algorithm>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
@@ -10,14 +14,14 @@
 namespace tactus::visual {
 namespace {
 
-// A tool that was not heard of for so long is drawn where the simulation holds it: a dead haptic_node's hand is no
-// longer anywhere.
+// A tool without a message for this long is drawn where the simulation holds it: after the death of haptic_node the
+// hand has no place.
 constexpr sync::Nanoseconds kToolStaleAfter{200'000'000};
-// Its pose is carried on with its velocity by no more than a frame: a hand turns round faster than a ball.
-constexpr sync::Nanoseconds kToolExtrapolateAtMost{17'000'000};
-// Background without a scene: nearly black, so that a word on it is read.
+// The pose of a tool is extrapolated by at most a frame: a hand turns around faster than a ball.
+constexpr sync::Nanoseconds kMaxToolExtrapolation{17'000'000};
+// Background without a scene: nearly black, so that text on it is readable.
 const Eigen::Vector3f kNoScene{0.01f, 0.012f, 0.016f};
-// Where the words are, pixels.
+// Position and size of the status word, pixels.
 constexpr float kTextAt_px = 8, kTextSize_px = 2;
 
 Eigen::Isometry3d to_isometry(const sync::BodyPose& p) { return Eigen::Translation3d(p.position) * p.orientation; }
@@ -79,7 +83,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
   bodies_.keep(delay);
   frame.instant = instant;
   if (instant) frame.status = bodies_.status(*instant);
-  judge(frame, now, newest_arrival);
+  assess_state(frame, now, newest_arrival);
   if (view_) {
     frame.tools = tool_poses(instant, now);
     frame.list = view_->draw(body_poses(instant), frame.tools, view_of_head(head, frame));
@@ -92,7 +96,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
 void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, sync::Nanoseconds held) {
   latched_ = now;
   const sync::HostTime t = due_.value_or(now + latch_time_.expected());
-  flash_due(t, delay, held);
+  add_due_flashes(t, delay, held);
   if (view_) frame.list.glows = flashes_.frame(t, frame.list.camera);
   if (settings_.event_marker == "strip")
     append_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), flashes_.shown(),
@@ -104,7 +108,7 @@ void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds de
     append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
 }
 
-void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {
+void FrameComposer::assess_state(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {
   const bool commanded = now - newest_arrival <= sync::BodyHistory::kStaleAfter;
   const bool stale = frame.status == sync::SampleStatus::kStale && !commanded;
   if (!stale) stale_since_.reset();
@@ -116,7 +120,7 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
     frame.note = "waits for the state of the world";
   } else if (stale && now - *stale_since_ >= sync::from_seconds(settings_.lost_after_s)) {
     frame.state = node_health_t::INPUT_LOST;
-    frame.note = "no state of the world: shows the last";
+    frame.note = "no state of the world: shows the last one";
   } else if (stale || (frame.status == sync::SampleStatus::kHeld && !commanded)) {
     frame.state = node_health_t::STALE;
     frame.note = "shows the last state of the world";
@@ -125,22 +129,22 @@ void FrameComposer::judge(Frame& frame, sync::HostTime now, sync::HostTime newes
   }
 }
 
-// When the frame after the one that is presented at t will be: a loop that is late skips ticks.
-sync::HostTime FrameComposer::presented_next(sync::HostTime t) const {
+// Expected presentation of the frame after the one that is presented at t. A late loop skips ticks.
+sync::HostTime FrameComposer::next_presentation(sync::HostTime t) const {
   const sync::Nanoseconds period = sync::from_seconds(1 / settings_.rate_Hz);
   if (due_) return t + period;
   const auto ticks = std::max<std::int64_t>(1, (t - tick_ + period - sync::Nanoseconds(1)) / period);
   return tick_ + ticks * period + render_time_.expected();
 }
 
-// An event is shown in the frame that is nearest to its instant; one that is to be shown at once, in the next.
-void FrameComposer::flash_due(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
+// Shows each event in the frame that is nearest to its instant; without a delay, in the next frame.
+void FrameComposer::add_due_flashes(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
   const auto map = contacts_.map(latched_);
   if (!map) return;
-  // Without a scene there is nothing to show an event in: it waits until it is too late.
+  // Without a scene no event can be shown; it stays queued until it is too late.
   sync::Nanoseconds early{0};
   if (held == sync::Nanoseconds(0))
-    early = std::clamp((presented_next(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
+    early = std::clamp((next_presentation(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
   const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
   for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
@@ -159,8 +163,8 @@ std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::Sim
 
 std::vector<PoseSample> FrameComposer::newest_samples(sync::HostTime now) const {
   std::vector<PoseSample> samples;
-  for (const auto& [tool, told] : tools_)
-    if (now - told.arrival <= kToolStaleAfter) samples.push_back({tool, told.state.header.seq});
+  for (const auto& [tool, newest] : tools_)
+    if (now - newest.arrival <= kToolStaleAfter) samples.push_back({tool, newest.state.header.seq});
   return samples;
 }
 
@@ -177,7 +181,7 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
     const tool_state_t& m = it->second.state;
     sync::Nanoseconds ahead{0};
     if (t && m.header.sim_time_ns >= 0)
-      ahead = std::clamp(*t - sync::sim_time(m.header.sim_time_ns), sync::Nanoseconds(0), kToolExtrapolateAtMost);
+      ahead = std::clamp(*t - sync::sim_time(m.header.sim_time_ns), sync::Nanoseconds(0), kMaxToolExtrapolation);
     poses[i] = {true, to_eigen(m.device), to_eigen(m.proxy)};
     poses[i].device.translation() += to_eigen(m.device_velocity_m_s) * sync::to_seconds(ahead);
     poses[i].proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
@@ -187,7 +191,8 @@ std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, 
   return poses;
 }
 
-// Nothing: the scene's own. A head that is lost stays where it was; either is said in the note of the frame.
+// Returns nothing when the scene's own view applies. A lost head keeps its last pose. The note of the frame reports
+// both.
 std::optional<Eigen::Isometry3d> FrameComposer::view_of_head(const sync::Sample<sync::BodyPose>& head,
                                                              Frame& frame) const {
   if (head_tool_ < 0) return {};

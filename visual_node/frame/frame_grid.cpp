@@ -4,14 +4,14 @@
 
 namespace tactus::visual {
 
-// In double, alike on every host; exact to a nanosecond for the first hundred days of a clock.
+// Computed in double, equal on every host; exact to 1 ns for the first hundred days of a clock.
 RoomTime FrameGrid::due(std::int64_t frame) const {
   return room_time(std::llround(static_cast<double>(frame) * period_ns_));
 }
 
 std::int64_t FrameGrid::first_due_at_or_after(RoomTime t) const {
   auto frame = static_cast<std::int64_t>(std::ceil(static_cast<double>(sync::to_ns(t)) / period_ns_));
-  // The division may be off by one where t is due itself.
+  // The division may be off by one where t is exactly due.
   while (due(frame - 1) >= t) --frame;
   while (due(frame) < t) ++frame;
   return frame;

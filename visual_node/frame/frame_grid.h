@@ -1,4 +1,4 @@
-// Which frame is due when: number k at k periods of the room's clock, on every wall. Pure.
+// Due times of frames: frame k is due at k periods of the room's clock, on every wall. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace tactus::visual {
 
 class FrameGrid {
  public:
-  // A frame so many before the last one: the clock itself was put back, or is another one.
+  // A frame this far before the last one means that the clock was put back, or is another clock.
   static constexpr std::int64_t kPutBack = 3;
 
   explicit FrameGrid(double rate_Hz = 60) : period_ns_(1e9 / rate_Hz) {}
@@ -19,8 +19,8 @@ class FrameGrid {
   std::int64_t first_due_at_or_after(RoomTime t) const;
   sync::Nanoseconds period() const { return sync::Nanoseconds(static_cast<std::int64_t>(period_ns_)); }
 
-  // The frame to be drawn when its picture can be seen at `ready` at the earliest: the first that is due then or
-  // later, and later than the last one that was picked.
+  // The first frame that is due at `ready` (the earliest time at which its picture can be seen) or later, and
+  // that comes after the last picked frame.
   std::int64_t next(RoomTime ready) const;
   std::int64_t pick(RoomTime ready) { return *(last_ = next(ready)); }
   std::optional<std::int64_t> last() const { return last_; }

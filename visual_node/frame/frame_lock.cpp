@@ -1,6 +1,8 @@
 #include "visual_node/frame/frame_lock.h"
 
 #include <algorithm>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "sync/playout/lockstep.h"
@@ -8,7 +10,7 @@
 namespace tactus::visual {
 namespace {
 
-// Of a clock that was put forward nobody has missed frames: no more than half an hour is counted at 60 Hz.
+// Limit of the skipped frames when a clock is put forward: half an hour at 60 Hz.
 constexpr std::int64_t kMaxSkipped = 100'000;
 
 }  // namespace
@@ -18,14 +20,14 @@ void FrameLock::load(const scene_t& scene, const Settings& s) {
           : s.frame_lock == "wait"                  ? Mode::kWait
                                                     : Mode::kTime;
   lag_ = sync::from_seconds(s.frame_lag_s);
-  wait_at_most_ = sync::from_seconds(s.lock_wait_s);
+  max_wait_ = sync::from_seconds(s.lock_wait_s);
   grid_ = FrameGrid(s.rate_Hz);
   head_tool_ = head_of(scene);
   heads_.forget();
 }
 
 void FrameLock::push(const world_state_t& m, sync::HostTime arrival) {
-  clock_.hear(m.header, m.clock, arrival);
+  clock_.on_message(m.header, m.clock, arrival);
   if (clock_.clocks() == clock_count_) return;
   clock_count_ = clock_.clocks();
   grid_.restart();
@@ -41,10 +43,10 @@ void FrameLock::push(const playout_t& m, sync::HostTime arrival) {
   lockstep_Hz_ = m.lockstep_Hz;
   if (!clock_.known()) return;
   for (const playout_entry_t& e : m.entries)
-    if (e.modality == modality_) delay_.ask(clock_.sent(m.header, arrival), sync::Nanoseconds(e.delay_ns));
+    if (e.modality == modality_) delay_.request(clock_.sent(m.header, arrival), sync::Nanoseconds(e.delay_ns));
 }
 
-bool FrameLock::heard_enough(sync::HostTime now) const {
+bool FrameLock::inputs_complete(sync::HostTime now) const {
   if (!on()) return true;
   const RoomTime by = clock_.room(now + likely(), now) - lag_;
   const auto head = heads_.newest();
@@ -61,8 +63,8 @@ std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanosecond
   frame.here = clock_.here(frame.due, now);
   const RoomTime by = frame.due - lag_;
   show_world(frame, by, profile_delay);
-  if (const auto sample = heads_.told_by(by - profile_delay)) {
-    frame.head = carried(*sample, frame.due - profile_delay);
+  if (const auto sample = heads_.published_by(by - profile_delay)) {
+    frame.head = extrapolate(*sample, frame.due - profile_delay);
     frame.head_ns = sample->publish_ns;
     frame.head_seq = sample->seq;
   }
@@ -75,16 +77,16 @@ sync::Nanoseconds FrameLock::lead() const {
 }
 
 void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
-  const sim_clock_t told = clock_.told_by(by);
-  // Here its host times are the room's.
-  const sync::TimeMap map{sync::sim_time(told.sim_ns), sync::host_time(told.host_ns), told.rate};
+  const sim_clock_t published = clock_.published_by(by);
+  // The host times of this map are the room's.
+  const sync::TimeMap map{sync::sim_time(published.sim_ns), sync::host_time(published.host_ns), published.rate};
   const sync::HostTime due = sync::host_time(sync::to_ns(frame.due));
   frame.delay = delay_.at(frame.due, by) + profile_delay;
   frame.world = map.to_sim(due - frame.delay);
   if (lockstep_Hz_ <= 0 || map.rate <= 0) return;
-  const sync::HostTime turn = sync::Lockstep{map, lockstep_Hz_}.begin_of_turn(due - frame.delay);
-  frame.delay = due - turn;
-  frame.world = map.to_sim(turn);
+  const sync::HostTime step_begin = sync::Lockstep{map, lockstep_Hz_}.begin_of_turn(due - frame.delay);
+  frame.delay = due - step_begin;
+  frame.world = map.to_sim(step_begin);
 }
 
 sync::HostTime FrameLock::latch_at(const AgreedFrame& frame) const {
@@ -115,8 +117,8 @@ std::string FrameLock::note(sync::HostTime now) const {
   if (!clock_.mapped(now)) return "walls by arrival: no map of sim_node's clock";
   if (head_tool_ >= 0 && likely() + kOnTheWay > lag_)
     return "drawing takes longer than frame_lag: other walls have a newer head";
-  if (const int left = peers_.not_waited_for(now); waits() && left > 0)
-    return "does not wait for " + std::to_string(left) + " of " + std::to_string(peers_.present(now)) + " walls";
+  if (const int left = peers_.ignored(now); waits() && left > 0)
+    return "ignores " + std::to_string(left) + " of " + std::to_string(peers_.present(now)) + " walls";
   return "";
 }
 

@@ -1,11 +1,11 @@
-// Locks the frames of the walls of a room without a barrier: every wall draws by itself the frame that is due when
-// its picture can be seen, and what a frame shows follows from its number. Pure: the loop waits.
+// Frame lock of the walls of a room, without a barrier: every wall selects the frame that is due when its picture
+// can be seen, and the content of a frame follows from its number. Pure: the loop waits.
 //
-//   lock.push(...)                       what arrives
+//   lock.push(...)                       received messages
 //   frame = lock.begin(now, ...)         which frame this tick draws; nothing: there is no lock
 //   ... draw the surfaces, wait until lock.latch_at(frame), draw the flashes ...
 //   lock.drawn(...)                      how long that took
-//   ... with `wait`: until lock.others_ready(frame, now), for at most wait_at_most() ...
+//   ... with `wait`: until lock.others_ready(frame, now), for at most max_wait() ...
 //   ... wait until frame.here, show it ...
 //   lock.shown(frame, now)
 //   ... sleep until lock.next_begin(now) ...
@@ -33,59 +33,58 @@ namespace tactus::visual {
 
 class FrameLock {
  public:
-  // A picture is meant to be ready so long before it is due. design: a normal thread wakes up so late beside
-  // others
+  // A picture should be ready this long before it is due. Design: wake-up latency of a normal thread beside
+  // others.
   static constexpr sync::Nanoseconds kMargin{1'000'000};
-  // A picture that would be late by no more than this is shown late rather than left out. design: p99 of that
-  // wake-up
+  // A picture that is late by at most this is shown late and not skipped. Design: p99 of that wake-up latency.
   static constexpr sync::Nanoseconds kGrace{3'000'000};
-  // From its sender to a wall a message takes less than this, nearly always. design: two ticks of 1 kHz
+  // Nearly every message takes less than this from its sender to a wall. Design: two ticks of 1 kHz.
   static constexpr sync::Nanoseconds kOnTheWay{2'000'000};
 
   FrameLock(sync::OwnClock own, std::string modality, std::int64_t incarnation)
       : modality_(std::move(modality)), incarnation_(incarnation), clock_(own) {}
 
-  // A new scene and what is set.
+  // Loads a new scene and the settings.
   void load(const scene_t& scene, const Settings& settings);
 
-  // Of world and tools what crossed the bus, past the profile, which makes news late and stamps it anew: where the
-  // eye is, is no event, and all walls must agree on it.
+  // These take world and tools from the bus, before degradation by the profile, which delays messages and changes
+  // their stamps: the position of the eye is not an event, and all walls must agree on it.
   void push(const world_state_t& m, sync::HostTime arrival);
   void push(const tool_state_t& m, sync::HostTime arrival);
   void push(const playout_t& m, sync::HostTime arrival);
-  void push(const frame_shown_t& m, sync::HostTime arrival) { peers_.hear(m, incarnation_, arrival); }
+  void push(const frame_shown_t& m, sync::HostTime arrival) { peers_.on_message(m, incarnation_, arrival); }
 
-  // Whether all that a frame begun at `now` depends on has been heard: somebody has spoken since. False too when
-  // nobody speaks any more.
-  bool heard_enough(sync::HostTime now) const;
-  // The frame that is drawn from now on; nothing without a room, or before sim_node was heard. profile_delay: of
-  // what a profile adds to this sense.
+  // True when all inputs of a frame begun at `now` have arrived, which newer messages of their senders show.
+  // False also when the senders are gone.
+  bool inputs_complete(sync::HostTime now) const;
+  // Selects the frame to draw from now on; nothing without a room, or before the first message of sim_node.
+  // profile_delay: the delay that a profile adds to this modality.
   std::optional<AgreedFrame> begin(sync::HostTime now, sync::Nanoseconds profile_delay = sync::Nanoseconds(0));
-  // When the flashes of that frame are to be drawn: late, but so that it is ready when it is due.
+  // When to draw the flashes of that frame: late, but so that it is ready when it is due.
   sync::HostTime latch_at(const AgreedFrame& frame) const;
-  // Its surfaces took so long, from begin on; its flashes so long.
+  // Reports the drawing time of its surfaces, from begin on, and of its flashes.
   void drawn(sync::Nanoseconds surfaces, sync::Nanoseconds flashes);
-  // The next tick is best begun then, so that its picture is ready just in time.
+  // Best start of the next tick: its picture is ready just in time.
   sync::HostTime next_begin(sync::HostTime now) const;
-  // Nobody is held back for longer than this, whatever the clocks do.
+  // Upper limit of every wait, whatever the clocks do.
   sync::Nanoseconds period() const { return grid_.period(); }
 
   bool on() const { return mode_ != Mode::kOff && clock_.known(); }
   bool waits() const { return mode_ == Mode::kWait; }
-  sync::Nanoseconds wait_at_most() const { return wait_at_most_; }
+  sync::Nanoseconds max_wait() const { return max_wait_; }
   bool others_ready(const AgreedFrame& frame, sync::HostTime now) const { return peers_.ready(frame.number, now); }
   void shown(const AgreedFrame& frame, sync::HostTime now) { peers_.shown(frame.number, now); }
 
-  // What is told of it.
+  // The FRAME_SHOWN message of a frame.
   frame_shown_t message(const AgreedFrame& frame, std::int8_t stage) const;
-  // What is wrong with the lock, for the reader of the health; empty: nothing.
+  // The problem of the lock, for the health message; empty: none.
   std::string note(sync::HostTime now) const;
 
  private:
   enum class Mode { kOff, kTime, kWait };
-  // How long before it is due a picture is begun: as long as nearly none takes, but not so early that the head is
-  // not known that the other walls use: the few that take longer are late instead. A wall that is always slow
-  // begins as early as it must.
+  // How long before its due time a picture is begun: longer than nearly all take, but not before the head is
+  // known that the other walls use. The few slower pictures are late. A wall that is always slow begins as early
+  // as it must.
   sync::Nanoseconds lead() const;
   sync::Nanoseconds likely() const { return surfaces_.expected() + flashes_.expected(); }
   void show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay);
@@ -93,7 +92,7 @@ class FrameLock {
   std::string modality_;
   std::int64_t incarnation_;
   Mode mode_ = Mode::kOff;
-  sync::Nanoseconds lag_{0}, wait_at_most_{0};
+  sync::Nanoseconds lag_{0}, max_wait_{0};
   RoomClockReader clock_;
   std::int64_t clock_count_ = 0;
   FrameGrid grid_;

@@ -1,4 +1,4 @@
-// When the parts of a frame were done, so that the way from motion to pixel can be split. Pure.
+// Times of the stages of a frame, which split the latency from motion to pixel. Pure.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct FrameTimes {
   sync::HostTime read{};     // its pixels lay in memory
 };
 
-// fence: the pair of the video, when the frame was seen. The same index on the clocks of three more media, which
-// are named after the video: VIDEO#begun, VIDEO#latched and VIDEO#read.
+// fence: the pair of the video, for the time of presentation. Returns the same index on the clocks of three more
+// media, named after the video: VIDEO#begun, VIDEO#latched and VIDEO#read.
 inline std::vector<media_clock_t> stages_of(const media_clock_t& fence, const FrameTimes& times) {
   std::vector<media_clock_t> pairs(3, fence);
   const auto set = [&](std::size_t i, const char* stage, sync::HostTime t) {

@@ -8,12 +8,12 @@
 namespace tactus::visual {
 
 void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
-  if (m.header.incarnation != incarnation_) {  // another process holds it now
+  if (m.header.incarnation != incarnation_) {  // another process holds the head now
     incarnation_ = m.header.incarnation;
     samples_.clear();
   }
   if (!samples_.empty() && sent < samples_.back().sent - kSpan) samples_.clear();  // its clock was put back
-  // One may overtake another on its way.
+  // Messages may overtake each other.
   auto at = samples_.end();
   while (at != samples_.begin() && std::prev(at)->sent > sent) --at;
   if (at != samples_.begin() && std::prev(at)->sent == sent) return;
@@ -25,24 +25,24 @@ void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
   while (samples_.size() > kMax || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();
 }
 
-std::optional<HeadSample> HeadSamples::told_by(RoomTime t) const {
+std::optional<HeadSample> HeadSamples::published_by(RoomTime t) const {
   const auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
                                       [](RoomTime x, const HeadSample& s) { return x < s.sent; });
   if (after == samples_.begin()) return std::nullopt;
   return *std::prev(after);
 }
 
-sync::Sample<sync::BodyPose> carried(const HeadSample& sample, RoomTime t) {
+sync::Sample<sync::BodyPose> extrapolate(const HeadSample& sample, RoomTime t) {
   sync::BodyPose pose = sample.pose;
   const sync::Nanoseconds past = std::max(t - sample.sent, sync::Nanoseconds(0));
   if (past > sync::PoseHistory::kStaleAfter) return {pose, sync::SampleStatus::kStale};
-  const double s = sync::to_seconds(std::min(past, kCarryAtMost));
+  const double s = sync::to_seconds(std::min(past, kMaxHeadExtrapolation));
   pose.position += s * pose.velocity;
   if (const double angle = pose.angular_velocity.norm() * s; angle > 0)
     pose.orientation =
         (Eigen::AngleAxisd(angle, pose.angular_velocity.normalized()) * pose.orientation).normalized();
   return {pose, past == sync::Nanoseconds(0) ? sync::SampleStatus::kExact
-                : past > kCarryAtMost        ? sync::SampleStatus::kHeld
+                : past > kMaxHeadExtrapolation        ? sync::SampleStatus::kHeld
                                              : sync::SampleStatus::kExtrapolated};
 }
 

@@ -1,5 +1,5 @@
-// The poses of the head as they were told, by the room's clock: every wall takes the same one and carries it on
-// alike. Pure.
+// Published poses of the head, by the room's clock: every wall selects the same one and extrapolates it alike.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,33 @@ namespace tactus::visual {
 
 struct HeadSample {
   RoomTime sent;
-  std::int64_t publish_ns = -1;  // as its sender said it
-  std::int64_t seq = 0;          // of the message
+  std::int64_t publish_ns = -1;  // publish_time_ns of the message
+  std::int64_t seq = 0;          // header.seq of the message
   sync::BodyPose pose;
 };
 
 class HeadSamples {
  public:
-  // design: as sync::PoseHistory
+  // Design: as sync::PoseHistory.
   static constexpr std::size_t kMax = 4096;
   static constexpr sync::Nanoseconds kSpan{1'000'000'000};
 
   void push(const tool_state_t& m, RoomTime sent);
   void forget() { samples_.clear(); }
-  // When the newest was told; nothing: there is none.
+  // Send time of the newest pose; nothing: there is none.
   std::optional<RoomTime> newest() const {
     return samples_.empty() ? std::nullopt : std::optional(samples_.back().sent);
   }
-  // The newest that had been told by t.
-  std::optional<HeadSample> told_by(RoomTime t) const;
+  // The newest pose that was published by t.
+  std::optional<HeadSample> published_by(RoomTime t) const;
 
  private:
   std::int64_t incarnation_ = 0;
   std::deque<HeadSample> samples_;  // in order of time
 };
 
-// Where the head is at t, with the velocity that it had, for at most kCarryAtMost; and how good that is.
-inline constexpr sync::Nanoseconds kCarryAtMost{50'000'000};  // design: what frame_lag is at the most of use
-sync::Sample<sync::BodyPose> carried(const HeadSample& sample, RoomTime t);
+// The pose of the head at t, extrapolated with its velocity for at most kMaxHeadExtrapolation, and its status.
+inline constexpr sync::Nanoseconds kMaxHeadExtrapolation{50'000'000};  // design: the largest useful frame_lag
+sync::Sample<sync::BodyPose> extrapolate(const HeadSample& sample, RoomTime t);
 
 }  // namespace tactus::visual

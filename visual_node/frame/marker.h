@@ -1,11 +1,11 @@
-// Cells at the lower left edge of a frame that name the frame and the contact events that flash in it, so that
-// what was shown when can be read from the frames themselves. visual_node/marker.py reads them back. Pure.
+// Marker cells at the lower left edge of a frame. They name the frame and the contact events that flash in it, so
+// that the frames themselves record what was shown when. visual_node/marker.py reads them. Pure.
 //
-// A cell is 4 x 4 pixels, black or white, so that it survives video compression; a row is 68 cells. Row 0 lies on
+// A cell is 4 x 4 pixels, black or white, so that it survives video compression; a row has 68 cells. Row 0 lies on
 // the lowest 4 pixels, row k above it. From the left, most significant bit first:
 //   1 0 1 0 | frame, 24 bits | low 32 bits of event_id, 0: none | CRC-8 of the seven bytes before
-// There is always a row 0; it names the newest event, the rows above it the next older ones whose flash is still
-// seen.
+// Row 0 is always there; it names the newest event. The rows above it name the next older events whose flash is
+// still visible.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,10 @@ struct Marker {
 
 // The cells of one row, true: white.
 std::vector<bool> encode_marker(const Marker& marker);
-// Nothing when they hold no marker: wrong beginning or check sum.
+// Nothing when they hold no marker: wrong beginning or checksum.
 std::optional<Marker> decode_marker(const std::vector<bool>& cells);
 
-// The cells of a whole picture; events: newest first, the first kMarkerRows of them are named.
+// Adds the cells of a whole picture. events: newest first, the first kMarkerRows of them are named.
 void append_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const std::int64_t> events,
                    int height);
 

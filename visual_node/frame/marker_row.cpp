@@ -54,7 +54,7 @@ std::vector<bool> read_row(std::span<const std::uint8_t> luma, int width, int he
   std::vector<bool> cells;
   if (y < 0 || width < kMarkerCell_px * kMarkerCells) return cells;
   for (int i = 0; i < kMarkerCells; ++i) {
-    int sum = 0;  // of the inner 2 x 2 pixels, which compression hurts least
+    int sum = 0;  // of the inner 2 x 2 pixels, which compression changes least
     for (const int dy : {1, 2})
       for (const int dx : {1, 2})
         sum += luma[static_cast<std::size_t>((y + dy) * width + kMarkerCell_px * i + dx)];

@@ -1,5 +1,5 @@
-// One row of cells at the lower left edge of a frame, which survives video compression: a beginning that says what
-// the row is, 56 bits, and their check sum. Pure.
+// One row of marker cells at the lower left edge of a frame, which survives video compression: 4 bits that name the
+// kind of row, 56 bits of payload, and their checksum. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ inline constexpr int kMarkerCells = 4 + 56 + 8;
 
 // The cells of one row, true: white. beginning: 4 bits.
 std::vector<bool> encode_row(std::uint64_t beginning, std::uint64_t payload);
-// Nothing when they hold no such row: wrong beginning or check sum.
+// Nothing when they hold no such row: wrong beginning or checksum.
 std::optional<std::uint64_t> decode_row(const std::vector<bool>& cells, std::uint64_t beginning);
 
 // Row 0 lies on the lowest 4 pixels, row k above it.
 void append_row(std::vector<Rect>& overlay, const std::vector<bool>& cells, int row, int height);
-// From the luma of a picture, rows from the top, one byte per pixel. Empty: the picture has no such row.
+// Reads the luma of a picture, rows from the top, one byte per pixel. Empty: the picture has no such row.
 std::vector<bool> read_row(std::span<const std::uint8_t> luma, int width, int height, int row);
 
 }  // namespace tactus::visual

@@ -1,10 +1,9 @@
-// Cells above those of frame/marker.h that name the newest pose sample of each tool that the frame shows, so that
-// the way from motion to pixel can be read from the frames themselves. visual_node/marker.py reads them back.
-// Pure.
+// Marker cells above those of frame/marker.h. They name the newest pose sample of each tool in the frame, so that
+// the latency from motion to pixel can be read from the frames themselves. visual_node/marker.py reads them. Pure.
 //
-// A row as there, which begins with 0 1 1 0 and goes on with
+// A row has the format of frame/marker_row.h, begins with 0 1 1 0 and continues with
 //   frame, 24 bits | index of the tool, 4 bits | low 28 bits of header.seq of its TOOL_STATE
-// There are kMotionRows rows at the most, on rows kMarkerRows and above, one for each tool that was heard of.
+// There are at most kMotionRows rows, on rows kMarkerRows and above, one for each tool with recent messages.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@ namespace tactus::visual {
 
 inline constexpr int kMotionRows = 4;
 
-// Of which report a frame shows where a tool is.
+// The report that gave the pose of a tool in a frame.
 struct PoseSample {
   int tool = 0;
   std::int64_t seq = 0;
@@ -27,10 +26,10 @@ struct PoseSample {
 struct MotionMarker {
   std::uint32_t frame = 0;   // modulo 2^24
   int tool = 0;              // modulo 2^4
-  std::uint32_t sample = 0;  // modulo 2^28: at 1 kHz three days
+  std::uint32_t sample = 0;  // modulo 2^28: three days at 1 kHz
 };
 
-// What programs read at the lower edge of a picture: nothing is drawn over it.
+// Height of the region at the lower edge of a picture that programs read: nothing is drawn over it.
 int marker_height_px(bool events, bool motion);
 
 void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,

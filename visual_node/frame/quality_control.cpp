@@ -22,11 +22,11 @@ QualityControl::QualityControl(const Settings& s)
               static_cast<int>(std::lround(kCalm_s * s.rate_Hz))) {}
 
 std::string QualityControl::take_change() {
-  if (step() == said_) return "";
-  const bool better = step() < said_;
-  said_ = step();
+  if (step() == reported_) return "";
+  const bool better = step() < reported_;
+  reported_ = step();
   const std::string why = pinned_ >= 0 ? "as set" : better ? "there is time to spare" : "drawing takes too long";
-  return "quality step " + std::to_string(said_) + " of 0.." + std::to_string(steps() - 1) + ", " + why + ": " +
+  return "quality step " + std::to_string(reported_) + " of 0.." + std::to_string(steps() - 1) + ", " + why + ": " +
          describe(quality());
 }
 

@@ -1,4 +1,4 @@
-// Which step of the quality ladder the next picture is drawn with: the setting's, or what the time allows. Pure.
+// Selects the step of the quality ladder for the next picture: the value of the setting, or by the time used. Pure.
 #pragma once
 
 #include <string>
@@ -17,15 +17,15 @@ class QualityControl {
   static constexpr int steps() { return static_cast<int>(kQualities.size()); }
   const Quality& quality() const { return kQualities[static_cast<std::size_t>(step())]; }
 
-  // A picture of that step kept the loop busy for so long.
+  // Adds the time for which a picture of that step kept the loop busy.
   void add(sync::Nanoseconds used) { ladder_.add(used); }
-  // One sentence for the reader when the step has changed since the last call, else empty.
+  // One sentence when the step has changed since the last call, else empty.
   std::string take_change();
 
  private:
   int pinned_;  // -1: by time
   sync::QualityLadder ladder_;
-  int said_ = 0;
+  int reported_ = 0;
 };
 
 }  // namespace tactus::visual

@@ -1,4 +1,4 @@
-// How long a frame takes from its tick to its fence, to foretell when the next one will be presented. Pure.
+// Drawing time of a frame from its tick to its fence; predicts the presentation of the next one. Pure.
 #pragma once
 
 #include <array>
@@ -8,17 +8,17 @@
 
 namespace tactus::visual {
 
-// The median of the last frames: one that was held up, or a process that was stopped in the middle of one, does
-// not move it.
+// Statistics of the last frames. The median ignores a single delayed frame, or a process that was stopped within
+// one.
 class RenderTime {
  public:
   static constexpr std::size_t kFrames = 9;
-  // Before the first frame: a software renderer's typical time.
+  // Before the first frame: a typical time of a software renderer.
   explicit RenderTime(sync::Nanoseconds first_guess = sync::Nanoseconds(8'000'000)) { taken_.fill(first_guess); }
 
   void add(sync::Nanoseconds taken);
   sync::Nanoseconds expected() const;
-  // What nearly none of them took longer than: the second longest.
+  // Upper bound of nearly all: the second longest.
   sync::Nanoseconds second_longest() const;
 
  private:

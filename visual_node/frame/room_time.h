@@ -1,5 +1,5 @@
-// The clock that all walls of a room go by: CLOCK_MONOTONIC of sim_node's host. A type of its own, so that it is
-// not mixed with that of the wall's host.
+// The clock of a room: CLOCK_MONOTONIC of sim_node's host. It has its own type, so that it cannot be mixed with the
+// clock of the wall's host.
 #pragma once
 
 #include <chrono>

@@ -125,7 +125,7 @@ void append_letters(std::vector<Rect>& overlay, std::string_view text, float x, 
     if (!rows) rows = glyph('?');
     for (int row = 0; row < kGlyphHeight; ++row)
       for (int column = 0; column < kGlyphWidth; ++column) {
-        // Neighbours in a row are one rectangle.
+        // Neighbouring pixels in a row are one rectangle.
         int wide = 0;
         while (column + wide < kGlyphWidth && rows[row] >> (kGlyphWidth - 1 - column - wide) & 1) ++wide;
         if (wide == 0) continue;

@@ -1,4 +1,4 @@
-// Words over the picture, of filled rectangles: how good the frame is must be seen in the frame.
+// Text over the picture, made of filled rectangles. It shows the state of a frame in the frame.
 #pragma once
 
 #include <string_view>
@@ -15,10 +15,10 @@ const unsigned char* glyph(char letter);
 
 // Text on a dark plate whose upper left corner is at (x, y), each pixel of a letter `size` pixels wide.
 void append_text(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size);
-// How large that plate is, pixels.
+// Size of that plate, pixels.
 float text_width(std::size_t letters, float size);
 constexpr float text_height(float size) { return (kGlyphHeight + 4) * size; }
-// Without a plate, sRGB; what has no glyph is drawn as a question mark.
+// Without a plate; colour in sRGB. A character without a glyph is drawn as a question mark.
 void append_letters(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size,
                     const Eigen::Vector3f& colour = Eigen::Vector3f::Ones());
 

@@ -1,15 +1,19 @@
 #include "visual_node/frame/wall_sync.h"
 
 #include <algorithm>
+#include <tactus/header_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 namespace tactus::visual {
 namespace {
 
-constexpr sync::Nanoseconds kLook{
-    1'000'000};  // whether the others are ready: so often, and whenever something arrives
+constexpr sync::Nanoseconds kPollInterval{
+    1'000'000};  // period of the check whether the others are ready; messages also trigger it
 
-// What a process that stood still has missed comes through a thread of the bus, which needs its time: 0.2 s of
-// news took it less than this. design
+// After a stall, the missed messages come through a thread of the bus, which takes time: less than this for
+// messages of 0.2 s. Design.
 constexpr sync::Nanoseconds kCatchUp{10'000'000};
 
 }  // namespace
@@ -37,8 +41,8 @@ void WallSync::catch_up(const std::function<void(sync::HostTime)>& meanwhile) {
   meanwhile(now);
   const bool held_up = now - last_ > 2 * lock_.period();
   const sync::HostTime until = now + kCatchUp;
-  for (; held_up && now < until && !lock_.heard_enough(now); meanwhile(now)) {
-    node_.bus().wait(std::min(kLook, until - now));
+  for (; held_up && now < until && !lock_.inputs_complete(now); meanwhile(now)) {
+    node_.bus().wait(std::min(kPollInterval, until - now));
     now = node_.poll();
   }
   last_ = now;
@@ -51,10 +55,10 @@ void WallSync::wait_for_latch(const AgreedFrame& frame) const {
 void WallSync::hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
   const sync::HostTime ready = sync::host_now();
   if (lock_.waits()) {
-    tell(frame, frame_shown_t::READY);
-    const sync::HostTime until = ready + lock_.wait_at_most();
+    publish_stage(frame, frame_shown_t::READY);
+    const sync::HostTime until = ready + lock_.max_wait();
     for (sync::HostTime now = ready; now < until && !lock_.others_ready(frame, now); now = sync::host_now()) {
-      node_.bus().wait(std::min(kLook, until - now));
+      node_.bus().wait(std::min(kPollInterval, until - now));
       meanwhile(node_.poll());
     }
   }
@@ -62,7 +66,7 @@ void WallSync::hold(const AgreedFrame& frame, const std::function<void(sync::Hos
   lock_.shown(frame, sync::host_now());
 }
 
-void WallSync::tell(const AgreedFrame& frame, std::int8_t stage) {
+void WallSync::publish_stage(const AgreedFrame& frame, std::int8_t stage) {
   frame_shown_t m = lock_.message(frame, stage);
   node_.bus().publish(channels::kFrameShown, m);
 }

@@ -1,9 +1,12 @@
-// What walls of a room say to each other, and how long one holds a picture: the part of the frame lock that is on
-// the bus and that waits. Every wait is bounded.
+// The part of the frame lock that uses the bus and waits: messages between the walls of a room, and how long a wall
+// holds a picture. Every wait is bounded.
 #pragma once
 
 #include <functional>
 #include <tactus/frame_shown_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/node/node.h"
 #include "visual_node/frame/frame_lock.h"
@@ -12,24 +15,24 @@ namespace tactus::visual {
 
 class WallSync {
  public:
-  // Make it before the first tick.
+  // Construct before the first tick.
   WallSync(sync::Node& node, FrameLock& lock);
 
-  // What has arrived: the clock of the simulation, the head, the delay that is asked for, and what other walls
-  // have drawn.
+  // Reads the queues: the clock of the simulation, the head, the requested delay, and the frames of other walls.
   void receive();
-  // Before a frame is begun, `meanwhile` takes in what arrives: also what a loop that was held up has missed.
+  // Polls the bus before a frame is begun, and after a stall waits for the missed messages. meanwhile: processes
+  // received messages.
   void catch_up(const std::function<void(sync::HostTime)>& meanwhile);
-  // A picture's surfaces are drawn: its flashes come late, so that they show what has just happened.
+  // Waits after the surfaces are drawn: the flashes are drawn late, so that they show the newest events.
   void wait_for_latch(const AgreedFrame& frame) const;
-  // A picture is ready: holds it until it is due, with frame_lock=wait until the others have it too. meanwhile:
-  // takes in what arrives.
+  // Holds a ready picture until it is due, with frame_lock=wait until the others have it too. meanwhile:
+  // processes received messages.
   void hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile);
-  // It is seen.
-  void shown(const AgreedFrame& frame) { tell(frame, frame_shown_t::SHOWN); }
+  // Reports that the picture is visible.
+  void shown(const AgreedFrame& frame) { publish_stage(frame, frame_shown_t::SHOWN); }
 
  private:
-  void tell(const AgreedFrame& frame, std::int8_t stage);
+  void publish_stage(const AgreedFrame& frame, std::int8_t stage);
 
   sync::Node& node_;
   FrameLock& lock_;
@@ -37,7 +40,7 @@ class WallSync {
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<playout_t>& playouts_;
   sync::Queue<frame_shown_t>& walls_;
-  sync::HostTime last_{};  // caught up
+  sync::HostTime last_{};  // last catch_up()
 };
 
 }  // namespace tactus::visual

@@ -11,12 +11,12 @@ namespace {
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
-// Behind those of struct Instance, as shaders/surface.vert has it.
+// After the attributes of struct Instance, as in shaders/surface.vert.
 constexpr unsigned kPlaceAttribute = 2 + sizeof(Instance) / 16;
 
 void check_complete(const char* what) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error(std::string("the graphics driver refuses the ") + what +
+    throw std::runtime_error(std::string("the graphics driver rejects the  ") + what +
                              "; choose a smaller picture or shadow_size");
 }
 
@@ -86,7 +86,7 @@ GeometryBuffer::~GeometryBuffer() {
 void GeometryBuffer::draw(const StreamBuffer& instances, int first, int count) const {
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, instances.id());
-  // OpenGL 3.3 has no base instance: the attributes begin where the batch does.
+  // OpenGL 3.3 has no base instance, so the attribute pointers start at the batch.
   for (unsigned i = 0; i < sizeof(Instance) / 16; ++i)
     glVertexAttribPointer(2 + i, 4, GL_FLOAT, GL_FALSE, sizeof(Instance),
                           offset(static_cast<std::size_t>(first) * sizeof(Instance) + 16 * i));
@@ -117,7 +117,8 @@ void QuadArray::draw(const void* data, std::size_t count) {
 ReliefTexture::ReliefTexture(const Relief& relief) : size_m_(relief.size_m) {
   glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);
-  // Whole floats and one level at a time: on a software renderer both were faster than half floats and two levels.
+  // Full floats and one mipmap level at a time: on a software renderer both were faster than half floats and two
+  // levels.
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, relief.columns, relief.rows, 0, GL_RG, GL_FLOAT, relief.slopes.data());
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
@@ -164,9 +165,9 @@ void PictureTarget::read(std::span<std::uint8_t> rgba) const {
 }
 
 MultisampleTarget::MultisampleTarget(int width, int height, int samples) {
-  int most = 1;
-  glGetIntegerv(GL_MAX_SAMPLES, &most);
-  samples_ = std::min(samples, most);
+  int max_samples = 1;
+  glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
+  samples_ = std::min(samples, max_samples);
   glGenFramebuffers(1, &framebuffer_);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   const auto attach = [&](unsigned& buffer, unsigned format, unsigned where) {

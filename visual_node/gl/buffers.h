@@ -1,4 +1,4 @@
-// What lies in the memory of the graphics device: triangles, per-frame instances, and the targets drawn into.
+// Objects in the memory of the graphics device: triangles, per-frame instances, and the render targets.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace tactus::visual {
 
-// Per-instance data, written anew each frame.
+// Per-instance data, rewritten each frame.
 class StreamBuffer {
  public:
   StreamBuffer();
@@ -30,7 +30,7 @@ class GeometryBuffer {
   ~GeometryBuffer();
   GeometryBuffer(const GeometryBuffer&) = delete;
   GeometryBuffer& operator=(const GeometryBuffer&) = delete;
-  // Draws `count` instances that begin at `first` in the stream of Instances.
+  // Draws `count` instances that begin at index `first` in the stream of Instances.
   void draw(const StreamBuffer& instances, int first, int count) const;
   bool two_sided() const { return two_sided_; }
 
@@ -40,7 +40,7 @@ class GeometryBuffer {
   bool two_sided_ = false;
 };
 
-// Quads that need no vertices of their own: `floats4` vec4 attributes per instance.
+// Quads without a vertex buffer: `floats4` vec4 attributes per instance.
 class QuadArray {
  public:
   explicit QuadArray(int floats4);
@@ -55,7 +55,7 @@ class QuadArray {
   StreamBuffer instances_;
 };
 
-// Slopes of a relief, repeated without end; filtered, so that far away they are flat.
+// Slopes of a relief, repeated in both directions and filtered, so that distant surfaces are flat.
 class ReliefTexture {
  public:
   explicit ReliefTexture(const Relief& relief);
@@ -70,17 +70,17 @@ class ReliefTexture {
   Eigen::Vector2f size_m_;
 };
 
-// A picture: sRGB colour and depth. Colour is encoded on writing, so that light is added in linear space.
+// A render target: sRGB colour and depth. Colour is encoded on writing, so that light is added in linear space.
 class PictureTarget {
  public:
   PictureTarget(int width, int height);
   ~PictureTarget();
   PictureTarget(const PictureTarget&) = delete;
   PictureTarget& operator=(const PictureTarget&) = delete;
-  // Draws into all of it, or into so many pixels at the lower left.
+  // Binds all of it, or this many pixels at the lower left.
   void bind() const { bind(width_, height_); }
   void bind(int width, int height) const;
-  // sRGB bytes, 4 a pixel, the lowest row first. Waits for the picture to be finished.
+  // sRGB bytes, 4 a pixel, the lowest row first. Blocks until the picture is finished.
   void read(std::span<std::uint8_t> rgba) const;
   unsigned framebuffer() const { return framebuffer_; }
   unsigned texture() const { return colour_; }
@@ -92,10 +92,10 @@ class PictureTarget {
   unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
 };
 
-// A picture with several samples a pixel, so that edges are smooth.
+// A render target with several samples a pixel, for smooth edges.
 class MultisampleTarget {
  public:
-  // With so many samples, or the most that the device has.
+  // Uses `samples`, or the maximum of the device.
   MultisampleTarget(int width, int height, int samples);
   ~MultisampleTarget();
   MultisampleTarget(const MultisampleTarget&) = delete;
@@ -110,7 +110,7 @@ class MultisampleTarget {
   unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
 };
 
-// Depth as the lamp sees it, compared and filtered by the sampler.
+// Depth seen from the lamp, compared and filtered by the sampler.
 class ShadowTarget {
  public:
   explicit ShadowTarget(int size);

@@ -13,14 +13,14 @@
 namespace tactus::visual {
 namespace {
 
-// Lines of piece i are counted from i times this, and the number says which it is: Mesa tells the number of the
-// piece with some of its messages only.
-constexpr std::size_t kLinesOfPiece = 100'000;  // more than what a file of 64 kB has
+// Lines of piece i are numbered from i times this, so that a line number identifies the piece: Mesa names the piece
+// in some of its messages only.
+constexpr std::size_t kLinesOfPiece = 100'000;  // more than the lines of a file of 64 kB
 
-// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": number of the piece
-// and line. Each becomes one clause, but of those after the first few, which follow from them, only the number;
-// warnings are left out, since what is given to a shader sets variables before they are used.
-constexpr int kMaxClauses = 3;  // design: what is read at a glance
+// Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": piece number and line.
+// Each error becomes one clause; after the first few only their count is given, since they usually follow from the
+// first. Warnings are left out, since inputs are assigned before use.
+constexpr int kMaxClauses = 3;  // design: readable at a glance
 std::string with_files(const std::string& log, const std::vector<std::string>& names) {
   static const std::regex position(R"(^(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
   std::string text, line;
@@ -39,7 +39,7 @@ std::string with_files(const std::string& log, const std::vector<std::string>& n
   return text;
 }
 
-// #line keeps the numbers those of the file.
+// #line keeps the line numbers of the file.
 std::string put_together(const std::vector<ShaderPiece>& pieces, const std::string& defines) {
   std::string text = "#version 330 core\n" + defines;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<std::string> names_of(const std::vector<ShaderPiece>& pieces) {
   return names;
 }
 
-// The defines go after the version line; #line keeps the numbers those of the file.
+// Inserts the defines after the version line; #line keeps the line numbers of the file.
 std::string with_defines(std::string_view source, const std::string& defines) {
   const auto first = source.find('\n') + 1;
   return std::string(source.substr(0, first)) + defines + "#line 2\n" + std::string(source.substr(first));
@@ -120,7 +120,7 @@ void Program::link(unsigned vertex, unsigned fragment, const std::string& names)
   std::array<char, 2048> log{};
   glGetProgramInfoLog(id_, static_cast<int>(log.size()), nullptr, log.data());
   glDeleteProgram(id_);
-  throw std::runtime_error(names + " do not fit together: " + log.data());
+  throw std::runtime_error(names + " cannot be linked: " + log.data());
 }
 
 Program::~Program() { glDeleteProgram(id_); }

@@ -9,7 +9,7 @@
 
 namespace tactus::visual {
 
-// A piece of a shader's text; errors name it and count its lines from 1.
+// A piece of shader source; error messages name it and count its lines from 1.
 struct ShaderPiece {
   std::string name;
   std::string text;
@@ -17,14 +17,14 @@ struct ShaderPiece {
 
 class Program {
  public:
-  // Of pieces that follow one another, after "#version 330 core" and the defines. A piece's own version line
-  // counts for nothing.
+  // Compiles concatenated pieces, after "#version 330 core" and the defines. The version line of a piece is
+  // ignored.
   Program(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment,
           const std::string& defines);
-  // Of shaders/NAME.vert and shaders/NAME.frag, with `defines` ("#define A 1\n...") after the version line of
-  // both. Throws std::runtime_error that names file and line of every error.
+  // Compiles shaders/NAME.vert and shaders/NAME.frag, with `defines` ("#define A 1\n...") after the version line
+  // of both. Throws std::runtime_error that names file and line of every error.
   explicit Program(const std::string& name, const std::string& defines = "");
-  // Of the texts given, which errors call by these names.
+  // Compiles these sources; error messages use these names.
   Program(const std::string& vertex_name, std::string_view vertex, const std::string& fragment_name,
           std::string_view fragment, const std::string& defines = "");
   ~Program();
@@ -33,7 +33,7 @@ class Program {
 
   void use() const;
   unsigned id() const { return id_; }
-  // Of the program in use. A name that the shader does not use is no error: the compiler may have removed it.
+  // Sets a uniform of the program in use. An unknown name is not an error: the compiler may have removed it.
   void set(const char* name, float value) const;
   void set(const char* name, int value) const;
   void set(const char* name, const Eigen::Vector2f& value) const;

@@ -39,19 +39,19 @@ std::string RenderOutput::recover(sync::HostTime now, const SceneView* view, con
   if (losses_.size() > kMaxLosses) {
     if (now - losses_.front() < kLossesWithin)
       throw std::runtime_error(why + ", " + std::to_string(losses_.size()) +
-                               " times in a minute: look what the system's log says of it");
+                               " times in a minute; check the system log");
     losses_.pop_front();
   }
   window_ = window_ && !display_->server_gone();
   renderer_.reset();
-  display_.reset();  // before the next: some systems give only one
+  display_.reset();  // before the next one opens: some systems allow only one
   try {
     open();
     if (view) load(*view, sample, settings_);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(why + ", and it cannot be opened again: " + e.what());
   }
-  return why + ": draws on, with " + description();
+  return why + "; drawing continues with " + description();
 }
 
 void RenderOutput::load(const SceneView& view, const DrawList& sample, const Settings& s,

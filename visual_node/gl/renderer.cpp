@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tactus/uniform_t.hpp>
 
 namespace tactus::visual {
 namespace {
@@ -23,7 +24,7 @@ std::vector<View> views_in(const DrawList& list) {
   return list.views.empty() ? std::vector<View>{{.camera = list.camera}} : list.views;
 }
 
-// Of a picture of that size. Between two parts no pixel is in both, and none in neither.
+// Sets the viewport of a view in a picture of that size. Adjacent parts share no pixel and leave no gap.
 void set(const View& view, std::pair<int, int> size) {
   const auto at = [](float share, int pixels) {
     return static_cast<int>(std::lround(share * static_cast<float>(pixels)));
@@ -40,7 +41,7 @@ void unset(std::pair<int, int> size) {
 
 int scaled(int pixels, double scale) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); }
 
-// Small pictures are scaled up as they are stored where the driver can read sRGB without decoding it.
+// Small pictures are scaled up in encoded form where the driver can read sRGB without decoding it.
 bool reads_encoded() {
   static const bool can = epoxy_has_gl_extension("GL_EXT_texture_sRGB_decode");
   return can;
@@ -53,7 +54,7 @@ Renderer::Renderer(int width, int height, int shadow_size, int samples)
   if (samples > 1) {
     samples_ = std::make_unique<MultisampleTarget>(width, height, samples);
     if (samples_->samples() != samples)
-      trouble_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device takes " +
+      trouble_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device supports " +
                          std::to_string(samples_->samples()) + " samples a pixel");
   }
   load({}, {});
@@ -94,12 +95,12 @@ void Renderer::set_shader_folder(ShaderFolder folder) {
   passes_.reload(library_, trouble_);
 }
 
-// Drivers compile a program when it first draws, and again for what they first meet in a picture or in the one
-// after it: a software renderer took 0.2 s for the first flash and 0.1 s for the second picture.
+// Drivers compile a program when it first draws, and again for each new combination within a picture or the next
+// one: a software renderer took 0.2 s for the first flash and 0.1 s for the second picture.
 void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
   const auto first = static_cast<int>(list.instances.size());
   list.instances.emplace_back();
-  // All kinds of surfaces of the scene are in the list, but those of tools, which nobody holds yet.
+  // All kinds of surfaces of the scene are in the list, except those of the tools, which are not in use yet.
   for (auto* batches : {&list.opaque, &list.translucent})
     batches->push_back({.geometry = 0, .first = first, .count = 1, .casts_shadow = true});
   list.glows.push_back(
@@ -115,7 +116,7 @@ void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
     meanwhile();
   };
   const Quality &best = kQualities.front(), &last = kQualities.back();
-  // One kind of surface after the other: that of all together takes seconds.
+  // One kind of surface at a time: all of them together take seconds.
   for (const bool through : {false, true}) {
     std::set<std::pair<bool, int>> drawn;
     for (const Batch& batch : through ? list.translucent : list.opaque) {
@@ -126,7 +127,7 @@ void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
       for (const Quality& q : {best, last}) draw(one, q);
     }
   }
-  // With and without shadows twice; then what is left, which has no programs of its own.
+  // Both shadow modes twice; then the remaining qualities, which have no programs of their own.
   std::vector<Quality> kinds{best, last, best, last, degraded(best, 0.5)};
   kinds.insert(kinds.end(), kQualities.begin() + 1, kQualities.end() - 1);
   for (const Quality& q : kinds) draw(list, q);
@@ -154,10 +155,10 @@ void Renderer::draw_over(const DrawList& list) {
   draw_glows(list, size);
   if (quality_.coarse) {
     scale_up();
-    passes_.draw(picture_);  // blocks and flashes too
+    passes_.draw(picture_);  // includes the blocks and flashes
     picture_.bind();
   }
-  glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are encoded already
+  glDisable(GL_FRAMEBUFFER_SRGB);  // these colours are already encoded
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   draw_strokes(list);
@@ -183,7 +184,7 @@ void Renderer::draw_glows(const DrawList& list, std::pair<int, int> size) {
   unset(size);
 }
 
-// Where blending and colours are those of the overlay; a profile that makes pictures coarse leaves them fine.
+// Uses the blending and colours of the overlay; a profile that makes pictures coarse keeps these lines fine.
 void Renderer::draw_strokes(const DrawList& list) {
   if (list.strokes.empty()) return;
   glDisable(GL_DEPTH_TEST);
@@ -199,7 +200,7 @@ void Renderer::draw_strokes(const DrawList& list) {
   unset(size);
 }
 
-// The size of what is drawn into.
+// Returns the size of the bound target.
 std::pair<int, int> Renderer::bind_small() const {
   if (quality_.scale == 1) {
     picture_.bind();
@@ -225,7 +226,8 @@ void Renderer::scale_up() {
   glBindTexture(GL_TEXTURE_2D, small_.texture());
   if (reads_encoded()) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SRGB_DECODE_EXT, GL_SKIP_DECODE_EXT);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, quality_.coarse ? GL_NEAREST : GL_LINEAR);
-  // What is used of the texture, and its outermost texels' middles: beyond lies what other pictures have left.
+  // The used part of the texture, and the centres of its outermost texels: beyond them lie remains of other
+  // pictures.
   const std::array<float, 8> instance{
       used_width / width,          used_height / height,         0, 0, 0.5f / width, 0.5f / height,
       (used_width - 0.5f) / width, (used_height - 0.5f) / height};
@@ -240,7 +242,7 @@ void Renderer::draw_shadow(const DrawList& list, const ShadowTarget& shadow) {
   glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(1.5f, 4.0f);  // one and a half texels of slope: the filter reads the neighbouring texel too
+  glPolygonOffset(1.5f, 4.0f);  // 1.5 texels of slope: the filter also reads the neighbouring texel
   shadow_program_.use();
   shadow_program_.set("clip_from_world", list.lighting.shadow_clip);
   for (const Batch& b : list.opaque)
@@ -259,7 +261,7 @@ void Renderer::draw_surfaces(const DrawList& list) {
   glClear(GL_COLOR_BUFFER_BIT);
 
   std::vector<Light> lights = list.lighting.lights;
-  if (lights.empty()) lights.push_back({});  // dark: its colours are 0
+  if (lights.empty()) lights.push_back({});  // a dark lamp: its colours are 0
   glBindBuffer(GL_UNIFORM_BUFFER, lights_.id());
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(lights.size() * sizeof(Light)), lights.data(),
                GL_STREAM_DRAW);
@@ -279,7 +281,7 @@ void Renderer::draw_surfaces(const DrawList& list) {
   if (resolves) samples_->resolve(quality_.scale == 1 ? picture_ : small_, size.first, size.second);
 }
 
-// One view of them, where the viewport is.
+// Draws one view, in the current viewport.
 void Renderer::draw_surfaces(const DrawList& list, const Camera& camera) {
   surfaces_.for_each(shadow() != nullptr,
                      [&](const Program& p, const Look& look) { describe(p, look, list, camera); });
@@ -313,7 +315,7 @@ void Renderer::describe(const Program& surface, const Look& look, const DrawList
   for (const uniform_t& u : look.uniforms) surface.set(u);
 }
 
-// Behind everything that is opaque.
+// Draws the sky behind everything that is opaque.
 void Renderer::draw_sky(const DrawList& list, const Camera& camera) {
   glDepthFunc(GL_LEQUAL);
   glDisable(GL_CULL_FACE);
@@ -346,7 +348,7 @@ void Renderer::draw_surface(const Batch& batch, bool translucent) {
   translucent ? draw_through(batch) : draw_batch(batch);
 }
 
-// What is seen through is seen from the back too: first its far side, then its near one.
+// A transparent shape is also visible from the back: draw first its far side, then its near one.
 void Renderer::draw_through(const Batch& batch) {
   const auto at = static_cast<std::size_t>(batch.geometry);
   if (at >= geometries_.size() || !geometries_[at]->two_sided()) return draw_batch(batch);
@@ -366,10 +368,10 @@ void Renderer::draw_batch(const Batch& batch) {
 }
 
 bool Renderer::wait() const {
-  // A fence, not glFinish: a driver may treat that as a flush.
+  // A fence, not glFinish: a driver may implement that as a flush.
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kAtMost_ns = 1'000'000'000;  // a device that hangs longer is not waited for
-  const GLenum done = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kAtMost_ns);
+  constexpr GLuint64 kMaxWait_ns = 1'000'000'000;  // limit of the wait for a device that hangs
+  const GLenum done = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kMaxWait_ns);
   glDeleteSync(fence);
   return done == GL_ALREADY_SIGNALED || done == GL_CONDITION_SATISFIED;
 }

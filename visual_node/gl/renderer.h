@@ -19,29 +19,30 @@ namespace tactus::visual {
 
 class Renderer {
  public:
-  // samples: that a pixel's edges are made of. Throws std::runtime_error when a shader does not compile.
+  // samples: number of samples a pixel for smooth edges. Throws std::runtime_error when a shader does not
+  // compile.
   Renderer(int width, int height, int shadow_size, int samples = 1);
 
-  // Geometries, reliefs and looks that the batches of later draw lists refer to, and how many lamps there are.
+  // Loads the geometries, reliefs and looks that the batches of later draw lists refer to, and the lamps.
   void load(const std::vector<Triangles>& geometries, const Lighting& lighting,
             const std::vector<Relief>& reliefs = {}, const Appearance& appearance = {});
-  // What is in the folder of shaders that somebody works in. Whatever uses them is made anew; what does not
-  // compile stays as it was.
+  // Sets the content of the user's shader folder. All programs that use its files are rebuilt; a program that
+  // does not compile keeps its previous version.
   void set_shader_folder(ShaderFolder folder);
-  // One sentence for each thing of the last load or change of shaders that could not be done; asking takes them.
+  // Returns and clears one sentence for each failure of the last load or change of shaders.
   std::vector<std::string> take_trouble() { return std::exchange(trouble_, {}); }
-  // Draws every kind of picture of what was loaded, with this list: afterwards no picture takes longer than
-  // others, whatever the quality. A software renderer takes a quarter of a second for each kind of surface that it
-  // meets for the first time; meanwhile: is called every now and then.
+  // Draws every kind of picture of the loaded scene with this list, so that no later picture takes longer than
+  // others, whatever its quality. A software renderer takes a quarter of a second for each kind of surface when
+  // it first draws it. meanwhile: called regularly.
   void warm_up(
       DrawList list, const std::function<void()>& meanwhile = [] {});
-  // How the next pictures are drawn.
+  // Quality of the next pictures.
   void set_quality(const Quality& quality) { quality_ = quality; }
-  // A picture is drawn in two parts, so that what has just become known can still be in it: the surfaces, which
-  // take nearly all of the time, and then flashes and overlay. Each gives the work to the device and returns.
+  // A picture is drawn in two parts, so that it can include late events: first the surfaces, which take nearly
+  // all of the time, then flashes and overlay. Each call submits the work to the device and returns.
   void draw_scene(const DrawList& list);
   void draw_over(const DrawList& list);
-  // Waits until the device has finished what it was given; false when it does not within a second, or cannot.
+  // Waits until the device has finished all submitted work; false when it does not within 1 s, or cannot.
   bool wait() const;
   const PictureTarget& picture() const { return picture_; }
 
@@ -60,18 +61,18 @@ class Renderer {
   void draw_through(const Batch& batch);
   void draw_batch(const Batch& batch);
 
-  PictureTarget picture_, small_;  // small_ is drawn into at less than full scale
+  PictureTarget picture_, small_;  // small_ is the target at less than full scale
   int shadow_size_;
   Quality quality_;
-  std::unique_ptr<ShadowTarget> shadow_, coarse_shadow_;  // null: no lamp casts one
+  std::unique_ptr<ShadowTarget> shadow_, coarse_shadow_;  // null: no lamp casts a shadow
   std::unique_ptr<MultisampleTarget> samples_;            // null: one sample a pixel
   ShaderLibrary library_;
   ShaderFolder folder_;
   SurfacePrograms surfaces_;
   ScreenPasses passes_;
-  std::vector<std::unique_ptr<SurfaceTexture>> colours_, normals_;  // by index of the picture; null: not used so
+  std::vector<std::unique_ptr<SurfaceTexture>> colours_, normals_;  // by index of the picture; null: not used as such
   std::unique_ptr<EnvironmentTexture> environment_;
-  bool sky_ = false;  // it is a picture, and seen
+  bool sky_ = false;  // the environment is a picture and visible
   std::vector<std::string> trouble_;
   Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"},
       stroke_{"stroke"};

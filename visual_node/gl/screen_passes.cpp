@@ -4,6 +4,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <tactus/uniform_t.hpp>
 #include <utility>
 
 #include "visual_node/gl/uniforms.h"
@@ -31,11 +32,11 @@ void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& 
       programs_[i] = std::make_unique<Program>(
           std::vector{library.own("pass.vert")},
           std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
-      for (const std::string& said : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
-        trouble.push_back("pass " + passes_[i].shader + ": " + said);
+      for (const std::string& misfit : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
+        trouble.push_back("pass " + passes_[i].shader + ": " + misfit);
     } catch (const std::exception& e) {
       trouble.push_back("pass " + passes_[i].shader + ": " + e.what() +
-                        (programs_[i] ? "; the one before stays" : "; it is left out"));
+                        (programs_[i] ? "; the previous shader stays in use" : "; it is left out"));
     }
 }
 
@@ -50,9 +51,9 @@ void ScreenPasses::draw(const PictureTarget& picture) {
   for (std::size_t i = 0; i < programs_.size(); ++i) {
     if (!programs_[i]) continue;
     const Program& program = *programs_[i];
-    // One that has `along` works along one side of the picture at a time.
+    // A pass with the uniform `along` is drawn twice: along x, then along y.
     const bool twice = glGetUniformLocation(program.id(), "along") >= 0;
-    for (int turn = 0; turn < (twice ? 2 : 1); ++turn) {
+    for (int axis = 0; axis < (twice ? 2 : 1); ++axis) {
       to->bind();
       glBindTexture(GL_TEXTURE_2D, from->texture());
       program.use();
@@ -60,13 +61,13 @@ void ScreenPasses::draw(const PictureTarget& picture) {
       program.set("texel", Eigen::Vector2f(1 / static_cast<float>(picture.width()),
                                            1 / static_cast<float>(picture.height())));
       for (const uniform_t& u : passes_[i].uniforms) program.set(u);
-      if (twice) program.set("along", turn == 0 ? Eigen::Vector2f(1, 0) : Eigen::Vector2f(0, 1));
+      if (twice) program.set("along", axis == 0 ? Eigen::Vector2f(1, 0) : Eigen::Vector2f(0, 1));
       quad_->draw(none.data(), 1);
       std::swap(from, to);
     }
   }
   if (from == &picture) return;
-  glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
+  glDisable(GL_FRAMEBUFFER_SRGB);  // copy the encoded bytes
   glBindFramebuffer(GL_READ_FRAMEBUFFER, from->framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture.framebuffer());
   glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, picture.width(), picture.height(),

@@ -1,4 +1,4 @@
-// Passes over the whole picture, one after the other, by shaders that the scene names.
+// Screen passes: shaders named by the scene that process the whole picture, one after the other.
 #pragma once
 
 #include <memory>
@@ -14,20 +14,20 @@ namespace tactus::visual {
 class ScreenPasses {
  public:
   ScreenPasses() = default;
-  // One sentence in `trouble` for each that cannot be made; it is left out.
+  // Adds one sentence to `trouble` for each pass that cannot be built; that pass is left out.
   ScreenPasses(const ShaderLibrary& library, const std::vector<pass_t>& passes, int width, int height,
                std::vector<std::string>& trouble);
-  // Shaders have changed. One that cannot be made anew stays as it was.
+  // Rebuilds the passes after a change of shaders. A pass that cannot be built keeps its previous version.
   void reload(const ShaderLibrary& library, std::vector<std::string>& trouble);
 
-  // Afterwards the picture is what they made of it.
+  // Replaces the picture by the result of the passes.
   void draw(const PictureTarget& picture);
 
  private:
   void make(const ShaderLibrary& library, std::vector<std::string>& trouble);
   std::vector<pass_t> passes_;
   std::vector<std::unique_ptr<Program>> programs_;  // null: left out
-  std::unique_ptr<PictureTarget> other_;            // null: there are none
+  std::unique_ptr<PictureTarget> other_;            // null: no passes
   std::unique_ptr<QuadArray> quad_;
 };
 

@@ -11,8 +11,8 @@
 namespace tactus::visual {
 namespace {
 
-// Names of what phong.frag does when a look has the maps or the mirror for it.
-constexpr std::array<std::string_view, 3> kPhongToo{"normal_mapped", "textured", "reflecting"};
+// Names of looks that phong.frag draws, when the look has the maps or the mirror.
+constexpr std::array<std::string_view, 3> kPhongAliases{"normal_mapped", "textured", "reflecting"};
 constexpr const char* kNames =
     "phong, gouraud, normal_mapped, textured, reflecting; passes greyscale, blur, edges";
 
@@ -22,8 +22,8 @@ std::string base_name(const std::string& file) { return std::filesystem::path(fi
 
 const ShaderText* ShaderLibrary::scene_shader(const std::string& name) const {
   const auto found =
-      std::find_if(of_scene_.begin(), of_scene_.end(), [&](const ShaderText& s) { return s.name == name; });
-  return found == of_scene_.end() ? nullptr : &*found;
+      std::find_if(scene_shaders_.begin(), scene_shaders_.end(), [&](const ShaderText& s) { return s.name == name; });
+  return found == scene_shaders_.end() ? nullptr : &*found;
 }
 
 std::optional<ShaderPiece> ShaderLibrary::find(const std::string& file, const std::string& text) const {
@@ -37,10 +37,10 @@ std::optional<ShaderPiece> ShaderLibrary::fragment(const std::string& name) cons
   if (const ShaderText* s = scene_shader(name))
     return find(s->fragment_file.empty() ? name + ".frag" : base_name(s->fragment_file), s->fragment);
   if (auto edited = find(name + ".frag", "")) return edited;
-  const bool phong = std::find(kPhongToo.begin(), kPhongToo.end(), name) != kPhongToo.end();
+  const bool phong = std::find(kPhongAliases.begin(), kPhongAliases.end(), name) != kPhongAliases.end();
   const std::string file = (phong ? "phong" : name) + ".frag";
   const std::string_view own = shader_text(file);
-  // What only this node uses, or is but a piece, is no look.
+  // Internal shaders and pieces without shade() are not looks.
   if (own.find("vec4 shade()") == std::string_view::npos) return {};
   return find(file, std::string(own));
 }
@@ -59,7 +59,7 @@ ShaderPiece ShaderLibrary::own(const std::string& file) const {
 
 std::string ShaderLibrary::names() const {
   std::string all = kNames;
-  for (const ShaderText& s : of_scene_) all += ", " + s.name;
+  for (const ShaderText& s : scene_shaders_) all += ", " + s.name;
   return all;
 }
 

@@ -1,4 +1,4 @@
-// The texts of shaders by name: from a folder that somebody works in, from the scene, or as they come. Pure.
+// Shader sources by name: from the user's shader folder, from the scene, or built in. Pure.
 #pragma once
 
 #include <map>
@@ -15,17 +15,16 @@ using ShaderFolder = std::map<std::string, std::string>;  // text by file name
 
 class ShaderLibrary {
  public:
-  explicit ShaderLibrary(std::vector<ShaderText> of_scene = {}) : of_scene_(std::move(of_scene)) {}
+  explicit ShaderLibrary(std::vector<ShaderText> scene_shaders = {}) : scene_shaders_(std::move(scene_shaders)) {}
 
-  // What is in the folder now. A file there takes the place of the one of its name that came with the scene or the
-  // node.
+  // Sets the content of the folder. Its files replace files of the same name of the scene or the node.
   void set(ShaderFolder folder) { folder_ = std::move(folder); }
 
-  // The fragment shader of that name, or nothing when there is none.
+  // The fragment shader of that name; nothing when there is none.
   std::optional<ShaderPiece> fragment(const std::string& name) const;
-  // Its vertex shader where it has one of its own.
+  // Its vertex shader, if it has one of its own.
   std::optional<ShaderPiece> vertex(const std::string& name) const;
-  // A file of shaders/, or the folder's in its place.
+  // A file of shaders/, or its replacement from the folder.
   ShaderPiece own(const std::string& file) const;
   // Names that looks and passes may use, for messages.
   std::string names() const;
@@ -33,7 +32,7 @@ class ShaderLibrary {
  private:
   std::optional<ShaderPiece> find(const std::string& file, const std::string& text) const;
   const ShaderText* scene_shader(const std::string& name) const;
-  std::vector<ShaderText> of_scene_;
+  std::vector<ShaderText> scene_shaders_;
   ShaderFolder folder_;
 };
 

@@ -1,4 +1,4 @@
-// The shaders of shaders/, carried in the library.
+// The files of shaders/, embedded in the library.
 #pragma once
 
 #include <string_view>

@@ -10,16 +10,16 @@
 namespace tactus::visual {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 65536;      // design: ten times the longest of ours
+constexpr std::uintmax_t kMaxBytes = 65536;      // design: ten times our longest shader
 constexpr std::size_t kMaxFiles = 64;            // design
-constexpr std::chrono::milliseconds kEvery{400};  // design: as soon as one has looked up from the editor
+constexpr std::chrono::milliseconds kPollInterval{400};  // design: the time to look up from the editor
 
 }  // namespace
 
 struct ShaderWatch::Shared {
   std::mutex mutex;
   std::condition_variable_any ended;
-  std::optional<ShaderFolder> news;
+  std::optional<ShaderFolder> changed;
 };
 
 ShaderFolder read_shader_folder(const std::string& folder) {
@@ -43,13 +43,13 @@ ShaderWatch::ShaderWatch(const std::string& folder) {
     while (!stop.stop_requested()) {
       ShaderFolder now = read_shader_folder(folder);
       std::unique_lock lock(shared->mutex);
-      if (now != known) shared->news = known = std::move(now);
-      shared->ended.wait_for(lock, stop, kEvery, [] { return false; });
+      if (now != known) shared->changed = known = std::move(now);
+      shared->ended.wait_for(lock, stop, kPollInterval, [] { return false; });
     }
   });
 }
 
-// It is not waited for: it may be reading a folder that has gone away.
+// The thread is detached, not joined: it may be blocked on a folder that is no longer reachable.
 ShaderWatch::~ShaderWatch() {
   if (!thread_.joinable()) return;
   thread_.request_stop();
@@ -59,8 +59,8 @@ ShaderWatch::~ShaderWatch() {
 std::optional<ShaderFolder> ShaderWatch::take() {
   if (!shared_) return {};
   const std::unique_lock lock(shared_->mutex, std::try_to_lock);
-  if (!lock.owns_lock() || !shared_->news) return {};
-  return std::exchange(shared_->news, std::nullopt);
+  if (!lock.owns_lock() || !shared_->changed) return {};
+  return std::exchange(shared_->changed, std::nullopt);
 }
 
 }  // namespace tactus::visual

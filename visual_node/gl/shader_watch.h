@@ -1,4 +1,4 @@
-// Reads a folder of shaders again and again, off the loop: a folder may lie far away, and reading it take long.
+// Polls a shader folder on its own thread, since reading a remote folder may take long.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,16 @@
 
 namespace tactus::visual {
 
-// Its files *.frag, *.vert and *.glsl, at most 64 of 64 kB: others are left out.
+// The files *.frag, *.vert and *.glsl of a folder, at most 64 files of 64 kB each: others are ignored.
 ShaderFolder read_shader_folder(const std::string& folder);
 
 class ShaderWatch {
  public:
-  // Empty: no folder, and no thread.
+  // An empty name: no folder, and no thread.
   explicit ShaderWatch(const std::string& folder);
   ~ShaderWatch();
-  // What is in the folder when that has changed since it was asked for last, half a second ago at most. Never
-  // waits.
+  // Returns the content of the folder if it has changed since the last call; it is at most half a second old.
+  // Never blocks.
   std::optional<ShaderFolder> take();
 
  private:

@@ -9,7 +9,7 @@
 namespace tactus::visual {
 namespace {
 
-// One property of all lamps as a constant of the shader; of none, one that is black.
+// One property of all lamps as a constant array of the shader; without lamps, one black entry.
 std::string constant(const char* name, const Lighting& lighting, Eigen::Vector4f Light::*property) {
   std::string list;
   const auto add = [&](const Eigen::Vector4f& v) {
@@ -24,8 +24,8 @@ std::string constant(const char* name, const Lighting& lighting, Eigen::Vector4f
   return "#define " + std::string(name) + " vec4[](" + list + ")\n";
 }
 
-// The kinds of the lamps and what the surface has are known to the shader's compiler: a software renderer pays for
-// every branch of every pixel.
+// The kinds of lamps and the features of the surface are compile-time constants of the shader: a software renderer
+// pays for every branch of every pixel.
 std::string defines(const Look& look, bool relief, bool moves, const Lighting& lighting) {
   std::string lamps;
   for (std::size_t i = 0; i < lighting.lights.size(); ++i) {

@@ -1,4 +1,4 @@
-// The program of one kind of surface: a look, with or without relief, under the lamps of a scene.
+// Builds the program of one kind of surface: a look, with or without relief, under the lamps of a scene.
 #pragma once
 
 #include <memory>

@@ -9,7 +9,7 @@
 namespace tactus::visual {
 namespace {
 
-// Scenes call those that have no name "look 6".
+// Prefix of messages. Looks without a name are called "look 6" by the scene.
 std::string called(const Look& look) {
   if (look.name.empty()) return "";
   return (look.name.starts_with("look ") ? "" : "look ") + look.name + ": ";
@@ -32,7 +32,7 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
   Lighting plain = lighting_;
   plain.shadow_light = -1;
   for (std::size_t i = 0; i < looks_.size(); ++i) try {
-      // All of a look or none: its pictures do not change with their shadows.
+      // Rebuild all programs of a look or none, so that its appearance does not depend on the shadows.
       std::array<std::unique_ptr<Program>, 4> fresh;
       for (const bool relief : {false, true})
         for (const bool shadows : {false, true})
@@ -45,7 +45,7 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
     } catch (const std::exception& e) {
       const bool before = made_[index(i, false, false)] != nullptr;
       trouble.push_back(called(looks_[i]) + e.what() +
-                        (before ? "; the one before stays" : "; phong is drawn instead"));
+                        (before ? "; the previous shader stays in use" : "; phong is drawn instead"));
     }
 }
 

@@ -1,5 +1,5 @@
-// The programs of all kinds of surfaces of a scene. One that cannot be made anew stays as it was; one that could
-// never be made is drawn as the first look is.
+// The programs of all kinds of surfaces of a scene. A program that cannot be rebuilt keeps its previous version; a
+// program that was never built is replaced by that of the first look.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@ namespace tactus::visual {
 class SurfacePrograms {
  public:
   SurfacePrograms() = default;
-  // One sentence in `trouble` for each look whose shader cannot be used. Throws std::runtime_error when that is
-  // the first.
+  // Adds one sentence to `trouble` for each look whose shader cannot be used. Throws std::runtime_error when that
+  // is the first look.
   SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks, const Lighting& lighting,
                   bool reliefs, std::vector<std::string>& trouble);
 
-  // Shaders have changed: makes all anew.
+  // Rebuilds all programs after a change of shaders.
   void reload(const ShaderLibrary& library, std::vector<std::string>& trouble);
 
   int looks() const { return static_cast<int>(looks_.size()); }

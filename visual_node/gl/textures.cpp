@@ -11,11 +11,11 @@
 namespace tactus::visual {
 namespace {
 
-// A face covers a quarter of the circle: four times its edge is the width of a picture that loses nothing. No
-// finer than this, 24 MB of it all: a mirror the size of a hand shows less.
-constexpr int kLargestFace = 1024;
+// A face covers a quarter of the circle: without loss its edge is a quarter of the picture's width. It is limited
+// to this, 24 MB in total: a mirror of the size of a hand shows less detail.
+constexpr int kMaxFace_px = 1024;
 
-// Through what a texel of a face is seen; s and t from -1 to 1. OpenGL 3.3, table 3.21.
+// The direction of a texel of a face; s and t from -1 to 1. OpenGL 3.3, table 3.21.
 Eigen::Vector3d through(int face, double s, double t) {
   switch (face) {
     case 0: return {1, -t, -s};
@@ -27,8 +27,8 @@ Eigen::Vector3d through(int face, double s, double t) {
   }
 }
 
-// Linear between the middles of four pixels; around it repeats, at the poles it ends. Of the encoded values: what
-// it mixes is alike.
+// Bilinear between the centres of four pixels; wraps around in longitude, ends at the poles. Interpolates the
+// encoded values, since neighbours are similar.
 std::array<std::uint8_t, 4> sample(const Raster& r, const Eigen::Vector2d& at) {
   const double x = at.x() * r.width - 0.5, y = std::clamp(at.y() * r.height - 0.5, 0.0, r.height - 1.0);
   const int left = static_cast<int>(std::floor(x)), below = std::min(static_cast<int>(y), r.height - 1);
@@ -73,7 +73,7 @@ SurfaceTexture::~SurfaceTexture() { glDeleteTextures(1, &id_); }
 EnvironmentTexture::EnvironmentTexture(const Raster& around) {
   glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_CUBE_MAP, id_);
-  const int edge = std::clamp(around.width / 4, 1, kLargestFace);
+  const int edge = std::clamp(around.width / 4, 1, kMaxFace_px);
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(4 * edge * edge));
   for (int face = 0; face < 6; ++face) {
     for (int row = 0; row < edge; ++row)

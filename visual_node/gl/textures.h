@@ -1,4 +1,4 @@
-// Pictures in the memory of the graphics device: laid on surfaces, or all around the scene.
+// Textures of the graphics device: maps of surfaces and the environment.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace tactus::visual {
 
-// Repeated without end, filtered. encoded: its colours are sRGB; else they are numbers as they stand.
+// Repeated in both directions, filtered. encoded: the colours are sRGB; otherwise linear numbers.
 class SurfaceTexture {
  public:
   SurfaceTexture(const Raster& raster, bool encoded);
@@ -20,12 +20,12 @@ class SurfaceTexture {
   unsigned id_ = 0;
 };
 
-// What lies in each direction, on the faces of a cube.
+// The environment in each direction, as a cube map.
 class EnvironmentTexture {
  public:
-  // Of a picture of longitude and latitude, as scene_t.lcm has it.
+  // From an equirectangular picture, as defined in scene_t.lcm.
   explicit EnvironmentTexture(const Raster& around);
-  // The same everywhere, linear.
+  // One colour in all directions, linear.
   explicit EnvironmentTexture(const Eigen::Vector3f& colour);
   ~EnvironmentTexture();
   EnvironmentTexture(const EnvironmentTexture&) = delete;
@@ -36,7 +36,7 @@ class EnvironmentTexture {
   unsigned id_ = 0;
 };
 
-// Where that picture has what lies in a direction: in its width and height from the lower left, 0 .. 1.
+// The place of a direction in that picture: shares of width and height from the lower left, 0 .. 1.
 Eigen::Vector2d place_around(const Eigen::Vector3d& direction);
 
 }  // namespace tactus::visual

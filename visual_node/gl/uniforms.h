@@ -1,4 +1,4 @@
-// Whether the numbers that a scene gives a shader are numbers that it takes.
+// Checks the uniforms that a scene sets against those of the shader.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace tactus::visual {
 
-// One sentence for each that the program of the shader of that name would leave aside: its text does not know the
-// name, or has something else by that name.
+// One sentence for each uniform that the program of this shader would ignore: its source does not contain the name,
+// or declares another type by that name.
 std::vector<std::string> misfits(const ShaderLibrary& library, const std::string& shader, const Program& program,
                                  const std::vector<uniform_t>& uniforms);
 

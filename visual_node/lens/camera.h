@@ -1,4 +1,4 @@
-// Where the eye is and what it sees: SDF's camera convention turned into OpenGL's.
+// Camera matrices: converts SDF's camera convention to OpenGL's.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ Eigen::Matrix4f perspective(double horizontal_fov_rad, double aspect, double nea
 Camera make_camera(const Eigen::Isometry3d& pose, double horizontal_fov_rad, int width, int height, double near_m,
                    double far_m);
 
-// The same lens elsewhere.
+// The same camera at another pose.
 Camera moved(Camera camera, const Eigen::Isometry3d& pose);
 
 // T_eye_world of a lamp at `position` that shines along `direction`; its roll is arbitrary.

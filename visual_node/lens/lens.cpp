@@ -10,10 +10,10 @@
 namespace tactus::visual {
 namespace {
 
-// Horizontal field of view of a scene that gives none: that of the SDF camera's default, 1.047 rad.
+// Horizontal field of view of a scene without one: the default of the SDF camera, 1.047 rad.
 constexpr double kDefaultFov_rad = 1.047;
 
-// A room of several walls has a level floor: it is turned about the vertical only, as the camera looks.
+// A room of several walls has a level floor: it turns about the vertical only, with the heading of the camera.
 Eigen::Isometry3d heading(const Eigen::Isometry3d& camera) {
   const Eigen::Vector3d ahead = camera.linear().col(0);
   Eigen::Isometry3d level = Eigen::Isometry3d::Identity();
@@ -37,13 +37,13 @@ Lens::Lens(const scene_t& scene, const Settings& settings, int width, int height
   half_width_ = std::tan(std::min(fov, 3.0) / 2);
   half_height_ = half_width_ * height / width;
   try {
-    stand_room(scene, settings);
+    place_room(scene, settings);
   } catch (const std::runtime_error& wrong) {
-    trouble_ = std::string(wrong.what()) + "; the picture is that of the scene's camera";
+    trouble_ = std::string(wrong.what()) + "; the scene's camera is used instead";
   }
 }
 
-void Lens::stand_room(const scene_t& scene, const Settings& settings) {
+void Lens::place_room(const scene_t& scene, const Settings& settings) {
   if (settings.room == "none") return;
   const Room room = load_room(settings.room);
   const Wall* const wall = settings.wall == "first" ? &room.walls.front() : room.named(settings.wall);

@@ -1,5 +1,4 @@
-// What one process sees of a scene: through the scene's camera, or through one wall of a room around its person.
-// Pure once it is made.
+// The view of one process: the scene's camera, or one wall of a room around the user. Pure after construction.
 #pragma once
 
 #include <array>
@@ -15,26 +14,26 @@ namespace tactus::visual {
 
 class Lens {
  public:
-  // Reads the file of the room, where one is set: not in a loop.
+  // Reads the file of the room, if one is set: do not call in a loop.
   Lens(const scene_t& scene, const Settings& settings, int width, int height);
 
-  // head: T_world_head, x ahead, z up; nothing: it is where the scene's camera is.
+  // head: T_world_head, x ahead, z up; nothing: the pose of the scene's camera.
   Camera at(const std::optional<Eigen::Isometry3d>& head) const;
-  // Of the left eye and the right one. Without a wall they look through a window as large as the picture, which
-  // the head carries before it: what is as far away as that is seen at one place by both.
+  // Cameras of the left and the right eye. Without a wall both look through a window of the picture's size, which
+  // moves with the head: both eyes see a point at the window's distance at the same place.
   std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double apart_m, double window_m) const;
-  // One sentence; empty when nothing is wrong. Otherwise it is the scene's camera.
+  // One sentence about a room that cannot be used; empty: none. Then the scene's camera is used.
   const std::string& trouble() const { return trouble_; }
 
  private:
-  void stand_room(const scene_t& scene, const Settings& settings);
+  void place_room(const scene_t& scene, const Settings& settings);
 
   int width_;
-  double half_width_, half_height_;  // of the scene's camera, tangents
+  double half_width_, half_height_;  // of the scene's camera, tangents of the half angles
   double near_m_, far_m_;
   Camera plain_;
   Eigen::Isometry3d rest_;    // T_world_camera, of the scene
-  std::optional<Wall> wall_;  // in the world
+  std::optional<Wall> wall_;  // in the world frame
   std::string trouble_;
 };
 

@@ -1,4 +1,4 @@
-// What an eye sees through a wall as through a window, wherever it is. Pure.
+// Off-axis projection: the view of an eye through a wall as through a window. Pure.
 #pragma once
 
 #include <array>
@@ -8,15 +8,15 @@
 
 namespace tactus::visual {
 
-// Corners of the wall become those of the picture (Kooima, "Generalized Perspective Projection", 2009). wall and
-// eye in one frame, that of the world. near_m and far_m: depth, across the wall. An eye in the plane of the wall
-// or behind it sees as from kNearest_m before it.
+// Maps the corners of the wall to those of the picture (Kooima, "Generalized Perspective Projection", 2009). wall
+// and eye: in the world frame. near_m and far_m: depth along the normal of the wall. An eye in the plane of the
+// wall or behind it is moved to kNearest_m before it.
 Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m);
 
-inline constexpr double kNearest_m = 0.01;  // design: nobody's eye comes nearer to a screen
+inline constexpr double kNearest_m = 0.01;  // design: no eye comes closer to a screen
 
-// T_world_head, x ahead, y to the left, z up. Left and right, apart along the axis through both ears: what is
-// infinitely far is as far apart in the two pictures as they are.
+// head: T_world_head, x ahead, y to the left, z up. Returns the left and the right eye, apart_m apart along the
+// axis through both ears: a point at infinity has that same distance between the two pictures.
 std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double apart_m);
 
 }  // namespace tactus::visual

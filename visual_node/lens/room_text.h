@@ -1,4 +1,4 @@
-// The rooms of rooms/, carried in the library.
+// The files of rooms/, embedded in the library.
 #pragma once
 
 #include <string_view>

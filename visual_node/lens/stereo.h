@@ -1,4 +1,4 @@
-// Which parts of the picture show what each eye sees. Pure.
+// The views of a stereo picture: one part of the picture for each eye. Pure.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace tactus::visual {
 
-// Part of a picture, in shares of its width and height from the lower left, and what is seen in it.
+// A part of a picture, in shares of its width and height from the lower left, and its camera.
 struct View {
   Camera camera;
   float x = 0, y = 0, width = 1, height = 1;
-  bool red = true, green = true, blue = true;  // which colours are drawn
+  bool red = true, green = true, blue = true;  // colour channels that are drawn
 };
 
-// As the setting `stereo` says; one view of all where it is off. Left and right halves, or upper and lower, hold
-// the whole wall, squeezed: displays for two eyes stretch them. Anaglyph: the left eye sees red, the right one
-// green and blue. Quad-buffer: halves too, which the display shows to one eye each.
+// The views for the setting `stereo`; one full view when it is off. Each half (left and right, or upper and lower)
+// holds the whole wall, squeezed: stereo displays stretch it. Anaglyph: red for the left eye, green and blue for
+// the right one. Quad-buffer: also halves, which the display shows to one eye each.
 std::vector<View> views_of(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
                            const Settings& settings);
 

@@ -16,11 +16,11 @@ namespace {
 constexpr const char* kColumns =
     "wall,lower_left_x_m,lower_left_y_m,lower_left_z_m,lower_right_x_m,lower_right_y_m,lower_right_z_m,"
     "upper_left_x_m,upper_left_y_m,upper_left_z_m";
-// Corners are measured by hand: sides that meet at 90 degrees but for this, 3 mm on 3 m (design).
+// Corners are measured by hand, so this tolerance applies to right angles (as cosine): 3 mm on 3 m (design).
 constexpr double kSquare = 1e-3;
-constexpr double kLeastSide_m = 0.01;
+constexpr double kMinSide_m = 0.01;
 constexpr std::size_t kMaxWalls = 16;
-constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than so many walls take
+constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than 16 walls take
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
   throw std::runtime_error("the room " + name + " " + why +
@@ -61,20 +61,20 @@ Room parse_room(const std::string& csv, const std::string& name) {
     const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(room.walls.size() + 1);
-    if (row.size() != 10) refuse(name, "has in its " + which + " not ten columns");
+    if (row.size() != 10) refuse(name, "does not have ten columns in its " + which);
     if (row[0] == "eye") {
       const auto at = numbers<3>(row);
-      if (!at || has_eye) refuse(name, "has in a row eye not three numbers, or two such rows");
+      if (!at || has_eye) refuse(name, "does not have one row eye with three numbers");
       room.eye = {(*at)[0], (*at)[1], (*at)[2]};
       has_eye = true;
       continue;
     }
     const auto n = numbers<9>(row);
-    if (row[0].empty() || !n) refuse(name, "has in its " + which + " not a name and nine numbers");
+    if (row[0].empty() || !n) refuse(name, "does not have a name and nine numbers in its " + which);
     const Wall wall{row[0], {(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}, {(*n)[6], (*n)[7], (*n)[8]}};
-    if (!(wall.width_m() >= kLeastSide_m) || !(wall.height_m() >= kLeastSide_m) ||
+    if (!(wall.width_m() >= kMinSide_m) || !(wall.height_m() >= kMinSide_m) ||
         !(std::abs(wall.right().dot(wall.up())) <= kSquare))
-      refuse(name, "has in its " + which + " (" + wall.name + ") no rectangle of at least 1 cm");
+      refuse(name, "does not have a rectangle of at least 1 cm in its " + which + " (" + wall.name + ")");
     if (room.named(wall.name)) refuse(name, "has two walls " + wall.name);
     room.walls.push_back(wall);
     if (room.walls.size() > kMaxWalls) refuse(name, "has more than " + std::to_string(kMaxWalls) + " walls");

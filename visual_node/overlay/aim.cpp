@@ -15,23 +15,24 @@ struct Ray {
   Eigen::Vector3f from, along;
 };
 
-// Möller and Trumbore 1997: how many times `along` it is to the triangle; infinite: beside it or behind.
+// Möller and Trumbore 1997: distance to the triangle in units of `along`; infinite: beside the ray or behind its
+// origin.
 float distance(const Ray& ray, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
+  constexpr float kMiss = std::numeric_limits<float>::infinity();
   const Eigen::Vector3f ab = b - a, ac = c - a, p = ray.along.cross(ac);
   const float det = ab.dot(p);
-  if (std::abs(det) < 1e-20f) return kNever;
+  if (std::abs(det) < 1e-20f) return kMiss;
   const Eigen::Vector3f s = (ray.from - a) / det;
   const float u = s.dot(p);
-  if (u < 0 || u > 1) return kNever;
+  if (u < 0 || u > 1) return kMiss;
   const Eigen::Vector3f q = s.cross(ab);
   const float v = ray.along.dot(q);
-  if (v < 0 || u + v > 1) return kNever;
+  if (v < 0 || u + v > 1) return kMiss;
   const float t = ac.dot(q);
-  return t > 0 ? t : kNever;
+  return t > 0 ? t : kMiss;
 }
 
-// Around the origin of its frame.
+// Radius of the bounding sphere about the origin of its frame.
 float radius_of(const Triangles& t) {
   float squared = 0;
   for (const Eigen::Vector3f& p : t.positions) squared = std::max(squared, p.squaredNorm());
@@ -42,7 +43,7 @@ bool misses(const Ray& ray, float radius) {
   return ray.from.cross(ray.along).squaredNorm() > radius * radius * ray.along.squaredNorm();
 }
 
-// In the frame of the shape, where distances along the ray are the same number of times `along`.
+// The ray in the frame of the shape, where distances in units of `along` stay the same.
 Ray in_shape(const Ray& ray, const Instance& i) {
   const Eigen::Quaternionf world_shape(i.orientation);
   const Eigen::Vector3f scale = i.scale.head<3>();
@@ -73,7 +74,7 @@ std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Tria
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;
   float nearest = std::numeric_limits<float>::infinity();
-  std::map<int, float> radii;  // of geometries that were met: of thousands of balls most are passed by
+  std::map<int, float> radii;  // cache of the geometries in use: the ray misses most of thousands of balls
   for (const Batch& batch : list.opaque) {
     if (batch.geometry < 0 || static_cast<std::size_t>(batch.geometry) >= geometries.size()) continue;
     const Triangles& t = geometries[static_cast<std::size_t>(batch.geometry)];
@@ -96,9 +97,9 @@ std::optional<device_state_t> MousePointer::state(sync::HostTime now) {
   const bool first = !last_;
   const double dt_s = first ? 0 : std::clamp(sync::to_seconds(now - *last_), 0.0, 0.1);
   last_ = now;
-  const Eigen::Vector3d before = at_, way = *target_ - at_;
-  const double most_m = kFastest_m_s * dt_s;
-  at_ = first || way.norm() <= most_m ? *target_ : Eigen::Vector3d(at_ + way.normalized() * most_m);
+  const Eigen::Vector3d before = at_, remaining = *target_ - at_;
+  const double max_step_m = kMaxSpeed_m_s * dt_s;
+  at_ = first || remaining.norm() <= max_step_m ? *target_ : Eigen::Vector3d(at_ + remaining.normalized() * max_step_m);
   device_state_t m{};
   m.header.sim_time_ns = -1;
   m.device = kMouseDevice;

@@ -1,4 +1,4 @@
-// What the mouse points at, for the spot light that follows it. Pure.
+// Ray casting for the mouse, which aims a spot light. Pure.
 #pragma once
 
 #include <optional>
@@ -13,22 +13,21 @@
 
 namespace tactus::visual {
 
-// The nearest opaque surface in the picture at (x, y), shares of its width and height from the upper left: where
-// it is, m, world. Nothing: there is none, or no part of the picture shows that place. Tries every triangle: some
-// ms for 100,000.
+// The point on the nearest opaque surface in the picture at (x, y), shares of its width and height from the upper
+// left. m, world. Nothing: no surface, or no view covers that place. Tests every triangle: some ms for 100,000.
 std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Triangles> geometries, float x,
                                       float y);
 
-// The device that the mouse is. Whoever steers the lamp listens to it: --device LAMP=external:mouse.
+// Name of the device that the mouse is; it steers a lamp with --device LAMP=external:mouse.
 inline constexpr const char* kMouseDevice = "mouse";
 
-// A pointer that follows what is aimed at, no faster than kFastest_m_s: haptic_node believes no device that leaps.
+// A pointer that follows the aimed point at kMaxSpeed_m_s or less: haptic_node rejects a device that jumps.
 class MousePointer {
  public:
-  static constexpr double kFastest_m_s = 5;  // design: a quarter of what a hand is believed
+  static constexpr double kMaxSpeed_m_s = 5;  // design: a quarter of the speed that haptic_node accepts from a device
 
   void aim(const Eigen::Vector3d& at) { target_ = at; }
-  // Once a tick from the first aim on: what the device says. Nothing before.
+  // Call once a tick: the state of the device; nothing before the first aim().
   std::optional<device_state_t> state(sync::HostTime now);
 
  private:

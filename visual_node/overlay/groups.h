@@ -1,5 +1,5 @@
-// Which bodies are simulated in the haptic group, with every step, and which are computed ahead in the visual one.
-// Pure.
+// Tracks which bodies are simulated in the haptic group (every step) and which are computed ahead in the visual
+// group. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,24 +11,24 @@ namespace tactus::visual {
 
 class Groups {
  public:
-  // No scene has more bodies.
+  // Limit of body indices.
   static constexpr int kMaxBodies = 1 << 16;
 
   void push(const world_state_t& m);
-  void forget() { *this = {}; }
-  // As SceneView::tint: orange what is in the haptic group, blue what is in the visual one; a body that nobody
-  // told of, as one that never moves, keeps its colour.
+  void reset() { *this = {}; }
+  // As SceneView::tint: orange for the haptic group, blue for the visual group. A body without messages, such as
+  // a static one, keeps its colour.
   std::vector<Eigen::Vector4f> tints(std::size_t bodies) const;
   std::size_t haptic() const { return count(false); }
   std::size_t visual() const { return count(true); }
 
  private:
-  struct Told {
+  struct BodyGroup {
     std::int64_t seq = -1;
     bool ahead = false;
   };
   std::size_t count(bool ahead) const;
-  std::map<int, Told> told_;
+  std::map<int, BodyGroup> groups_;
   std::int64_t incarnation_ = 0;
 };
 

@@ -6,13 +6,13 @@ namespace {
 struct Key {
   int key;
   const char* name;
-  Wish wish;
-  const char* does;
+  KeyAction action;
+  const char* description;
 };
 constexpr Key kKeys[] = {
-    {' ', "space", {Act::kPauseOrResume}, "pause, go on"},
+    {' ', "space", {Act::kPauseOrResume}, "pause, resume"},
     {'.', ".", {Act::kStep}, "one step of 1 ms"},
-    {'R', "R", {Act::kReset}, "begin anew"},
+    {'R', "R", {Act::kReset}, "restart"},
     {'1', "1", {Act::kOverlay, Overlay::kContacts}, "contacts"},
     {'2', "2", {Act::kOverlay, Overlay::kForces}, "forces"},
     {'3', "3", {Act::kOverlay, Overlay::kTools}, "tools"},
@@ -29,16 +29,16 @@ constexpr Key kKeys[] = {
 
 }  // namespace
 
-std::optional<Wish> wish_of(int key) {
+std::optional<KeyAction> action_of(int key) {
   for (const Key& k : kKeys)
-    if (k.key == key) return k.wish;
+    if (k.key == key) return k.action;
   return std::nullopt;
 }
 
 std::vector<std::string> help_lines() {
   std::vector<std::string> lines;
   for (const Key& k : kKeys)
-    lines.push_back(std::string(k.name) + std::string(8 - std::string(k.name).size(), ' ') + k.does);
+    lines.push_back(std::string(k.name) + std::string(8 - std::string(k.name).size(), ' ') + k.description);
   lines.emplace_back("mouse   left button aims the lamp");
   return lines;
 }

@@ -1,4 +1,4 @@
-// What the keys and the mouse of a window ask for. Pure: the window hands in what was pressed.
+// Actions of the keys of a window. Pure: the window passes the pressed keys.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 namespace tactus::visual {
 
 enum class Act { kPauseOrResume, kStep, kReset, kFullScreen, kClose, kOverlay };
-struct Wish {
+struct KeyAction {
   Act act;
-  Overlay overlay = Overlay::kHelp;  // of kOverlay
-  bool operator==(const Wish&) const = default;
+  Overlay overlay = Overlay::kHelp;  // for kOverlay
+  bool operator==(const KeyAction&) const = default;
 };
 
 // key: the upper case letter, digit or sign on it, or one of these.
-inline constexpr int kEscape = 256, kF11 = 300;  // as GLFW numbers them
-std::optional<Wish> wish_of(int key);
-// What each key does, a line each.
+inline constexpr int kEscape = 256, kF11 = 300;  // GLFW key codes
+std::optional<KeyAction> action_of(int key);
+// Help text: one line for each key.
 std::vector<std::string> help_lines();
 
 }  // namespace tactus::visual

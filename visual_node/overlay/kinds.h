@@ -1,4 +1,4 @@
-// Which overlays there are and which of them are on. Pure.
+// The kinds of overlays and a set of them. Pure.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 namespace tactus::visual {
 
 enum class Overlay { kContacts, kForces, kTools, kGroups, kAges, kDegradation, kReport, kPlots, kHelp };
-// In that order; as in the setting `overlay`.
+// In that order; values of the setting `overlay`.
 inline constexpr std::array<std::string_view, 9> kOverlayNames{"contacts",    "forces", "tools", "groups", "ages",
                                                                "degradation", "report", "plots", "help"};
 
@@ -24,8 +24,8 @@ class OverlaySet {
   std::bitset<kOverlayNames.size()> on_;
 };
 
-// "contacts report", also with commas between; "none", "" or "all". Throws std::invalid_argument with one sentence
-// for any other word.
+// "contacts report", also with commas; "none", "" or "all". Throws std::invalid_argument with one sentence for any
+// other word.
 OverlaySet parse_overlays(std::string_view text);
 
 }  // namespace tactus::visual

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "visual_node/frame/marker.h"
@@ -11,10 +13,10 @@
 namespace tactus::visual {
 namespace {
 
-// Messages of a channel between two frames: a state of 1 kHz for a tenth of a second, or two snapshots of 300
-// contacts.
-constexpr std::size_t kMaxHeard = 256;
-// The first line is below the word that says how good the frame is.
+// Queue length: the messages of a channel between two frames. A state of 1 kHz for a tenth of a second, or two
+// snapshots of 300 contacts.
+constexpr std::size_t kQueueLength = 256;
+// The first line is below the status word of the frame.
 constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
 
 }  // namespace
@@ -37,35 +39,35 @@ std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
   force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
   plots_ = Plots(parse_plots(settings.plots, trouble), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);
-  groups_.forget();
+  groups_.reset();
   tools_.clear();
-  listen();
+  subscribe();
   return trouble;
 }
 
 void LiveOverlays::toggle(Overlay o) {
   on_.toggle(o);
-  listen();
+  subscribe();
 }
 
-void LiveOverlays::listen() {
+void LiveOverlays::subscribe() {
   std::vector<std::string> wanted;
   if (on_.on(Overlay::kPlots)) wanted = plots_.channels();
-  if (wants_contacts()) wanted.emplace_back(channels::kContacts);
+  if (needs_contacts()) wanted.emplace_back(channels::kContacts);
   if (on_.on(Overlay::kReport)) wanted.emplace_back(channels::kNodeHealth);
-  for (auto& [channel, queue] : heard_)
+  for (auto& [channel, queue] : queues_)
     queue->set_wanted(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
   for (const std::string& channel : wanted)
-    if (!heard_.contains(channel)) heard_[channel] = &bus_.raw(channel.c_str(), kMaxHeard);
+    if (!queues_.contains(channel)) queues_[channel] = &bus_.raw(channel.c_str(), kQueueLength);
   if (!on_.on(Overlay::kForces)) tools_.clear();
-  if (!on_.on(Overlay::kGroups)) groups_.forget();
+  if (!on_.on(Overlay::kGroups)) groups_.reset();
 }
 
-void LiveOverlays::hear() {
-  for (auto& [channel, queue] : heard_)
+void LiveOverlays::receive() {
+  for (auto& [channel, queue] : queues_)
     queue->read([&, &name = channel](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
       if (on_.on(Overlay::kPlots)) plots_.push(name, bytes, arrival);
-      if (name == channels::kContacts && wants_contacts())
+      if (name == channels::kContacts && needs_contacts())
         if (const auto m = sync::decode<contact_frame_t>(bytes.data(), bytes.size())) contacts_.push(*m, arrival);
       if (name == channels::kNodeHealth && on_.on(Overlay::kReport))
         if (const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size()); m && m->node == "sim_node")
@@ -99,9 +101,9 @@ std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStat
 void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width,
                           int picture_height) {
   if (!on_.any()) return;
-  hear();
+  receive();
   sync::Sample<sync::Contacts> touching;
-  if (wants_contacts() && frame.instant) {
+  if (needs_contacts() && frame.instant) {
     touching = contacts_.state_at(*frame.instant);
     contacts_.take_events(*frame.instant);
   }
@@ -119,7 +121,7 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   facts.haptic_bodies = groups_.haptic();
   facts.visual_bodies = groups_.visual();
   if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.status, now);
-  // What a program reads at the lower edge is drawn over by nothing.
+  // Nothing is drawn over the markers at the lower edge, which programs read.
   const float bottom = static_cast<float>(picture_height - markers_px_);
   float right = static_cast<float>(picture_width);
   if (on_.on(Overlay::kPlots) && !plots_.empty()) {

@@ -1,10 +1,12 @@
-// All overlays of a running node: hears what they need, keeps it, and adds them to each frame. What is off is not
-// heard, not kept and not drawn.
+// All overlays of a running node: subscribes to their inputs, stores them, and adds the overlays to each frame. An
+// overlay that is off costs no subscription, storage or drawing.
 #pragma once
 
 #include <map>
 #include <string>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "sync/bus/bus.h"
@@ -21,47 +23,46 @@ class LiveOverlays {
  public:
   explicit LiveOverlays(sync::Bus& bus) : bus_(bus), contacts_(bus.clocks()) {}
 
-  // Throws std::invalid_argument with one sentence for an overlay or a plot that there is not; then nothing has
-  // changed.
+  // Throws std::invalid_argument with one sentence for an unknown overlay or plot; changes nothing.
   static void check(const Settings& settings);
-  // What of it can be drawn; a sentence for each thing that cannot.
+  // Applies the valid part of the settings; returns a sentence for each invalid part.
   std::vector<std::string> configure(const Settings& settings);
   void toggle(Overlay o);
   const OverlaySet& on() const { return on_; }
 
-  // What the node hears anyway.
+  // Messages that the node receives anyway.
   void push(const world_state_t& m) {
     if (on_.on(Overlay::kGroups)) groups_.push(m);
   }
   void push(const contact_events_t& m, sync::HostTime arrival) {
-    if (wants_contacts()) contacts_.push(m, arrival);
+    if (needs_contacts()) contacts_.push(m, arrival);
   }
   void push(const tool_state_t& m) {
     if (on_.on(Overlay::kForces)) tools_[m.tool] = m;
   }
 
-  // Before a frame is composed: colours of its bodies.
+  // Call before a frame is composed: sets the colours of its bodies.
   void tint(FrameComposer& composer, std::size_t bodies);
-  // Its surfaces and flashes are there: adds lines, words and plots. facts: what the node knows of itself; the
-  // rest is filled in.
+  // Call when its surfaces and flashes are drawn: adds lines, text and plots. facts: data of the node itself; the
+  // rest is filled in here.
   void append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width, int picture_height);
 
  private:
   static constexpr int kMaxTools = 64;
-  bool wants_contacts() const {
+  bool needs_contacts() const {
     return on_.on(Overlay::kContacts) || on_.on(Overlay::kForces) || on_.on(Overlay::kReport);
   }
-  void listen();
-  void hear();
+  void subscribe();
+  void receive();
   std::vector<InputLine> inputs(const Frame& frame, sync::SampleStatus contacts, sync::HostTime now) const;
 
   sync::Bus& bus_;
   OverlaySet on_;
   float force_scale_m_N_ = 0;
-  int markers_px_ = 0;  // of the lower edge, where programs read
+  int markers_px_ = 0;  // height of the lower edge that programs read
   Plots plots_{{}, sync::Nanoseconds(1)};
   std::map<std::string, sync::RawQueue*>
-      heard_;  // by channel; once heard, a queue stays with the bus, wanted or not
+      queues_;  // by channel; a queue stays with the bus once created, used or not
   sync::ContactStream contacts_;
   Groups groups_;
   bool tinted_ = false;

@@ -1,6 +1,7 @@
 #include "visual_node/overlay/live_questions.h"
 
 #include <algorithm>
+#include <tactus/question_t.hpp>
 
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/overlay/question_panel.h"
@@ -8,48 +9,48 @@
 namespace tactus::visual {
 
 LiveQuestions::LiveQuestions(sync::Bus& bus)
-    : bus_(bus), heard_(bus.queue<question_t>(channels::kQuestion, 64)), desk_(bus.identity().run_id) {}
+    : bus_(bus), questions_(bus.queue<question_t>(channels::kQuestion, 64)), dialog_(bus.identity().run_id) {}
 
 void LiveQuestions::configure(const Settings& settings) {
-  wanted_ = settings.questions;
+  enabled_ = settings.questions;
   markers_px_ = marker_height_px(settings.event_marker == "strip", settings.motion_marker == "strip");
 }
 
 void LiveQuestions::step() {
-  while (const auto m = heard_.pop())
-    if (wanted_) desk_.push(m->message, m->arrival);
+  while (const auto m = questions_.pop())
+    if (enabled_) dialog_.push(m->message, m->arrival);
   send();
 }
 
 bool LiveQuestions::press(int key, sync::HostTime now) {
   const auto press = press_of(key);
-  const bool ours = wanted_ && press && desk_.press(*press, "key", now);
+  const bool consumed = enabled_ && press && dialog_.press(*press, "key", now);
   send();
-  return ours;
+  return consumed;
 }
 
 bool LiveQuestions::press(Button button, sync::HostTime now) {
-  const bool ours = wanted_ && desk_.press(press_of(button), "gamepad", now);
+  const bool consumed = enabled_ && dialog_.press(press_of(button), "gamepad", now);
   send();
-  return ours;
+  return consumed;
 }
 
 void LiveQuestions::send() {
-  if (auto answer = desk_.take_answer()) bus_.publish(channels::kAnswer, *answer);
+  if (auto answer = dialog_.take_answer()) bus_.publish(channels::kAnswer, *answer);
 }
 
 void LiveQuestions::append(Frame& frame, sync::HostTime now, int picture_width, int picture_height) {
-  const question_t* m = wanted_ ? desk_.on(now) : nullptr;
+  const question_t* m = enabled_ ? dialog_.current(now) : nullptr;
   drawn_ = m != nullptr;
   if (!m) return;
   const auto width = static_cast<float>(picture_width), height = static_cast<float>(picture_height);
   const float free_to = height - static_cast<float>(markers_px_);
-  // Whoever looks with two eyes sees it with both, each in its part of the picture.
+  // In stereo each eye sees the question, in its part of the picture.
   std::vector<std::pair<float, float>> parts;
   const auto add = [&](float x, float top, float wide, float high) {
     if (std::find(parts.begin(), parts.end(), std::pair(x, top)) != parts.end()) return;
     parts.emplace_back(x, top);
-    append_question(frame.list.overlay, *m, desk_.number(), {x, top, x + wide, std::min(top + high, free_to)});
+    append_question(frame.list.overlay, *m, dialog_.number(), {x, top, x + wide, std::min(top + high, free_to)});
   };
   for (const View& v : frame.list.views)
     add(v.x * width, (1 - v.y - v.height) * height, v.width * width, v.height * height);
@@ -57,7 +58,7 @@ void LiveQuestions::append(Frame& frame, sync::HostTime now, int picture_width, 
 }
 
 void LiveQuestions::presented(sync::HostTime at) {
-  if (drawn_) desk_.seen(at);
+  if (drawn_) dialog_.set_presented(at);
 }
 
 }  // namespace tactus::visual

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tactus/histogram_t.hpp>
 
 #include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"
@@ -18,10 +19,10 @@ std::string text(const char* format, auto... values) {
 
 double ms(sync::Nanoseconds t) { return sync::to_seconds(t) * 1e3; }
 
-// As precise as it is worth reading.
+// With useful precision.
 std::string age(sync::Nanoseconds t) { return text(ms(t) < 100 ? "%.1f ms" : "%.0f ms", ms(t)); }
 
-// Cut at blanks where one is in the second half; what goes on is indented.
+// Breaks at a blank in the second half of the line, if any; continuation lines are indented.
 std::vector<std::string> wrapped(const std::vector<std::string>& lines, std::size_t letters) {
   constexpr std::size_t kIndent = 2;
   std::vector<std::string> out;
@@ -55,8 +56,8 @@ void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
     lines.push_back(text("physics   %.2f of %.2f ms, x%.2f", ms(*physics), 1e3 / f.physics.nominal_rate_Hz(),
                          f.physics.realtime_factor()));
   else
-    lines.push_back("physics   not heard of");
-  // From a log a frame takes no time.
+    lines.push_back("physics   no messages");
+  // Offline a frame takes no time.
   lines.push_back(f.rendering > sync::Nanoseconds(0)
                       ? text("rendering %.1f of %.1f ms", ms(f.rendering), ms(f.period))
                       : "rendering not measured");
@@ -84,10 +85,10 @@ void TickTimes::push(const node_health_t& m) {
   if (newest_ && newest_->header.incarnation == m.header.incarnation && m.header.seq <= newest_->header.seq)
     return;
   if (newest_ && newest_->header.incarnation == m.header.incarnation) {
-    histogram_t gained = m.tick;
-    for (std::size_t i = 0; i < gained.bins.size() && i < newest_->tick.bins.size(); ++i)
-      gained.bins[i] = std::max(0, gained.bins[i] - newest_->tick.bins[i]);
-    const sync::Histogram h = sync::Histogram::from_message(gained);
+    histogram_t difference = m.tick;
+    for (std::size_t i = 0; i < difference.bins.size() && i < newest_->tick.bins.size(); ++i)
+      difference.bins[i] = std::max(0, difference.bins[i] - newest_->tick.bins[i]);
+    const sync::Histogram h = sync::Histogram::from_message(difference);
     if (h.count() > 0) median_ = h.quantile(0.5);
   } else {
     median_.reset();

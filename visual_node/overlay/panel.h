@@ -1,4 +1,4 @@
-// The words of the overlays: report, ages, degradation, groups, help, as lines at the upper left of the picture.
+// The text of the overlays: report, ages, degradation, groups, help, as lines at the upper left of the picture.
 // Pure.
 #pragma once
 
@@ -14,12 +14,11 @@
 
 namespace tactus::visual {
 
-// How long the ticks of a node took of late: what its counts since the start have gained from one health to the
-// next.
+// Tick times of a node of late: the difference between the cumulative histograms of two NODE_HEALTH messages.
 class TickTimes {
  public:
   void push(const node_health_t& m);
-  // Of the last interval with ticks; nothing before the second message.
+  // Median of the last interval with ticks; nothing before the second message.
   std::optional<sync::Nanoseconds> median() const { return median_; }
   double nominal_rate_Hz() const { return newest_ ? newest_->nominal_rate_Hz : 0; }
   double realtime_factor() const { return newest_ ? newest_->realtime_factor : 0; }
@@ -32,7 +31,7 @@ class TickTimes {
 struct InputLine {
   std::string channel;
   sync::InputAge age;
-  sync::SampleStatus status = sync::SampleStatus::kNone;  // how what is drawn of it was obtained; kNone: it is not resampled
+  sync::SampleStatus status = sync::SampleStatus::kNone;  // status of the drawn data; kNone: the channel is not resampled
 };
 
 struct PanelFacts {
@@ -49,18 +48,17 @@ struct PanelFacts {
 
 std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& facts);
 
-// What of the picture words may take, pixels from its upper left.
+// The area of the picture that text may use, pixels from its upper left.
 struct TextRoom {
   float x, y, right, bottom;
 };
 
-// Lines on one dark plate at the upper left of the room, `largest` pixels a pixel of a letter, fewer when not all
-// of them would find room so. Long lines go on in the next; what still finds no room is left out. Returns where
-// the next plate would be.
+// Draws lines on one dark plate at the upper left of the room. largest: pixels for each pixel of a letter, reduced
+// until all lines fit. Long lines wrap; lines that still do not fit are left out. Returns the y of the next plate.
 float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextRoom& room,
                    float largest);
 
-// Of a letter's pixel in a picture of that size: 2 at 640 x 480, more in larger ones.
+// Size of a letter's pixel in a picture of that height: 2 at 640 x 480, more in larger ones.
 float text_size(int picture_height);
 
 }  // namespace tactus::visual

@@ -24,7 +24,7 @@ PlotSpec::Kind kind_of(std::string_view word, std::string_view text) {
   if (word == "graph") return PlotSpec::Kind::kGraph;
   if (word == "bar") return PlotSpec::Kind::kBar;
   if (word == "text") return PlotSpec::Kind::kText;
-  refuse(text, "it begins with none of graph, bar, text");
+  refuse(text, "begin it with graph, bar or text");
 }
 
 const MessageType& type_of(std::string_view channel, std::string_view text) {
@@ -37,9 +37,9 @@ const MessageType& type_of(std::string_view channel, std::string_view text) {
 
 void add_filter(PlotSpec& spec, const MessageType& type, std::string_view filter, std::string_view text) {
   const std::size_t equals = filter.find('=');
-  if (filter.empty()) refuse(text, "@ is followed by a process or by field=number");
+  if (filter.empty()) refuse(text, "write a process or field=number after @");
   if (equals == std::string_view::npos) {
-    // Every message on a channel begins with its header.
+    // Every message of a channel begins with its header.
     spec.conditions.emplace_back(FieldPath(type, "header.source"),
                                  static_cast<std::int32_t>(sync::fnv1a_32(filter)));
     return;
@@ -48,7 +48,7 @@ void add_filter(PlotSpec& spec, const MessageType& type, std::string_view filter
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{} || end != number.data() + number.size())
-    refuse(text, "\"" + sync::printable(std::string(number.substr(0, 40))) + "\" is no number");
+    refuse(text, "\"" + sync::printable(std::string(number.substr(0, 40))) + "\" is not a number");
   spec.conditions.emplace_back(FieldPath(type, filter.substr(0, equals)), value);
 }
 
@@ -81,7 +81,7 @@ PlotSpec parse_plot(std::string_view text) {
                   {},
                   title};
     if (spec.value.is_text() && kind != PlotSpec::Kind::kText)
-      refuse(text, "this is text and no number; write text instead");
+      refuse(text, "this field is text, not a number; use the kind text");
     for (const std::string_view filter : filters) add_filter(spec, type, filter, text);
     return spec;
   } catch (const std::invalid_argument& e) {
@@ -98,7 +98,7 @@ std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string
     list = end == std::string_view::npos ? std::string_view{} : list.substr(end + 1);
     if (one.empty() || one == "none") continue;
     if (specs.size() == kMaxPlots) {
-      trouble.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is left out");
+      trouble.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is ignored");
       break;
     }
     try {

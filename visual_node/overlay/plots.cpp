@@ -14,11 +14,11 @@ namespace {
 using Colour = Eigen::Vector3f;
 const Colour kTitle{0.75f, 0.85f, 1.0f}, kLabel{0.8f, 0.8f, 0.8f}, kLine{0.4f, 1.0f, 0.6f}, kOld{0.6f, 0.6f, 0.6f};
 constexpr float kMargin_px = 6, kPad_px = 3;
-constexpr std::size_t kLongestWords = 64;
-// A value that has not come for so long is grey.
+constexpr std::size_t kMaxTextLength = 64;
+// An older value is drawn grey.
 constexpr sync::Nanoseconds kOldAfter{2'000'000'000};
 
-struct Box {  // where a plot is, pixels
+struct Box {  // place of a plot, pixels
   float x, y, width, size;
   float line() const { return (kGlyphHeight + 2) * size; }
 };
@@ -35,7 +35,7 @@ std::size_t letters(const Box& b) {
   return static_cast<std::size_t>(std::max(0.0f, (b.width - 2 * kPad_px) / ((kGlyphWidth + 1) * b.size)));
 }
 
-// Ends where the box does.
+// Cut at the edge of the box.
 void words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
   append_letters(out, text.substr(0, letters(b)), b.x + kPad_px, y, b.size, colour);
 }
@@ -69,7 +69,7 @@ void Course::add(double value, sync::HostTime t) {
     while (slices_.size() > kColumns) slices_.pop_front();
     return;
   }
-  // Late by a slice or more: the newest slice takes it.
+  // A value that is late by a slice or more is added to the newest slice.
   slices_.back().lowest = std::min(slices_.back().lowest, value);
   slices_.back().highest = std::max(slices_.back().highest, value);
 }
@@ -109,7 +109,7 @@ void Plots::push(const std::string& channel, std::span<const std::uint8_t> bytes
     if (!read) continue;
     p.at = arrival;
     if (const auto* words = std::get_if<std::string>(&*read)) {
-      p.newest = sync::printable(words->substr(0, kLongestWords));
+      p.newest = sync::printable(words->substr(0, kMaxTextLength));
       continue;
     }
     p.value = std::get<double>(*read);
@@ -124,7 +124,7 @@ std::string span(double least, double most, const std::string& unit) {
   return label(least) + " to " + label(most) + (unit.empty() ? "" : " " + unit);
 }
 
-// The course between its least and its most, which are written below it.
+// Draws the course between its lowest and highest value, which are printed below it.
 void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, const std::string& unit,
                   sync::HostTime now, float height) {
   const auto range = course.range(now);
@@ -134,7 +134,7 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   fill(out, left, top, 1, height, kLabel, 0.6f);
   const std::string ago = label(-sync::to_seconds(course.span())) + " s", newest = "now";
   const std::string values = range ? span(range->first, range->second, unit) : "";
-  // In a narrow picture what the values were is worth more than when.
+  // In a narrow picture the range of values has priority over the time labels.
   if (letters(b) >= ago.size() + values.size() + newest.size() + 2) {
     words(out, b, ago, bottom + kPad_px, kLabel);
     right_words(out, b, newest, bottom + kPad_px, kLabel);
@@ -142,9 +142,9 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   if (!range) return;
   middle_words(out, b, std::string_view(values).substr(0, letters(b)), bottom + kPad_px, kTitle);
   const double least = range->first, most = range->second;
-  // A course that does not change is a line in the middle.
+  // A constant course is a line in the middle.
   const auto place = [&](double v) {
-    // Halves: the whole difference of two of the largest numbers is none.
+    // Halves avoid an overflow: the difference of two of the largest numbers is not finite.
     const double share = most > least ? (v / 2 - least / 2) / (most / 2 - least / 2) : 0.5;
     return bottom - static_cast<float>(share) * (height - 1);
   };
@@ -153,7 +153,7 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   double before = 0;
   bool first = true;
   for (const Course::Slice& s : course.slices(now)) {
-    // Drawn to where the slice before was, so that a step is a line.
+    // Drawn up to the previous slice, so that a step is a line.
     const double low = first ? s.lowest : std::min(s.lowest, before),
                  high = first ? s.highest : std::max(s.highest, before);
     first = false;
@@ -164,7 +164,7 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
   if (least < 0 && most > 0) fill(out, left, place(0), width, 1, kLabel, 0.4f);
 }
 
-// From zero to what it was at most of late.
+// Draws a bar from zero to the value, on the scale of its recent range.
 void append_bar(std::vector<Rect>& out, const Box& b, double value, const Course& course, sync::HostTime now,
                 float y) {
   const auto range = course.range(now);

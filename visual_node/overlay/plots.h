@@ -1,4 +1,4 @@
-// Graphs, bars and words of published variables, at the right of the picture. Pure.
+// Graphs, bars and text of published variables, at the right of the picture. Pure.
 #pragma once
 
 #include <deque>
@@ -12,23 +12,23 @@
 
 namespace tactus::visual {
 
-// The course of one variable over the last seconds: lowest and highest value in each of kColumns slices of time,
-// so that no peak is lost and memory is bounded, however often it is published.
+// The history of one variable over the last seconds: the lowest and highest value in each of kColumns time slices,
+// so that no peak is lost and memory is bounded at any publication rate.
 class Course {
  public:
   static constexpr int kColumns = 150;
   struct Slice {
-    std::int64_t number = 0;  // of its time divided by its length
+    std::int64_t number = 0;  // its time divided by its length
     double lowest = 0, highest = 0;
   };
 
   explicit Course(sync::Nanoseconds span) : length_(std::max(sync::Nanoseconds(1), span / kColumns)) {}
-  // Not finite: not counted. Time may go back by a few messages, not further.
+  // Ignores values that are not finite. Time may go back by a few messages, not further.
   void add(double value, sync::HostTime t);
-  // Those of the span that ends now, oldest first.
+  // The slices of the span that ends now, oldest first.
   std::vector<Slice> slices(sync::HostTime now) const;
   std::int64_t number(sync::HostTime t) const { return t.time_since_epoch() / length_; }
-  // Of all slices of the span; nothing when there are none.
+  // The range of all slices of the span; nothing when there are none.
   std::optional<std::pair<double, double>> range(sync::HostTime now) const;
   sync::Nanoseconds span() const { return length_ * kColumns; }
 
@@ -37,21 +37,21 @@ class Course {
   std::deque<Slice> slices_;
 };
 
-// A number as a label: four digits, "12.5", "1.2e-05"; a whole one as it is.
+// A number as a label: four digits, "12.5", "1.2e-05"; an integer in full.
 std::string label(double value);
 
-// Where the column of plots begins in a picture of that width.
+// Left edge of the column of plots in a picture of that width.
 float plots_left(int picture_width);
 
 class Plots {
  public:
-  // span: of the graphs, and how long a bar remembers what was most.
+  // span: of the graphs, and of the maximum of a bar.
   Plots(std::vector<PlotSpec> specs, sync::Nanoseconds span);
   bool empty() const { return plots_.empty(); }
-  // Channels that are to be heard, each once.
+  // Channels to subscribe to, each once.
   std::vector<std::string> channels() const;
   void push(const std::string& channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // One below the other from the upper right corner, as many as find room in that width and height.
+  // Draws the plots from the upper right corner downwards, as many as fit into that width and height.
   void append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height) const;
 
  private:

@@ -3,7 +3,7 @@
 namespace tactus::visual {
 namespace {
 
-// As GLFW numbers them.
+// GLFW key codes.
 constexpr int kEnter = 257, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPad1 = 321, kPad9 = 329,
               kPadEnter = 335;
 
@@ -18,15 +18,15 @@ std::optional<Press> press_of(int key) {
     case kDown: return Press{.coarse = -1};
     case kUp: return Press{.coarse = 1};
     case kEnter:
-    case kPadEnter: return Press{.confirms = true, .goes_on = true};
-    case ' ': return Press{.goes_on = true};
+    case kPadEnter: return Press{.confirms = true, .continues = true};
+    case ' ': return Press{.continues = true};
     default: return std::nullopt;
   }
 }
 
 Press press_of(Button button) {
   switch (button) {
-    case Button::kA: return {.choice = 0, .confirms = true, .goes_on = true};
+    case Button::kA: return {.choice = 0, .confirms = true, .continues = true};
     case Button::kB: return {.choice = 1};
     case Button::kX: return {.choice = 2};
     case Button::kY: return {.choice = 3};

@@ -1,4 +1,4 @@
-// What keys and the buttons of a gamepad mean to a question. Pure.
+// The meaning of keys and gamepad buttons for a question. Pure.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,16 @@
 
 namespace tactus::visual {
 
-// One press may mean several things; the question that is asked says which of them counts.
+// One press may have several meanings; the current question selects one of them.
 struct Press {
   int choice = -1;           // from 0; -1: none
-  int fine = 0, coarse = 0;  // the mark of a number: -1 down, 1 up
-  bool confirms = false;     // takes the number where its mark is
-  bool goes_on = false;      // what was to be read has been read
+  int fine = 0, coarse = 0;  // move the mark of a number: -1 down, 1 up
+  bool confirms = false;     // confirms the number at its mark
+  bool continues = false;    // confirms that the text has been read
   bool operator==(const Press&) const = default;
 };
 
-// key: as overlay/keys.h has them. Nothing: it has no meaning to any question.
+// key: codes as in overlay/keys.h. Nothing: no meaning for any question.
 std::optional<Press> press_of(int key);
 Press press_of(Button button);
 

@@ -12,10 +12,10 @@ namespace {
 
 const Eigen::Vector3f kWords(1, 1, 1), kKeys(1, 0.78f, 0.25f), kDark(0.05f, 0.06f, 0.08f),
     kQuiet(0.72f, 0.76f, 0.8f);
-constexpr float kOpacity = 0.88f;    // design: words are read over a bright scene
-constexpr float kWidth = 0.9f;       // of the room
+constexpr float kOpacity = 0.88f;    // design: readable over a bright scene
+constexpr float kWidth = 0.9f;       // share of the room
 constexpr float kPadding = 4;        // pixels of a letter, as all lengths below
-constexpr float kChoiceIndent = 10;  // for the key before it
+constexpr float kChoiceIndent = 10;  // room for the key before the text
 constexpr float kTrack = 22;         // height of a slider with its mark
 
 void fill(std::vector<Rect>& overlay, float x, float y, float width, float height, const Eigen::Vector3f& c,
@@ -31,12 +31,12 @@ float width_of(std::size_t letters, float size) {
 }
 
 std::string hint(const question_t& m) {
-  if (m.kind == question_t::READ) return "Enter: go on";
+  if (m.kind == question_t::READ) return "Enter: continue";
   if (m.kind == question_t::NUMBER) return "arrows: move the mark   Enter: answer";
   return "press its number";
 }
 
-// All that is to be drawn in letters of one size, with its height known before anything is drawn.
+// The layout of a question in letters of one size; its height is computed before anything is drawn.
 class Layout {
  public:
   Layout(const question_t& m, double number, float width, float size, float leading)
@@ -69,7 +69,7 @@ class Layout {
            static_cast<float>(std::max(ends_[0].size(), ends_[1].size())) * line(size_);
     return h;
   }
-  // Lines of the text are left out from its end: what can be answered is always there.
+  // Removes lines from the end of the text: the choices or the slider always remain.
   void fit(float height_px) {
     while (text_.size() > 1 && height() > height_px) text_.pop_back();
   }
@@ -113,7 +113,7 @@ class Layout {
     y += line(size_);
     const float middle = y + kTrack * size_ / 2;
     const double steps = (m_.highest - m_.lowest) / m_.step;
-    constexpr double kMaxMarks = 20;  // design: more cannot be told apart
+    constexpr double kMaxMarks = 20;  // design: more cannot be distinguished
     const int marks = steps <= kMaxMarks ? static_cast<int>(std::lround(steps)) : 10;
     for (int i = 0; i <= marks; ++i)
       fill(overlay, left + knob / 2 + track * static_cast<float>(i) / static_cast<float>(marks) - size_ / 2,
@@ -161,7 +161,7 @@ std::string number_text(double number, double step) {
 void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextRoom& room) {
   const float width = (room.right - room.x) * kWidth, all = room.bottom - room.y;
   const float margin = std::floor(all * 0.03f);
-  // 720 lines: 4 pixels a pixel of a letter, which is a letter of 28 lines; 480: 3.
+  // A picture of 720 lines: 4 pixels for each pixel of a letter, a letter of 28 lines; 480 lines: 3 pixels.
   const float largest = std::max(1.0f, std::round(all / 180));
   struct Try {
     float size, leading, height;

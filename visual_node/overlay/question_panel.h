@@ -1,5 +1,4 @@
-// A question as it is drawn: a dark plate in the lower part of the picture with its words, and its choices or the
-// slider of its number. Pure.
+// Draws a question: a dark plate in the lower part of the picture with its text, and its choices or a slider. Pure.
 #pragma once
 
 #include <string>
@@ -12,14 +11,15 @@
 
 namespace tactus::visual {
 
-// Cut at blanks; a word that is longer than a line is cut where the line ends. letters > 0.
+// Breaks text into lines at blanks; a word that is longer than a line is broken at the end of the line. letters >
+// 0.
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t letters);
 
-// With as many decimals as the step of the question has, at most six.
+// A number with as many decimals as the step of the question has, at most six.
 std::string number_text(double number, double step);
 
-// Adds question m with its mark at `number`, in as large letters as find room in the lower two thirds of `room`;
-// in all of it when they would become too small to read from a chair.
+// Draws question m with its mark at `number`. Uses the largest letters that fit into the lower two thirds of
+// `room`, or into all of it when they would be too small to read from a chair.
 void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextRoom& room);
 
 }  // namespace tactus::visual

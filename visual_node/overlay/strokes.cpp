@@ -3,13 +3,13 @@
 namespace tactus::visual {
 namespace {
 
-// Two unit vectors across a line.
+// Two unit vectors perpendicular to a line.
 std::pair<Eigen::Vector3f, Eigen::Vector3f> across(const Eigen::Vector3f& along) {
   const Eigen::Vector3f u = along.unitOrthogonal();
   return {u, along.normalized().cross(u)};
 }
 
-bool drawable(const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m; }
+bool drawable(const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate_m; }
 
 }  // namespace
 

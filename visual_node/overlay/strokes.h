@@ -13,13 +13,13 @@ struct Pen {
   float width_px = 2;
 };
 
-// What is not finite, or farther than kFarthest_m from the origin, is not drawn.
-inline constexpr float kFarthest_m = 1e6f;
+// A line with a coordinate that is not finite, or larger than kMaxCoordinate_m, is not drawn.
+inline constexpr float kMaxCoordinate_m = 1e6f;
 
 void append_line(std::vector<Stroke>& out, const Eigen::Vector3f& from, const Eigen::Vector3f& to, const Pen& pen);
-// Three lines of that length along the axes of the world, which meet in the middle.
+// Three lines of that length along the world axes, crossing in their middle.
 void append_cross(std::vector<Stroke>& out, const Eigen::Vector3f& at, float length_m, const Pen& pen);
-// Four barbs, so that it is one from wherever it is seen; they take a quarter of its length.
+// Four barbs, so that it is an arrow from every side; they take a quarter of its length.
 void append_arrow(std::vector<Stroke>& out, const Eigen::Vector3f& from, const Eigen::Vector3f& along,
                   const Pen& pen);
 // A zigzag of kSpringTurns.

@@ -1,18 +1,19 @@
 #include "visual_node/overlay/touches.h"
 
 #include <algorithm>
+#include <tactus/contact_point_t.hpp>
 
 #include "lcmtypes/vectors.h"
 
 namespace tactus::visual {
 namespace {
 
-// design: told apart by lightness too, and none the colour of a flash.
+// design: they differ in lightness too, and none has the colour of a flash.
 const Pen kOfTool{{1.0f, 0.9f, 0.2f, 1}}, kOfOthers{{0.3f, 1.0f, 0.4f, 1}};
 const Pen kForce{{1.0f, 0.35f, 0.3f, 1}, 3}, kHandForce{{1.0f, 0.4f, 1.0f, 1}, 3};
 const Pen kSpring{{0.9f, 0.9f, 1.0f, 0.9f}}, kProxy{{1, 1, 1, 1}, 2}, kDevice{{1, 1, 1, 0.5f}, 1};
 constexpr float kAxis_m = 0.04f, kSpringWidth_m = 0.012f;
-constexpr double kApart_m = 1e-3;  // a proxy nearer to its device than this is not drawn apart
+constexpr double kApart_m = 1e-3;  // below this distance of proxy and device the spring is not drawn
 
 Eigen::Vector3f middle(const contact_point_t& p) {
   return (to_eigen(p.a_world_m) + to_eigen(p.b_world_m)).cast<float>() / 2;

@@ -1,4 +1,4 @@
-// Contacts, forces and tools as lines in space: what the physics says of what the picture shows. Pure.
+// Contacts, forces and tools as lines in space, from the state of the simulation. Pure.
 #pragma once
 
 #include <span>
@@ -11,19 +11,18 @@
 
 namespace tactus::visual {
 
-// Of a world with more contacts the first are drawn.
+// Limit of drawn contacts; further ones are left out.
 inline constexpr std::size_t kMaxContactsDrawn = 2048;
-// Length of a normal, m; of the cross at a point half of it.
+// Length of a normal, m; the cross at a point is half as long.
 inline constexpr float kNormal_m = 0.03f;
 
-// A cross at each of its points, and its normal from there: yellow a contact that a tool takes part in, green any
-// other.
+// A cross and the normal at each contact point: yellow if a tool takes part in the contact, otherwise green.
 void append_contacts(std::vector<Stroke>& out, std::span<const contact_t> contacts);
-// The normal force on body b, from the middle of the points; scale: m of arrow a newton.
+// The normal force on body b, from the mean of the points; scale: m of arrow for each newton.
 void append_contact_forces(std::vector<Stroke>& out, std::span<const contact_t> contacts, float scale_m_N);
-// The force on a hand, where its proxy is.
+// The force on a hand, at its proxy.
 void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const tool_state_t& state, float scale_m_N);
-// Axes of the proxy, fainter those of the device, and the spring between them when they are apart.
+// Axes of the proxy, fainter axes of the device, and the spring between them when they are apart.
 void append_tool(std::vector<Stroke>& out, const ToolPose& pose);
 
 }  // namespace tactus::visual

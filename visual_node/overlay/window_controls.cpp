@@ -1,36 +1,38 @@
 #include "visual_node/overlay/window_controls.h"
 
+#include <tactus/sim_reply_t.hpp>
+
 #include "sync/bus/request_reply.h"
 
 namespace tactus::visual {
 
-void WindowControls::heed(const Wish& wish, Display& display, LiveOverlays& overlays) {
-  switch (wish.act) {
-    case Act::kOverlay: return overlays.toggle(wish.overlay);
+void WindowControls::execute(const KeyAction& action, Display& display, LiveOverlays& overlays) {
+  switch (action.act) {
+    case Act::kOverlay: return overlays.toggle(action.overlay);
     case Act::kFullScreen: return display.toggle_full_screen();
     case Act::kClose: closing_ = true; return;
-    default: wishes_.ask(wish.act, sync::request_id());
+    default: requests_.request(action.act, sync::request_id());
   }
 }
 
 void WindowControls::step(sync::HostTime now, Display& display, LiveOverlays& overlays, LiveQuestions& questions,
-                    const DrawList& list, std::span<const Triangles> geometries, const Say& say) {
+                    const DrawList& list, std::span<const Triangles> geometries, const Report& report) {
   if (!display.has_screen()) return;
   if (!replies_) replies_ = &bus_.queue<sim_reply_t>(channels::kSimReply, 64);
   const Inputs inputs = display.take_inputs();
   for (const int key : inputs.keys)
     if (!questions.press(key, now))
-      if (const auto wish = wish_of(key)) heed(*wish, display, overlays);
+      if (const auto action = action_of(key)) execute(*action, display, overlays);
   for (const Button button : inputs.buttons) questions.press(button, now);
   if (inputs.aim)
     if (const auto hit = hit_at(list, geometries, inputs.aim->first, inputs.aim->second))
       pointer_.aim(hit->cast<double>());
   if (auto state = pointer_.state(now)) bus_.publish(channels::kDeviceState, *state);
   while (const auto m = replies_->pop())
-    if (m->message.header.run_id == bus_.identity().run_id) wishes_.push(m->message);
-  if (auto command = wishes_.step(now)) bus_.publish(channels::kSimCommand, *command);
-  for (const std::string& sentence : {wishes_.take_answer(), display.take_trouble()})
-    if (!sentence.empty()) say(sentence);
+    if (m->message.header.run_id == bus_.identity().run_id) requests_.push(m->message);
+  if (auto command = requests_.step(now)) bus_.publish(channels::kSimCommand, *command);
+  for (const std::string& sentence : {requests_.take_answer(), display.take_trouble()})
+    if (!sentence.empty()) report(sentence);
 }
 
 }  // namespace tactus::visual

@@ -1,4 +1,4 @@
-// Everything that one frame shows, as plain data: what the scene view builds and the renderer draws.
+// The content of one frame as plain data: the scene view builds it and the renderer draws it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,16 +11,16 @@
 
 namespace tactus::visual {
 
-// One shape in its place. The layout is that of the instance attributes of shaders/surface.vert.
+// One shape and its pose. The layout is that of the instance attributes of shaders/surface.vert.
 struct Instance {
   Eigen::Vector4f orientation{0, 0, 0, 1};  // T_world_shape, quaternion x, y, z, w
   Eigen::Vector4f position{0, 0, 0, 1};     // m, world; w unused
   Eigen::Vector4f scale{1, 1, 1, 16};       // along the axes of the shape; w: Phong exponent
   Eigen::Vector4f diffuse{1, 1, 1, 1};      // linear; w: opacity
   Eigen::Vector4f specular{0, 0, 0, 0};     // linear; w unused
-  Eigen::Vector4f ambient{0, 0, 0, 0};      // share of the ambient light that it returns; w unused
+  Eigen::Vector4f ambient{0, 0, 0, 0};      // share of the ambient light that the shape returns; w unused
   Eigen::Vector4f emissive{0, 0, 0, 0};     // linear; w unused
-  // T_world_body, as above: a relief is laid out in the frame of the body.
+  // T_world_body, as above: a relief is defined in the frame of the body.
   Eigen::Vector4f body_orientation{0, 0, 0, 1};
   Eigen::Vector4f body_position{0, 0, 0, 1};
 };
@@ -36,9 +36,9 @@ struct Batch {
   int look = 0;     // index in Appearance::looks
 };
 
-// The layout is that of one element of the light block in shaders/surface.frag (std140).
+// The layout is that of one element of the light block in shaders/lamps.glsl (std140).
 struct Light {
-  Eigen::Vector4f position{0, 0, 0, 0};  // m, world; w: 0 for a directional light, whose position does not matter
+  Eigen::Vector4f position{0, 0, 0, 0};  // m, world; w: 0 for a directional light, which has no position
   Eigen::Vector4f direction{0, 0, -1, 0};   // unit, away from the lamp; w unused
   Eigen::Vector4f diffuse{0, 0, 0, 0};      // linear, times intensity; w: range in m
   Eigen::Vector4f specular{0, 0, 0, 0};     // linear, times intensity; w unused
@@ -52,22 +52,22 @@ inline constexpr int kMaxLights = 8;
 
 struct Lighting {
   std::vector<Light> lights;                                  // at most kMaxLights
-  int shadow_light = -1;                                      // which of them casts a shadow, -1: none
+  int shadow_light = -1;                                      // index of the light that casts a shadow, -1: none
   Eigen::Matrix4f shadow_clip = Eigen::Matrix4f::Identity();  // world to the clip space of that lamp
   Eigen::Vector3f ambient = Eigen::Vector3f::Zero();          // linear
   Eigen::Vector3f background = Eigen::Vector3f::Zero();       // linear
   float exposure = 1;
 };
 
-// A disc of light, drawn over everything and added to it.
+// A disc of light, drawn over the picture and added to it.
 struct Glow {
-  Eigen::Vector4f centre;  // m, world; w: 0 .. 1, how far the flash has grown
+  Eigen::Vector4f centre;  // m, world; w: growth of the flash, 0 .. 1
   Eigen::Vector4f u, v;    // half axes, m, world
   Eigen::Vector4f colour;  // linear, premultiplied; w unused
 };
 static_assert(sizeof(Glow) == 4 * 16);
 
-// A straight line, drawn over everything, in sRGB.
+// A straight line in space, drawn over the picture, in sRGB.
 struct Stroke {
   Eigen::Vector4f from;    // m, world; w: width in pixels
   Eigen::Vector4f to;      // m, world; w unused
@@ -75,15 +75,15 @@ struct Stroke {
 };
 static_assert(sizeof(Stroke) == 3 * 16);
 
-// A filled rectangle in pixels from the top left, over everything, in sRGB.
+// A filled rectangle in pixels from the top left, drawn over the picture, in sRGB.
 struct Rect {
   float x = 0, y = 0, width = 0, height = 0;
   float red = 0, green = 0, blue = 0, alpha = 1;
 };
 
 struct DrawList {
-  Camera camera;            // of the head: what is in front of what, how large flashes are
-  std::vector<View> views;  // what is drawn; none: what the camera sees, all over the picture
+  Camera camera;            // of the head; used for depth order and the size of flashes
+  std::vector<View> views;  // views to draw; empty: the camera's view in the whole picture
   Lighting lighting;
   std::vector<Instance> instances;
   std::vector<Batch> opaque;       // roughly front to back

@@ -8,14 +8,13 @@
 namespace tactus::visual {
 namespace {
 
-// A hit at this speed flashes with full strength; slower ones less, by the square root, so that a touch is seen
-// too.
+// A hit at this speed flashes with full strength; slower hits are weaker by the square root, so that a light touch
+// is also visible.
 constexpr float kFullSpeed_m_s = 1.0f;
-constexpr float kLeastStrength = 0.35f;
-// A flash begins at this share of its radius.
+constexpr float kMinStrength = 0.35f;
+// Initial share of the radius of a flash.
 constexpr float kFirstSize = 0.45f;
-// Warm for an impact, cool for a contact that begins: told apart also when colours are confused, by their
-// lightness.
+// Warm for a hit, cool for a begin; they differ in lightness too, for colour-blind users.
 const Eigen::Vector3f kHit{1.0f, 0.62f, 0.18f}, kBegin{0.35f, 0.75f, 1.0f};
 
 Glow disc(const Eigen::Vector3f& centre, const Eigen::Vector3f& u, const Eigen::Vector3f& v,
@@ -32,9 +31,9 @@ Glow disc(const Eigen::Vector3f& centre, const Eigen::Vector3f& u, const Eigen::
 
 Flashes::Flashes(const Settings& s)
     : duration_(sync::from_seconds(s.flash_duration_s)),
-      least_frames_(s.flash_frames),
+      min_frames_(s.flash_frames),
       radius_m_(static_cast<float>(s.flash_radius_m)),
-      least_px_(static_cast<float>(s.flash_pixels)) {}
+      min_px_(static_cast<float>(s.flash_pixels)) {}
 
 void Flashes::add(const contact_event_t& event, sync::HostTime t) { flashes_.push_back({event, t, 0}); }
 
@@ -44,13 +43,13 @@ void Flashes::append_glows(const Flash& f, sync::HostTime t, const Camera& camer
   const float grown = kFirstSize + (1 - kFirstSize) * std::sqrt(age);
   const Eigen::Vector3f centre = to_eigen(f.event.point_m).cast<float>();
   const float distance_m = std::max((centre - camera.eye).norm(), 1e-3f);
-  const float radius_m = grown * std::max(radius_m_, least_px_ * distance_m / camera.focal_px);
-  const float speed = std::clamp(std::sqrt(f.event.approach_speed_m_s / kFullSpeed_m_s), kLeastStrength, 1.0f);
-  // The last of the least frames is still seen when the duration is over.
+  const float radius_m = grown * std::max(radius_m_, min_px_ * distance_m / camera.focal_px);
+  const float speed = std::clamp(std::sqrt(f.event.approach_speed_m_s / kFullSpeed_m_s), kMinStrength, 1.0f);
+  // The last of the minimum frames stays visible after the duration.
   const Eigen::Vector3f colour =
       (f.event.kind == contact_event_t::HIT ? kHit : kBegin) * speed * std::max(1 - age, 0.15f);
 
-  // A ring in the plane of contact, and a core that faces the eye: one of them is seen from any side.
+  // A ring in the plane of contact, and a core that faces the eye: one of them is visible from any side.
   const Eigen::Vector3f normal = to_eigen(f.event.normal).cast<float>();
   const Eigen::Vector3f u = normal.unitOrthogonal();
   out.push_back(disc(centre, radius_m * u, radius_m * normal.cross(u), colour, age));
@@ -60,7 +59,7 @@ void Flashes::append_glows(const Flash& f, sync::HostTime t, const Camera& camer
 }
 
 std::vector<Glow> Flashes::frame(sync::HostTime t, const Camera& camera) {
-  std::erase_if(flashes_, [&](const Flash& f) { return f.frames >= least_frames_ && t - f.first >= duration_; });
+  std::erase_if(flashes_, [&](const Flash& f) { return f.frames >= min_frames_ && t - f.first >= duration_; });
   std::vector<Glow> glows;
   for (auto f = flashes_.rbegin(); f != flashes_.rend(); ++f) {
     append_glows(*f, t, camera, glows);

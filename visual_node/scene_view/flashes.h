@@ -1,4 +1,4 @@
-// The flash of every contact that begins or hits: it shows in several frames however short the contact was.
+// Flashes of contact events: every begin and hit is visible in several frames, however short the contact was.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,10 @@ class Flashes {
 
   // Adds an event that is first shown by the frame presented at t.
   void add(const contact_event_t& event, sync::HostTime t);
-  // Call once a frame, after add(): the glows of the frame presented at t, newest first, and ages the flashes.
-  // Each lives for the duration set and for the number of frames set, whichever is longer.
+  // Call once a frame, after add(): returns the glows of the frame presented at t, newest first, and ages the
+  // flashes. Each flash lasts for the duration and the number of frames of the settings, whichever is longer.
   std::vector<Glow> frame(sync::HostTime t, const Camera& camera);
-  // Events whose flash the last frame showed, newest first.
+  // Events whose flash is in the last frame, newest first.
   std::vector<std::int64_t> shown() const;
   void clear() { flashes_.clear(); }
 
@@ -34,10 +34,10 @@ class Flashes {
   void append_glows(const Flash& flash, sync::HostTime t, const Camera& camera, std::vector<Glow>& out) const;
 
   sync::Nanoseconds duration_;
-  int least_frames_;
+  int min_frames_;
   float radius_m_;
-  float least_px_;
-  std::deque<Flash> flashes_;  // in order of arrival; bounded by the events of some frames, which sync/ bounds
+  float min_px_;
+  std::deque<Flash> flashes_;  // in order of arrival; bounded by the events of a few frames, which sync/ bounds
 };
 
 }  // namespace tactus::visual

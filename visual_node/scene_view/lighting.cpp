@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 
@@ -14,18 +15,18 @@ Eigen::Vector4f with(const Eigen::Vector3d& v, float w) {
   return {f.x(), f.y(), f.z(), w};
 }
 
-// A texel of the map is as wide as the cone is there: beyond 160 degrees a single map would be all corner.
-constexpr double kWidestShadowCone_rad = 160 * std::numbers::pi / 180;
-// Farther away a lamp's shadow would be coarser than what it falls on.
-constexpr double kFarthestShadow_m = 30;
-// Depth precision is lost with the ratio of far to near.
+// A shadow map covers the cone with a flat picture: beyond 160 degrees most texels would lie in its corners.
+constexpr double kMaxShadowCone_rad = 160 * std::numbers::pi / 180;
+// Range of a shadow: farther away a texel is coarser than the shaded detail.
+constexpr double kMaxShadowDistance_m = 30;
+// Ratio of far to near plane; depth precision decreases with it.
 constexpr double kShadowFarToNear = 500;
-// Nearer to the lamp than this a hand names no direction.
-constexpr double kNearestAim_m = 0.01;
+// A target nearer to the lamp than this gives no direction.
+constexpr double kMinAimDistance_m = 0.01;
 
 Eigen::Matrix4f shadow_clip(const light_def_t& lamp) {
-  const double far_m = std::min<double>(std::max(lamp.range_m, 0.1f), kFarthestShadow_m);
-  const double cone = std::clamp<double>(lamp.outer_angle_rad * 1.02, 0.05, kWidestShadowCone_rad);
+  const double far_m = std::min<double>(std::max(lamp.range_m, 0.1f), kMaxShadowDistance_m);
+  const double cone = std::clamp<double>(lamp.outer_angle_rad * 1.02, 0.05, kMaxShadowCone_rad);
   return perspective(cone, 1, far_m / kShadowFarToNear, far_m) *
          look_along(to_eigen(lamp.pose.position_m), to_eigen(lamp.direction));
 }
@@ -43,7 +44,8 @@ Light make_light(const light_def_t& lamp) {
     l.attenuation = {lamp.attenuation_constant, lamp.attenuation_linear, lamp.attenuation_quadratic, 0};
   if (spot) {
     const float outer = std::cos(lamp.outer_angle_rad / 2);
-    // An inner cone as wide as the outer one is a hard edge: 0.001 of cosine is half a texel of the shadow map.
+    // An inner cone as wide as the outer one has a hard edge: 0.001 of cosine is half a texel of the shadow
+    // map.
     const float factor = 1 / std::max(std::cos(lamp.inner_angle_rad / 2) - outer, 1e-3f);
     l.cone = {factor, -outer * factor, lamp.falloff > 0 ? lamp.falloff : 1, 0};
   }
@@ -52,7 +54,7 @@ Light make_light(const light_def_t& lamp) {
 
 void aim(Lighting& lighting, std::size_t light, const light_def_t& lamp, const Eigen::Vector3d& at) {
   const Eigen::Vector3d to = at - to_eigen(lamp.pose.position_m);
-  if (light >= lighting.lights.size() || !(to.norm() > kNearestAim_m)) return;
+  if (light >= lighting.lights.size() || !(to.norm() > kMinAimDistance_m)) return;
   light_def_t aimed = lamp;
   aimed.direction = to_vec3(to.normalized());
   lighting.lights[light] = make_light(aimed);

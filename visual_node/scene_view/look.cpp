@@ -1,11 +1,12 @@
 #include "visual_node/scene_view/look.h"
 
 #include <stdexcept>
+#include <tactus/shader_t.hpp>
 
 namespace tactus::visual {
 namespace {
 
-// Of glass and most things that are no metal: ((n - 1) / (n + 1))^2 for a refractive index n of 1.5 (Fresnel's
+// Reflectance of glass and most non-metals: ((n - 1) / (n + 1))^2 for a refractive index n of 1.5 (Fresnel's
 // equations at normal incidence; the default of glTF 2.0, 3.9.6).
 constexpr float kReflectanceOfGlass = 0.04f;
 

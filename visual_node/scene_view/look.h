@@ -1,11 +1,13 @@
-// How surfaces are drawn, as the scene says: shaders, maps and numbers, with the files that they name.
+// Looks of surfaces as the scene defines them: shaders, maps and numbers, with the files that they name.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <string>
 #include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
 #include <vector>
 
 #include "sync/assets/scene_exchange.h"
@@ -13,19 +15,19 @@
 
 namespace tactus::visual {
 
-// What looks, passes and the surroundings name, by content hash.
+// The files of looks, passes and the environment, by content hash.
 struct LookFiles {
   std::map<std::int64_t, Raster> pictures;
   std::map<std::int64_t, std::string> texts;
 };
 
-// Decodes them. One sentence in `trouble` for each that is not there or damaged.
+// Decodes them. Adds one sentence to `trouble` for each missing or damaged file.
 LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble);
 
-// The texts of a shader; empty: that of the stage as it comes.
+// The sources of a shader; empty: the built-in source of the stage.
 struct ShaderText {
   std::string name, fragment, vertex;
-  std::string fragment_file, vertex_file;  // for messages, and for whoever edits them
+  std::string fragment_file, vertex_file;  // for messages, and for a user who edits them
 };
 
 struct Look {
@@ -38,16 +40,17 @@ struct Look {
   bool mapped() const { return colour_map >= 0 || normal_map >= 0; }
 };
 
-// Everything that a renderer needs to know of it. The first look is the one of surfaces that name none.
+// All looks and their files for the renderer. The first look is that of surfaces without a look.
 struct Appearance {
   std::vector<Look> looks{Look{}};
   std::vector<Raster> pictures;
-  std::vector<ShaderText> shaders;  // of the scene's own
+  std::vector<ShaderText> shaders;  // shaders of the scene
   std::vector<pass_t> passes;
   int environment = -1;  // index in pictures; -1: the background colour
 };
 
-// Of a scene: look i of it is looks[i + 1]. A picture that is not among the files is left out.
+// The appearance of a scene: look i of the scene is looks[i + 1]. A picture that is missing among the files is left
+// out.
 Appearance make_appearance(const scene_t& scene, LookFiles files);
 
 }  // namespace tactus::visual

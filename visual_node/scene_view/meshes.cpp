@@ -1,5 +1,10 @@
 #include "visual_node/scene_view/meshes.h"
 
+#include <tactus/mesh_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
+
 namespace tactus::visual {
 
 Meshes meshes_of(const sync::SceneReceiver& scenes) {

@@ -1,4 +1,4 @@
-// The meshes that the visible shapes of a scene refer to.
+// Decodes the meshes of the visible shapes of a scene.
 #pragma once
 
 #include "sync/assets/scene_exchange.h"
@@ -6,7 +6,7 @@
 
 namespace tactus::visual {
 
-// Of the scene that the receiver holds; those that are not there or not decodable are left out.
+// Meshes of the scene that the receiver holds; meshes that are missing or cannot be decoded are left out.
 Meshes meshes_of(const sync::SceneReceiver& scenes);
 
 }  // namespace tactus::visual

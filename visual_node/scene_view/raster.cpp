@@ -13,7 +13,7 @@
 namespace tactus::visual {
 namespace {
 
-// 64 MB; what every OpenGL 3.3 device takes is 1024, and what those at hand take is 16384.
+// 64 MB. Every OpenGL 3.3 device supports 1024; the devices at hand support 16384.
 constexpr unsigned kMaxSide = 4096;
 
 void check_size(unsigned width, unsigned height) {
@@ -58,7 +58,7 @@ void on_error(j_common_ptr jpeg) {
   std::longjmp(errors->back, 1);
 }
 
-// Below 0: bytes that are missing or make no sense, which libjpeg would fill with grey.
+// Below 0: missing or invalid bytes, which libjpeg would fill with grey.
 void on_message(j_common_ptr jpeg, int level) {
   if (level < 0) on_error(jpeg);
 }
@@ -70,7 +70,7 @@ Raster read_jpeg(std::span<const std::uint8_t> bytes) {
   jpeg.err = jpeg_std_error(&errors);
   errors.error_exit = on_error;
   errors.emit_message = on_message;
-  // libjpeg reports by a jump over its own frames of C; nothing with a destructor is made in between.
+  // libjpeg reports errors by a jump over its C frames; no object with a destructor is created in between.
   if (setjmp(errors.back)) {
     jpeg_destroy_decompress(&jpeg);
     throw std::runtime_error("its JPEG is damaged: " + std::string(errors.message));

@@ -2,6 +2,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <tactus/material_def_t.hpp>
 
 namespace tactus::visual {
 
@@ -16,7 +17,7 @@ HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
       if (picture == pictures.end()) throw std::runtime_error("it was not sent");
       maps.emplace(material.bump_asset, read_height_map(picture->second));
     } catch (const std::exception& e) {
-      trouble.push_back("the bump of material " + material.name + " cannot be read: " + e.what() +
+      trouble.push_back("the height map of material  " + material.name + " cannot be read: " + e.what() +
                         "; it is drawn smooth");
     }
   }

@@ -1,4 +1,4 @@
-// The height maps of a scene, from which its reliefs are made (lcmtypes/relief.h).
+// Decodes the height maps of a scene, from which its reliefs are made (lcmtypes/relief.h).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace tactus::visual {
 
 using HeightMaps = std::map<std::int64_t, HeightMap>;  // by content hash
 
-// One sentence in `trouble` for each that is not there or damaged.
+// Adds one sentence to `trouble` for each missing or damaged map.
 HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures, std::vector<std::string>& trouble);
 
 }  // namespace tactus::visual

@@ -4,6 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
+#include <tactus/visual_def_t.hpp>
 #include <tuple>
 #include <utility>
 
@@ -14,22 +20,22 @@
 namespace tactus::visual {
 namespace {
 
-// Segments around a round shape per level, and the radius in pixels from which the next finer level is used: a
-// polygon of n segments errs by r (1 - cos(pi / n)), which stays below 3/4 of a pixel so. More would cost a
-// software renderer dearly, which shades every triangle in blocks of 4 x 4 pixels.
+// Segments around a round shape per level, and the radius in pixels above which the next finer level is used: a
+// polygon of n segments errs by r (1 - cos(pi / n)), which then stays below 3/4 of a pixel. More segments are
+// expensive on a software renderer, which shades every triangle in blocks of 4 x 4 pixels.
 constexpr std::array kSegments{12, 20, 40};
 constexpr std::array kCoarserBelow_px{22.0f, 61.0f};
 
-// A tool that is a point is drawn as large as a pencil's tip.
-constexpr double kSmallestTool_m = 0.004;
-// Colours of a tool without visuals: a blue that no material of ours has.
+// Minimum radius of a drawn tool: that of a pencil's tip.
+constexpr double kMinTool_m = 0.004;
+// Colour of a tool without visuals: a blue that none of our materials has.
 const Eigen::Vector3f kToolColour{0.10f, 0.42f, 0.95f};
 
-// What stands for a mesh that is not there: as large as what a hand holds, in a colour that nothing has (design).
+// Placeholder of a missing mesh: the size of a hand-held object, in a conspicuous colour (design).
 constexpr float kMissing_m = 0.06f;
 const Eigen::Vector3f kMissingColour{1.0f, 0.0f, 1.0f};
 
-// One that neighbours in the list of bodies do not share: hues a golden angle apart.
+// Colours of consecutive bodies differ: hues a golden angle apart.
 Eigen::Vector3f body_colour(int body) {
   constexpr double kGoldenAngle_rad = 2.399963;  // 2 pi (1 - 1 / golden ratio)
   const double hue = kGoldenAngle_rad * body;
@@ -62,12 +68,12 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   else
     for (const visual_def_t& v : scene.visuals) add(v, meshes);
   for (const tool_def_t& t : scene.tools) add_tool(scene, t, meshes);
-  // A lamp modelled around its light would swallow all of it.
+  // The housing of a lamp would block all of its light.
   for (Part& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
   for (Tool& t : tools_) t.ghost.look.diffuse.w() = static_cast<float>(settings.ghost_alpha);
 }
 
-// Materials that inherited their bump share one relief.
+// Materials with the same inherited height map share one relief.
 void SceneView::add_reliefs(const scene_t& scene, const HeightMaps& height_maps) {
   std::map<std::tuple<std::int64_t, double, double, double>, int> known;
   for (const material_def_t& m : scene.materials) {
@@ -99,7 +105,7 @@ void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
   parts_.push_back(part);
 }
 
-// What touches, in the colour of its body.
+// Draws the collision shapes, each in the colour of its body.
 void SceneView::add_colliding(const shape_def_t& s, const Meshes& meshes) {
   Part part;
   const bool known = shape(s, meshes, part);
@@ -145,24 +151,24 @@ void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Mes
                                                   : shape_def_t::SPHERE;
   form.size_m = tool.size_m;
   form.mesh_hash = tool.mesh_hash;
-  if (form.kind == shape_def_t::SPHERE) form.size_m.x = std::max(tool.radius_m, kSmallestTool_m);
-  // One whose mesh is missing is a ball, so that the hand is found.
+  if (form.kind == shape_def_t::SPHERE) form.size_m.x = std::max(tool.radius_m, kMinTool_m);
+  // A tool without its mesh is drawn as a ball, so that the hand is visible.
   if (!shape(form, meshes, ball)) {
     form.kind = shape_def_t::SPHERE;
-    form.size_m.x = std::max(tool.radius_m, kSmallestTool_m);
+    form.size_m.x = std::max(tool.radius_m, kMinTool_m);
     shape(form, meshes, ball);
   }
   ball.body = tool.body;
   ball.look.scale.w() = 40;
   ball.look.diffuse << kToolColour, 1;
   ball.look.specular = {0.5f, 0.5f, 0.5f, 0};
-  // It glows a little, so that the hand is found in the dark.
+  // It glows slightly, so that the hand is visible in the dark.
   ball.look.ambient << kToolColour, 0;
   ball.look.emissive << 0.12f * kToolColour, 0;
   const bool has_visual =
       std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.body == tool.body; });
   const int light = steered_light(tool, scene.lights);
-  // One that only points is seen when somebody holds it.
+  // A pointing device is drawn only while it is in use.
   if (!has_visual && !only_points(tool, scene.lights) && tool.body < static_cast<int>(scene.bodies.size()))
     parts_.push_back(ball);
   tools_.push_back({tool.body, ball, light, steers_view(tool),
@@ -224,20 +230,20 @@ bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
   const Eigen::Isometry3d pose =
       (body < scene.bodies.size() ? to_eigen(scene.bodies[body].pose) : Eigen::Isometry3d::Identity()) *
       part.in_body;
-  // Not what is as large as a room: its bounding sphere holds everything.
+  // Excludes shapes as large as a room, whose bounding sphere contains everything.
   return part.radius_m < 0.5f && (pose.translation().cast<float>() - lamp).norm() < part.radius_m;
 }
 
 namespace {
-// So much of a tint shines by itself: in a dark room it is seen too.
-constexpr float kTintShines = 0.12f;
+// Share of a tint that is emitted, so that it is visible in a dark room.
+constexpr float kTintGlow = 0.12f;
 
 void add_tint(Instance& instance, const Eigen::Vector4f& tint) {
   const Eigen::Vector3f linear = tint.head<3>().array().pow(2.2f);
   const float share = tint.w();
   instance.diffuse.head<3>() = (1 - share) * instance.diffuse.head<3>() + share * linear;
   instance.ambient.head<3>() = (1 - share) * instance.ambient.head<3>() + share * linear;
-  instance.emissive.head<3>() += share * kTintShines * linear;
+  instance.emissive.head<3>() += share * kTintGlow * linear;
 }
 }  // namespace
 
@@ -289,7 +295,8 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
     if (tools[i].known && tools_[i].light >= 0)
       aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation());
 
-  // Planes and boxes have the lowest numbers and are mostly floors and walls: last, so that little is drawn twice.
+  // Planes and boxes have the lowest numbers and are mostly floors and walls: they are drawn last, to reduce
+  // overdraw.
   std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {
     return std::tuple(-a.geometry, a.casts_shadow, a.relief, a.look, a.distance_m) <
            std::tuple(-b.geometry, b.casts_shadow, b.relief, b.look, b.distance_m);

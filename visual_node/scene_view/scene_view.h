@@ -1,12 +1,16 @@
-// Turns a scene and the poses of its bodies into a draw list. Built anew for every scene.
+// Converts a scene and the poses of its bodies into a draw list. Constructed for each scene.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <map>
 #include <optional>
 #include <span>
+#include <tactus/light_def_t.hpp>
 #include <tactus/mesh_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 #include <vector>
 
 #include "visual_node/lens/lens.h"
@@ -20,7 +24,7 @@ namespace tactus::visual {
 
 using Meshes = std::map<std::int64_t, mesh_t>;  // by content hash
 
-// What is known of one tool at the instant of a frame.
+// The poses of one tool at the instant of a frame.
 struct ToolPose {
   bool known = false;
   Eigen::Isometry3d device = Eigen::Isometry3d::Identity();  // T_world_device
@@ -29,8 +33,8 @@ struct ToolPose {
 
 class SceneView {
  public:
-  // Shapes whose mesh is not among `meshes` are drawn as a box that nobody takes for anything else, and counted;
-  // those whose height map is not there are smooth.
+  // A shape whose mesh is missing is drawn as a conspicuous box and counted; a shape whose height map is missing
+  // is smooth.
   SceneView(const scene_t& scene, const Meshes& meshes, const Settings& settings,
             const HeightMaps& height_maps = {}, LookFiles look_files = {});
 
@@ -38,38 +42,39 @@ class SceneView {
   const std::vector<Triangles>& geometries() const { return geometries_; }
   // The reliefs that batches refer to, by index.
   const std::vector<Relief>& reliefs() const { return reliefs_; }
-  // The looks that batches refer to, by index, and what lies around.
+  // The looks that batches refer to, by index, and the environment.
   const Appearance& appearance() const { return appearance_; }
   const Lighting& lighting() const { return lighting_; }
   const Lens& lens() const { return lens_; }
   int missing_meshes() const { return missing_meshes_; }
-  // One sentence for each thing that is drawn otherwise than the scene says.
+  // One sentence for each thing that is not drawn as the scene defines it.
   const std::vector<std::string>& trouble() const { return trouble_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Colours of bodies from now on, sRGB and how much of it, 0 .. 1; none, or fewer than there are bodies: their own.
+  // Sets colours of bodies: sRGB and their weight, 0 .. 1. Bodies beyond the end of the list keep their own
+  // colour.
   void tint(std::vector<Eigen::Vector4f> bodies) { tints_ = std::move(bodies); }
 
-  // One pose T_world_body per body and one entry per tool; a tool that is known is drawn where its proxy is.
-  // head: T_world_head; nothing: where the scene's camera is.
+  // Takes one pose T_world_body for each body and one entry for each tool; a known tool is drawn at its proxy.
+  // head: T_world_head; nothing: the pose of the scene's camera.
   DrawList draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
                 const std::optional<Eigen::Isometry3d>& head = {}) const;
 
  private:
-  // The order is that of geometries_; levels are how finely round shapes are divided.
+  // The order of geometries_; kLevels: number of subdivisions of round shapes.
   static constexpr int kPlane = 0, kBox = 1, kSphere = 2, kCylinder = 5, kLevels = 3;
 
   struct Part {  // one visible shape
     int body = 0;
     Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();  // T_body_shape
-    int geometry = 0;                                           // of the coarsest level
-    bool levels = false;                                        // whether there are finer ones behind it
-    float radius_m = 0;  // of a sphere about the origin of the shape that holds it
+    int geometry = 0;                                           // index of the coarsest level
+    bool levels = false;                                        // finer levels follow it
+    float radius_m = 0;  // radius of its bounding sphere about the origin of the shape
     bool casts_shadow = true;
     int relief = -1;
     int style = 0;  // index in Appearance::looks
-    Instance look;  // all but its pose
+    Instance look;  // all except its pose
   };
   struct Placed {
     int geometry;
@@ -103,8 +108,8 @@ class SceneView {
   struct Tool {
     int body;
     Part ghost;
-    int light = -1;       // that it steers
-    bool unseen = false;  // nobody sees his own head
+    int light = -1;       // index of the light that it steers
+    bool unseen = false;  // the user's own head is not drawn
     light_def_t lamp{};
   };
   std::vector<Tool> tools_;

@@ -21,11 +21,12 @@ void add_quad(Triangles& t, const Vector3f& centre, const Vector3f& u, const Vec
   for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) t.indices.push_back(base + i);
 }
 
-// A surface of revolution about z: rings from the top down, each a height, a radius and the slope of its normal.
+// A surface of revolution about z: rings from the top down, each with a height, a radius and the slope of its
+// normal.
 struct Ring {
   float z, radius;
   float normal_z, normal_radial;
-  float v = 0;  // where it lies in the height of a picture
+  float v = 0;  // its v coordinate in the picture
 };
 
 void add_revolution(Triangles& t, const std::vector<Ring>& rings, int segments) {
@@ -55,7 +56,7 @@ void add_cap(std::vector<Ring>& rings, float radius, float centre_z, int segment
   const int count = segments / 4;
   for (int i = 0; i <= count; ++i) {
     const double polar = std::numbers::pi / 2 * (top ? i : count - i) / count;
-    // The pole exactly on the axis, so that its degenerate triangles are left out.
+    // The pole lies exactly on the axis, so that its degenerate triangles are left out.
     const float across = polar == 0 ? 0 : static_cast<float>(std::sin(polar));
     const float up = (top ? 1.0f : -1.0f) * static_cast<float>(std::cos(polar));
     rings.push_back({centre_z + radius * up, radius * across, up, across});
@@ -81,7 +82,7 @@ Triangles capsule(double radius_m, double length_m, int segments) {
   add_cap(rings, radius, half, segments, true);
   if (length_m == 0) rings.pop_back();  // a sphere has one equator
   add_cap(rings, radius, -half, segments, false);
-  // The picture's height is laid along the outline from pole to pole.
+  // The height of the picture follows the outline from pole to pole.
   for (std::size_t i = 1; i < rings.size(); ++i)
     rings[i].v = rings[i - 1].v + std::hypot(rings[i].z - rings[i - 1].z, rings[i].radius - rings[i - 1].radius);
   const float outline = rings.back().v;
@@ -110,7 +111,7 @@ Triangles unit_plane() {
 
 Triangles from_mesh(const mesh_t& mesh) {
   Triangles t;
-  t.two_sided = true;  // files of others are not always closed
+  t.two_sided = true;  // meshes from other programs are not always closed
   const auto at = [](const std::vector<float>& v, std::size_t i) { return Vector3f(v[i], v[i + 1], v[i + 2]); };
   for (std::size_t i = 0; i + 2 < mesh.positions_m.size(); i += 3) {
     t.positions.push_back(at(mesh.positions_m, i));

@@ -1,4 +1,4 @@
-// The triangles of every kind of shape, in its own frame.
+// Triangle meshes of all kinds of shapes, in the frame of the shape.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,19 +12,19 @@ namespace tactus::visual {
 struct Triangles {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
-  // Where each lies in a picture, u to the right and v up, and the unit tangent along growing u with the sign of
-  // the binormal (mesh_t.lcm); none: it cannot be laid on.
+  // Texture coordinates of each vertex, u to the right and v up, and the unit tangent along growing u with the
+  // sign of the binormal (mesh_t.lcm); empty: the mesh has no texture coordinates.
   std::vector<Eigen::Vector2f> texcoords;
   std::vector<Eigen::Vector4f> tangents;
   std::vector<std::uint32_t> indices;
-  bool two_sided = false;  // seen from the back too
+  bool two_sided = false;  // also visible from the back
 };
 
-// A picture lies on each side of a box, once around a ball and a cylinder, and once over a plane.
+// A picture covers each side of a box, a whole ball or cylinder once, and a plane once.
 //
-// Unit shapes, to be scaled along their axes: edges of 1, radius 1, length 1, about the origin. Scaling them so
-// keeps their normals right without an inverse transpose: flat faces stay across an axis and x, y of round ones
-// scale alike.
+// Unit shapes, to be scaled along their axes: edges of 1, radius 1, length 1, about the origin. This scaling keeps
+// normals correct without an inverse transpose: flat faces are perpendicular to an axis, and x, y of round ones
+// scale equally.
 Triangles unit_box();
 Triangles unit_sphere(int segments);
 Triangles unit_cylinder(int segments);

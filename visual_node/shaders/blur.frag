@@ -1,5 +1,5 @@
-// A Gaussian of `radius` pixels (its standard deviation), within 5 x 5 samples of 1 radius apart, first along one side of the
-// picture and then along the other: what weak eyes see.
+// Gaussian blur with a standard deviation of `radius` pixels: 5 x 5 samples, 1 radius apart, first along one side
+// of the picture and then along the other. Simulates weak eyesight.
 uniform float radius = 1.5;
 uniform vec2 along;
 

@@ -1,4 +1,4 @@
-// Only edges: the length of Sobel's gradient of luminance, `gain` times.
+// Edge image: the length of Sobel's gradient of luminance, times `gain`.
 uniform float gain = 1.0;
 
 float luminance(int x, int y) {

@@ -1,5 +1,5 @@
 #version 330 core
-// A ring that sharpens as it grows, or a soft core. Added to what is there.
+// A ring that sharpens as it grows, or a soft core. Added to the picture.
 in vec2 on_disc;
 flat in float growth;
 flat in vec3 light;

@@ -1,6 +1,6 @@
 #version 330 core
 // One disc of light per instance: struct Glow in scene_view/draw_list.h.
-layout(location = 0) in vec4 centre;  // w: how far it has grown, 0 .. 1; below 0: a core without a ring
+layout(location = 0) in vec4 centre;  // w: growth of the flash, 0 .. 1; below 0: a core without a ring
 layout(location = 1) in vec4 u;
 layout(location = 2) in vec4 v;
 layout(location = 3) in vec4 tint;

@@ -1,2 +1,2 @@
-// Lit per vertex (Gouraud 1971); only what a shadow takes away is told per pixel.
+// Lit per vertex (Gouraud 1971); only the shadow is evaluated per pixel.
 vec4 shade() { return surface(); }

@@ -1,4 +1,4 @@
-// `amount` of the colour is taken away; luminance as ITU-R BT.709-6, table 4.
+// Removes the share `amount` of the colour; luminance as in ITU-R BT.709-6, table 4.
 uniform float amount = 1.0;
 
 vec4 shade() {

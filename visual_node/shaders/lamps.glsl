@@ -1,6 +1,7 @@
-// Phong's reflection in linear light, for the stage that evaluates it: per pixel, or per vertex (Gouraud). gl/surface_program
-// defines LIGHTS and, lamp by lamp, LAMPS for the scene: a software renderer pays for every branch of every pixel. The stage
-// has `at` (m, world); all bool arguments in this file are known to the compiler.
+// Phong reflection in linear light, for the stage that evaluates it: per pixel, or per vertex (Gouraud).
+// gl/surface_program.cpp defines LIGHTS and, lamp by lamp, LAMPS for the scene: a software renderer pays for every
+// branch of every pixel. The stage provides `at` (m, world); all bool arguments in this file are compile-time
+// constants.
 struct Light {       // struct Light in scene_view/draw_list.h
   vec4 position;
   vec4 direction;
@@ -10,8 +11,8 @@ struct Light {       // struct Light in scene_view/draw_list.h
   vec4 cone;         // factor and offset on the cosine to the axis, exponent of the falloff
 };
 layout(std140) uniform Lights { Light lights[LIGHTS]; };
-// What of a lamp never changes while a scene is shown, known to the compiler: a software renderer pays for every number that it
-// reads for every pixel.
+// Constant properties of the lamps, known to the compiler: a software renderer pays for every number that it reads
+// for every pixel.
 const vec4 lamp_diffuse[LIGHTS] = LAMP_DIFFUSE;
 const vec4 lamp_specular[LIGHTS] = LAMP_SPECULAR;
 const vec4 lamp_attenuation[LIGHTS] = LAMP_ATTENUATION;
@@ -25,16 +26,16 @@ vec4 base;     // diffuse colour and opacity
 vec4 shine;    // specular colour and Phong exponent
 vec3 bounce;   // share of the ambient light that is returned
 vec3 n;        // surface normal
-vec3 v;        // to the eye
-float nv;      // their cosine
-vec3 sum;      // light to the eye
+vec3 v;        // direction to the eye
+float nv;      // cosine of the angle between n and v
+vec3 sum;      // light towards the eye
 #if GOURAUD
-vec3 shaded;   // of that, what a shadow may take away
+vec3 shaded;   // the part of it that a shadow may remove
 #endif
 
-// What the lamp at `l` (unit, to the lamp) adds; shiny: it makes highlights. The lobe is Schlick's t / (s - s t + t) in
-// place of t^s (Schlick 1994, "A fast alternative to Phong's specular model", Graphics Gems IV): a division instead of a
-// power.
+// Adds the light of a lamp in direction `l` (unit, to the lamp). shiny: with highlights. The lobe is Schlick's t /
+// (s - s t + t) instead of t^s (Schlick 1994, "A fast alternative to Phong's specular model", Graphics Gems IV): a
+// division instead of a power.
 void add(int i, vec3 l, float strength, bool shiny) {
   float nl = dot(n, l);
   sum += (strength * max(nl, 0.0)) * base.rgb * lamp_diffuse[i].rgb;
@@ -69,8 +70,8 @@ void lamp(int i, bool shiny, bool coned, bool falls, bool shadowed) {
 #endif
 }
 
-// All lamps on this surface, what the surroundings return and what glows by itself. Hemisphere: what looks down gets the dimmer
-// light that the floor returns (half of it, a floor of middling grey).
+// Light of all lamps, of the surroundings and of the surface itself. Hemisphere light: a surface that faces down
+// receives the dimmer light that the floor returns (half of it, a medium grey floor).
 vec3 light_on(vec3 glowing) {
   sum = glowing + bounce * ambient_light * (0.75 + 0.25 * n.z);
   LAMPS

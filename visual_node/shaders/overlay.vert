@@ -2,7 +2,7 @@
 // One filled rectangle per instance: struct Rect in scene_view/draw_list.h.
 layout(location = 0) in vec4 area;  // x, y, width, height in pixels from the top left
 layout(location = 1) in vec4 tint;
-uniform vec2 size;  // of the picture, pixels
+uniform vec2 size;  // size of the picture, pixels
 flat out vec4 fill;
 
 void main() {

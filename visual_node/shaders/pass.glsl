@@ -1,5 +1,5 @@
-// What every pass over the whole picture has; README.md says it for those who write one.
+// Common inputs of every screen pass; documented for authors in visual_node/shaders/README.md.
 in vec2 where;
-uniform sampler2D picture;  // so far, linear
-uniform vec2 texel;         // one pixel
+uniform sampler2D picture;  // the picture so far, linear
+uniform vec2 texel;         // size of a pixel
 out vec4 colour;

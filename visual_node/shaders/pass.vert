@@ -1,4 +1,4 @@
-// The whole picture.
+// Covers the whole picture.
 out vec2 where;  // 0 .. 1, from the lower left
 
 void main() {

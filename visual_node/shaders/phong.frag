@@ -1,2 +1,2 @@
-// Lit per pixel; with maps and a mirror where its look has them.
+// Lit per pixel, with the maps and the mirror of its look.
 vec4 shade() { return surface(); }

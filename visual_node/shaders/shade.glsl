@@ -1,6 +1,7 @@
 #if RELIEF
-// The normal of the relief: the height's gradient along the surface, taken off the outward normal (Blinn 1978, "Simulation
-// of Wrinkled Surfaces"). Projected along the dominant axis of the normal in the body frame, as in lcmtypes/bump.h.
+// Normal with relief: subtracts the gradient of the height along the surface from the outward normal (Blinn 1978,
+// "Simulation of Wrinkled Surfaces"). The relief is projected along the dominant axis of the normal in the body
+// frame, as in lcmtypes/bump.h.
 vec3 roughened(vec3 smooth_n) {
   vec3 a = abs(facing_body);
   bool z = a.z >= a.x && a.z >= a.y, x = !z && a.x >= a.y;
@@ -12,7 +13,7 @@ vec3 roughened(vec3 smooth_n) {
 }
 #endif
 
-// Normal, view and colours of this pixel, from what is given and the maps.
+// Normal, view and colours of this pixel, from the inputs and the maps.
 void begin() {
   n = normalize(gl_FrontFacing ? facing : -facing);
 #if RELIEF
@@ -36,7 +37,7 @@ void begin() {
 #endif
 }
 
-// The light of all lamps and of the surroundings that this surface returns, and its own; linear.
+// Light of all lamps and of the surroundings that this surface returns, and its own glow; linear.
 vec3 lit() {
 #if GOURAUD
   vec3 light = lit_here;
@@ -54,10 +55,10 @@ vec3 lit() {
 #endif
 }
 
-// Share of the light that is mirrored (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15).
+// Share of mirrored light (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15).
 float fresnel() {
 #if MIRROR
-  // At the rim of what is made of triangles normals between their corners may look away from the eye: there it is as smooth so.
+  // At the rim of a mesh, interpolated normals may face away from the eye; abs() keeps the share smooth there.
   float c = 1.0 - min(abs(nv), 1.0), cc = c * c;
   return reflectance + (1.0 - reflectance) * cc * cc * c;
 #else
@@ -65,7 +66,7 @@ float fresnel() {
 #endif
 }
 
-// What is seen in the mirror; linear.
+// Mirrored light; linear.
 vec3 mirrored() {
 #if MIRROR
   return texture(environment, reflect(-v, n)).rgb;
@@ -74,8 +75,8 @@ vec3 mirrored() {
 #endif
 }
 
-// All of it: what is returned as far as the surface is opaque, and what is mirrored however transparent it is. What is behind
-// is seen through the rest.
+// The complete light: returned light weighted by opacity, and mirrored light independent of opacity. The background
+// shows through the rest.
 vec4 surface() {
 #if MIRROR
   float f = fresnel(), opacity = mix(base.a, 1.0, f);

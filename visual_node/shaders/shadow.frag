@@ -1,3 +1,3 @@
 #version 330 core
-// Only depth is kept.
+// Writes depth only.
 void main() {}

@@ -1,5 +1,5 @@
 #version 330 core
-// Places one shape of a batch as the lamp sees it.
+// Places one shape of a batch in the view of the lamp.
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec4 orientation;
 layout(location = 3) in vec4 place;

@@ -1,5 +1,5 @@
 #version 330 core
-// The whole picture, behind everything.
+// Covers the whole picture, behind everything.
 uniform mat4 world_from_clip;
 out vec3 towards;
 

@@ -1,5 +1,5 @@
 #version 330 core
-// Already sRGB.
+// The colour is already sRGB.
 flat in vec4 fill;
 out vec4 colour;
 void main() { colour = fill; }

@@ -1,14 +1,14 @@
 #version 330 core
-// One straight line per instance, as wide everywhere in the picture: struct Stroke in scene_view/draw_list.h.
+// One straight line per instance, of constant width in the picture: struct Stroke in scene_view/draw_list.h.
 layout(location = 0) in vec4 from;  // w: width, pixels
 layout(location = 1) in vec4 to;
 layout(location = 2) in vec4 tint;
 uniform mat4 clip_from_world;
-uniform vec2 size;  // of the picture, pixels
+uniform vec2 size;  // size of the picture, pixels
 flat out vec4 fill;
 
 void main() {
-  const float nearest = 1e-3;  // m before the eye: what lies behind it is cut off
+  const float nearest = 1e-3;  // m before the eye: nearer parts are cut off
   vec4 a = clip_from_world * vec4(from.xyz, 1.0), b = clip_from_world * vec4(to.xyz, 1.0);
   fill = tint;
   if (a.w < nearest && b.w < nearest) {

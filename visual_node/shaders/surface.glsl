@@ -1,4 +1,4 @@
-// What every fragment shader of a surface has; README.md says it for those who write one.
+// Common inputs of every surface shader; documented for authors in visual_node/shaders/README.md.
 in vec3 at;
 in vec3 facing;
 in vec4 shadow_at;
@@ -9,9 +9,9 @@ flat in vec3 glow;
 #if RELIEF
 in vec3 at_body;
 in vec3 facing_body;
-flat in mat3 body_axes;       // in the world
+flat in mat3 body_axes;       // axes of the body in the world frame
 uniform sampler2D slope_map;  // dh/du, dh/dv, m/m
-uniform vec2 relief_size;     // of one repetition, m
+uniform vec2 relief_size;     // size of one repetition, m
 #endif
 #if MAPPED
 in vec2 uv;

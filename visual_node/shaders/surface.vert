@@ -20,7 +20,7 @@ layout(location = 12) in vec4 tangent_in;  // w: sign of the binormal
 uniform mat4 clip_from_world;
 uniform mat4 shadow_from_world;  // to texture coordinates of the shadow map, before the division
 uniform vec3 eye;
-uniform float see_through;  // 1: what is behind shows through, 0: it is opaque
+uniform float see_through;  // 1: the background shows through, 0: opaque
 
 out vec3 at;  // m, world
 out vec3 facing;
@@ -32,7 +32,7 @@ flat out vec3 glow;
 #if RELIEF
 out vec3 at_body;  // m, body frame
 out vec3 facing_body;
-flat out mat3 body_axes;  // in the world
+flat out mat3 body_axes;  // axes of the body in the world frame
 #endif
 #if MAPPED
 out vec2 uv;

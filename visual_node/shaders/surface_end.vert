@@ -7,7 +7,7 @@ void main() {
   glow = emissive.rgb;
 #if RELIEF
   for (int i = 0; i < 3; ++i) body_axes[i] = rotate(body_orientation, mat3(1.0)[i]);
-  at_body = (at - body_place.xyz) * body_axes;  // transposed: back into the body frame
+  at_body = (at - body_place.xyz) * body_axes;  // multiplication from the left: inverse rotation, into the body frame
   facing_body = facing * body_axes;
 #endif
 #if MAPPED
@@ -23,8 +23,8 @@ void main() {
 #ifdef MOVES
   at = moved(at);
 #endif
-  // A little along the normal, so that a surface does not shadow itself; inside what is seen through, to the inside, or what
-  // it stands on would shadow its bottom.
+  // Shifts the point along the normal, so that a surface does not shadow itself. Inside a transparent shape it
+  // shifts inwards: otherwise the surface below would shadow its bottom.
   float side = dot(facing, eye - at) < 0.0 ? 1.0 - 2.0 * see_through : 1.0;
   shadow_at = shadow_from_world * vec4(at + 0.008 * side * facing, 1.0);
   gl_Position = clip_from_world * vec4(at, 1.0);

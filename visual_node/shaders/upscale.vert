@@ -1,7 +1,7 @@
 #version 330 core
-// The whole picture, from the part of a texture that was drawn.
+// Covers the whole picture with the drawn part of a texture.
 layout(location = 0) in vec4 part;   // width and height of the part, in texture coordinates
-layout(location = 1) in vec4 edges;  // middles of its outermost texels: left, low, right, high
+layout(location = 1) in vec4 edges;  // centres of its outermost texels: left, low, right, high
 out vec2 at;
 flat out vec4 within;
 

@@ -20,7 +20,7 @@ extern char** environ;
 namespace tactus::visual {
 namespace {
 
-// Two pictures of 640x480: fewer switches between the two processes.
+// Room for two pictures of 640x480, which reduces switches between the two processes.
 constexpr int kPipeBytes = 1 << 20;
 constexpr auto kPatience = std::chrono::milliseconds(10);
 constexpr int kWaits = 300;  // 3 s
@@ -83,7 +83,8 @@ Encoder::Encoder(const std::vector<std::string>& command) {
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // A group of its own: Ctrl-C ends us, and it ends by the end of its input. SIGPIPE, which we ignore, as usual.
+  // In its own process group: Ctrl-C ends the node, and the encoder ends with its input. SIGPIPE, which the node
+  // ignores, gets its default action.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSCHEDULER);
   sigset_t usual;
   sigemptyset(&usual);

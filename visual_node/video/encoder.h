@@ -1,4 +1,4 @@
-// An ffmpeg process that turns raw pictures into a video file.
+// An ffmpeg process that encodes raw pictures to a video file.
 #pragma once
 
 #include <sys/types.h>
@@ -10,22 +10,25 @@
 
 namespace tactus::visual {
 
-// The command that encodes I420 pictures from its standard input: H.264 in a fragmented MP4, whose fragments of
-// half a second are complete as they are written, so that a process killed at any moment leaves a readable file.
+// The command that encodes I420 pictures from its standard input: H.264 in a fragmented MP4. Its fragments of half
+// a second are complete once written, so the file stays readable when a process is killed.
 std::vector<std::string> encoder_command(const std::string& file, int width, int height, double rate_Hz, int crf);
 
 class Encoder {
  public:
-  // Starts it with normal scheduling and nice 10. Throws std::runtime_error with one sentence when there is none.
+  // Starts the process with normal scheduling and nice 10. Throws std::runtime_error with one sentence when it
+  // cannot start.
   explicit Encoder(const std::vector<std::string>& command);
-  // Closes its input and waits until it has finished the file, a few seconds at most, then ends it.
+  // Closes its input, waits for the end of the file, at most 3 s, then ends the process.
   ~Encoder();
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  // Blocks while the encoder is busy. False when it has died; the process must ignore SIGPIPE, as sync::Node does.
+  // Blocks while the encoder is busy. False when it has died; the process must ignore SIGPIPE, as sync::Node
+  // does.
   bool write(std::span<const std::uint8_t> bytes);
-  // Closes its input and waits until it has finished the file, however long that takes. True: it succeeded. Then it is over.
+  // Closes its input and waits without limit until the file is finished. Returns true on success. Call nothing
+  // after it.
   bool finish();
 
  private:

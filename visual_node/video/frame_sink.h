@@ -1,4 +1,4 @@
-// Takes finished pictures off the render loop: a bounded queue and a thread of normal priority behind it. A full
+// Moves finished pictures off the render loop: a bounded queue and a consumer thread of normal priority. A full
 // queue drops the new picture; the loop never waits.
 #pragma once
 
@@ -15,22 +15,23 @@ namespace tactus::visual {
 
 struct Picture {
   std::int64_t tick = 0;
-  std::int64_t presented_ns = -1;  // when it was out, for who is told
+  std::int64_t presented_ns = -1;  // time of presentation, for reports
   std::vector<std::uint8_t> rgba;  // sRGB, the lowest row first
 };
 
 class FrameSink {
  public:
-  // consume runs in the sink's thread; when it returns false the sink takes no more. at_end runs there too, last.
+  // consume runs in the sink's thread; when it returns false the sink accepts no more pictures. at_end runs there
+  // too, last.
   FrameSink(
       std::size_t capacity, std::size_t bytes, std::function<bool(const Picture&)> consume,
       std::function<void()> at_end = [] {});
-  // Hands on what is queued, then ends.
+  // Consumes the queued pictures, then ends.
   ~FrameSink();
   FrameSink(const FrameSink&) = delete;
   FrameSink& operator=(const FrameSink&) = delete;
 
-  // An empty picture to fill; nothing when the queue is full or the sink has ended. Thread-safe: yes.
+  // Returns an empty picture to fill; nothing when the queue is full or the sink has ended. Thread-safe: yes.
   std::optional<Picture> take_empty();
   void push(Picture picture);
   bool ended() const;

@@ -1,4 +1,4 @@
-// Turns a picture into what video encoders take: planes of luma and of halved chroma. Pure.
+// Converts a picture to I420 for video encoders: planes of luma and of half-size chroma. Pure.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ constexpr std::size_t i420_bytes(int width, int height) {
   return static_cast<std::size_t>(width * height) * 3 / 2;
 }
 
-// rgba: the lowest row first, 4 bytes a pixel; out: the highest row first. Width and height are even. Colour
-// matrix of ITU-R BT.709 (2015), table 3, in its limited range (Y 16 .. 235), in 8-bit fixed point: good to 1.5 of
+// rgba: the lowest row first, 4 bytes a pixel; out: the highest row first. Width and height are even. Colour matrix
+// of ITU-R BT.709 (2015), table 3, in its limited range (Y 16 .. 235), in 8-bit fixed point: error at most 1.5 of
 // 255.
 void rgba_to_i420(std::span<const std::uint8_t> rgba, int width, int height, std::span<std::uint8_t> out);
 

@@ -12,7 +12,7 @@ extern "C" {
 namespace tactus::visual {
 namespace {
 
-// libjpeg ends the process on an error unless it is led elsewhere; what it says on the way is nobody's.
+// libjpeg ends the process on an error unless its error handler is replaced; its warnings are discarded.
 struct Errors {
   jpeg_error_mgr manager;
   std::jmp_buf back;
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> shrunk(std::span<const std::uint8_t> rgba, int from_wi
   return rgb;
 }
 
-// No object with a destructor lives here: an error jumps out of it.
+// No object with a destructor lives here: an error jumps out of this function.
 bool compress(const std::uint8_t* rgb, int width, int height, int quality, unsigned char** out,
               unsigned long* size) {
   jpeg_compress_struct info;

@@ -1,4 +1,4 @@
-// A picture as a JPEG file in memory, smaller than it was drawn. Pure.
+// Encodes a picture as a JPEG file in memory, at a reduced size. Pure.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace tactus::visual {
 
-// rgba: 4 bytes a pixel, the lowest row first. Pixels are averaged, as they are encoded, over what becomes one;
-// height keeps the picture's shape. width: at most that of the picture is made of it. quality: 1 .. 100 as libjpeg
-// has it. Empty: it could not.
+// rgba: 4 bytes a pixel, the lowest row first. Encoded pixels are averaged to the new size; the height keeps the
+// aspect ratio. width: limited to that of the picture. quality: 1 .. 100, as in libjpeg. An empty result: encoding
+// failed.
 struct Jpeg {
   int width = 0, height = 0;
   std::vector<std::uint8_t> bytes;

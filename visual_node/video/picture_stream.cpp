@@ -5,7 +5,7 @@
 
 namespace tactus::visual {
 
-// Between the two threads: the newest picture that is ready to be sent. The loop only tries the lock.
+// Shared by both threads: the newest picture that is ready to send. The loop only tries the lock.
 struct PictureStream::Outbox {
   mutable std::mutex mutex;
   std::vector<picture_chunk_t> ready;
@@ -58,13 +58,13 @@ void PictureStream::begin(int width, int height, const Settings& s) {
 
 void PictureStream::add(sync::HostTime now, std::int64_t sim_time_ns, sync::HostTime presented,
                         const std::function<void(std::span<std::uint8_t>)>& read) {
-  // A tick may wake a little before its turn: where as many pictures are wanted as there are, none is left out for that.
+  // A tick may wake slightly early: at the full frame rate no picture is skipped for that.
   if (!sink_ || now + period_ / 4 < next_) return;
   auto picture = sink_->take_empty();
-  if (!picture) return;  // the one before is still being made: at the next tick
-  // Keeps to its grid of periods, without catching up.
+  if (!picture) return;  // the previous one is still being encoded: try at the next tick
+  // Keeps the period without catching up.
   next_ = std::max(next_ + period_, now + period_ / 2);
-  picture->tick = sim_time_ns;  // what tells pictures apart here
+  picture->tick = sim_time_ns;  // identifies the picture here
   picture->presented_ns = sync::to_ns(presented);
   read(picture->rgba);
   sink_->push(std::move(*picture));

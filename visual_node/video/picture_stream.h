@@ -1,5 +1,5 @@
-// Pictures for who looks on from outside, as JPEG files in pieces on the bulk bus. They are made in a thread of
-// their own; the loop sends a few pieces a tick, and what is late is left out: neither ever waits for the other.
+// Streams pictures to observers as JPEG files in pieces on the bulk bus. A separate thread encodes them; the loop
+// sends a few pieces a tick, and late pictures are dropped, so that neither waits for the other.
 #pragma once
 
 #include <functional>
@@ -23,20 +23,20 @@ std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, s
 
 class PictureStream {
  public:
-  // A tick sends no more: 16 KiB, 1 MB/s at 60 Hz, so that a burst of them fills no socket.
+  // Limit of the pieces a tick: 16 KiB, 1 MB/s at 60 Hz, so that a burst of them fits into a socket buffer.
   static constexpr std::size_t kMaxChunksATick = 16;
 
   PictureStream();
   ~PictureStream();
-  // Pictures of that size from now on, as the settings say; the stream is off while `stream` is 0.
+  // Sets the size of the pictures and the settings; the stream is off while `stream` is 0.
   void begin(int width, int height, const Settings& settings);
-  // The picture of the tick at `now` can be read: takes it when one is due and there is room. sim_time_ns: which
-  // instant it shows, -1: none. presented: when it was out.
+  // Call when the picture of the tick at `now` can be read: takes it when one is due and the queue has room.
+  // sim_time_ns: its instant, -1: none. presented: when it was presented.
   void add(sync::HostTime now, std::int64_t sim_time_ns, sync::HostTime presented,
            const std::function<void(std::span<std::uint8_t>)>& read);
-  // What is to be sent in this tick.
+  // The pieces to send in this tick.
   std::vector<picture_chunk_t> take_chunks();
-  // Pictures that were made and not sent because the one before was still on its way.
+  // Encoded pictures that were dropped because the previous one was still being sent.
   std::int64_t dropped() const;
 
  private:

@@ -18,10 +18,10 @@ bool write_png(const std::string& file, std::span<const std::uint8_t> rgba, int 
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGB;
-  const std::string half_done = file + ".part";
+  const std::string part_file = file + ".part";
   // A negative stride: the lowest row comes first.
-  if (!png_image_write_to_file(&image, half_done.c_str(), 0, rgb.data(), -3 * width, nullptr)) return false;
-  return std::rename(half_done.c_str(), file.c_str()) == 0;
+  if (!png_image_write_to_file(&image, part_file.c_str(), 0, rgb.data(), -3 * width, nullptr)) return false;
+  return std::rename(part_file.c_str(), file.c_str()) == 0;
 }
 
 }  // namespace tactus::visual

@@ -7,8 +7,8 @@
 
 namespace tactus::visual {
 
-// rgba: sRGB, the lowest row first; opacity is left out. The file is complete or it is the old one. False when it
-// cannot be written.
+// rgba: sRGB, the lowest row first; opacity is ignored. Writes atomically: a failure keeps the old file. False when
+// the file cannot be written.
 bool write_png(const std::string& file, std::span<const std::uint8_t> rgba, int width, int height);
 
 }  // namespace tactus::visual

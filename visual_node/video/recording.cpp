@@ -17,11 +17,11 @@ struct Recording::Shared {
 
 namespace {
 
-// Lives in the writing thread: fills the slots of one file.
+// Runs in the writing thread: fills the slots of one file.
 class VideoWriter {
  public:
-  VideoWriter(std::vector<std::string> command, int width, int height, std::function<void(std::string)> complain)
-      : command_(std::move(command)), width_(width), height_(height), complain_(std::move(complain)) {}
+  VideoWriter(std::vector<std::string> command, int width, int height, std::function<void(std::string)> report)
+      : command_(std::move(command)), width_(width), height_(height), report_(std::move(report)) {}
 
   bool write(const Picture& picture) {
     if (!encoder_ && !start()) return false;
@@ -41,17 +41,17 @@ class VideoWriter {
       encoder_.emplace(command_);
       return true;
     } catch (const std::exception& e) {
-      complain_(e.what());
+      report_(e.what());
       return false;
     }
   }
   bool lost() {
-    complain_("the video ends early: its encoder has died");
+    report_("the video ends early: its encoder has died");
     return false;
   }
   std::vector<std::string> command_;
   int width_, height_;
-  std::function<void(std::string)> complain_;
+  std::function<void(std::string)> report_;
   std::optional<Encoder> encoder_;
   SlotFiller slots_;
   std::vector<std::uint8_t> planes_;
@@ -84,12 +84,12 @@ void Recording::begin(int width, int height, const Settings& settings) {
   if (!options_.video) return;
   file_ = next_video(options_.folder, options_.name);
   clock_.emplace();
-  const auto complain = [shared = shared_](std::string text) {
+  const auto report = [shared = shared_](std::string text) {
     const std::lock_guard lock(shared->mutex);
     shared->trouble = std::move(text);
   };
   auto writer = std::make_shared<VideoWriter>(
-      encoder_command(file_, width, height, settings.rate_Hz, settings.video_crf), width, height, complain);
+      encoder_command(file_, width, height, settings.rate_Hz, settings.video_crf), width, height, report);
   video_ = std::make_unique<FrameSink>(
       static_cast<std::size_t>(settings.video_queue), bytes,
       [writer](const Picture& p) { return writer->write(p); }, [writer] { writer->end(); });

@@ -1,4 +1,4 @@
-// What is kept of the pictures: a video file and snapshots. Both are written by threads of their own.
+// Records pictures: a video file and snapshots, each written by its own thread.
 #pragma once
 
 #include <functional>
@@ -20,11 +20,11 @@ struct RecordingOptions {
   std::string folder = ".";
   bool video = true;
   std::string snapshot;         // PNG file; empty: none
-  double snapshot_every_s = 1;  // it is written anew so often
-  std::string name = "video";   // of the video file
+  double snapshot_every_s = 1;  // interval of the snapshots, which overwrite each other
+  std::string name = "video";   // base name of the video file
 };
 
-// With the name "video": "video.mp4" in the folder, or "video.2.mp4" and so on when that exists.
+// With the name "video": "video.mp4" in the folder, or "video.2.mp4" and so on when that file exists.
 std::string next_video(const std::string& folder, const std::string& name = "video");
 
 class Recording {
@@ -32,22 +32,22 @@ class Recording {
   explicit Recording(RecordingOptions options);
   ~Recording();
 
-  // Begins a new video file, for pictures of this size; the one before is finished in the background.
+  // Begins a new video file for pictures of this size; the previous one is finished in the background.
   void begin(int width, int height, const Settings& settings);
-  // The picture of this tick was out at `fence`. read() fills the bytes given, sRGB, the lowest row first; it is
-  // called only when somebody wants them. Returns the pair to be published, if one is due; its header is not
-  // stamped.
+  // Call when the picture of this tick was presented, at `fence`. read() fills its argument, sRGB, the lowest row
+  // first; it is called only when a picture is needed. Returns the pair to publish, if one is due; its header is
+  // not stamped.
   std::optional<media_clock_t> add(std::int64_t tick, sync::HostTime fence,
                                    const std::function<void(std::span<std::uint8_t>)>& read);
-  // Why there is no video although one was asked for; empty: there is one.
+  // Why a requested video is missing; empty: it is being written.
   std::string trouble() const;
-  // Pictures that the encoder was too busy for; their slots repeat the picture before.
+  // Pictures dropped because the encoder was busy; their slots repeat the previous picture.
   std::int64_t dropped() const { return dropped_; }
-  // One line for the reader of the node's health: the two above.
+  // One line for the note of NODE_HEALTH: the two above.
   std::string note() const;
 
  private:
-  struct Shared;  // with the writing thread
+  struct Shared;  // shared with the writing thread
 
   RecordingOptions options_;
   std::shared_ptr<Shared> shared_;

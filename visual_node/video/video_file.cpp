@@ -11,15 +11,15 @@
 namespace tactus::visual {
 namespace {
 
-// FNV-1a of words of 64 bits, the first byte lowest: eight times as fast as of bytes, which takes a tenth of the
-// time of a frame.
+// FNV-1a of words of 64 bits, the first byte lowest: eight times as fast as the bytewise version, which takes a
+// tenth of the time of a frame.
 std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
   std::uint64_t h = sync::kFnv1aBegin;
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
     std::uint64_t word;
     std::memcpy(&word, bytes.data(), sizeof word);
     h = (h ^ word) * 1099511628211u;
-    h ^= h >> 32;  // else the upper bits of a word would reach none of the lower bits
+    h ^= h >> 32;  // otherwise the upper bits of a word never affect the lower bits
   }
   return sync::fnv1a_64(h, bytes.data(), bytes.size());
 }
@@ -69,7 +69,7 @@ void VideoFile::finish() {
   if (whole) std::filesystem::rename(part_, file_, error);
   if (!whole || error)
     throw std::runtime_error("cannot finish " + file_ + " (" + (whole ? error.message() : "its encoder failed") +
-                             "); free some disk or choose another --video");
+                             "); free disk space or choose another --video");
   finished_ = true;
 }
 

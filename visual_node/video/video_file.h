@@ -1,5 +1,4 @@
-// A video of pictures that come as fast as they are drawn: none is dropped, whoever is slower waits. No clock, no
-// thread.
+// A video for offline rendering: no picture is dropped, and write() blocks for the encoder. No clock, no thread.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +15,9 @@ namespace tactus::visual {
 
 class VideoFile {
  public:
-  // Until finish() the file is NAME.part.mp4, which goes with this, so that what bears the name is whole. Throws
-  // std::runtime_error with one sentence when there is such a file already, or it cannot be made.
+  // Writes NAME.part.mp4 until finish() renames it, so that a file of this name is complete; the destructor
+  // removes the part file. Throws std::runtime_error with one sentence when the file already exists or cannot be
+  // created.
   VideoFile(std::string file, int width, int height, const Settings& settings);
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
@@ -25,15 +25,14 @@ class VideoFile {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  // A picture, sRGB, the lowest row first. Blocks while the encoder is busy. Throws std::runtime_error with one
-  // sentence when it has died.
+  // Appends a picture, sRGB, the lowest row first. Blocks while the encoder is busy. Throws std::runtime_error
+  // with one sentence when the encoder has died.
   void write(std::span<const std::uint8_t> rgba);
-  // The file is whole and gets its name. Throws std::runtime_error with one sentence when it is not.
+  // Finishes the file and renames it. Throws std::runtime_error with one sentence on failure.
   void finish();
 
   std::int64_t frames() const { return frames_; }
-  // A hash of all pixels of the newest picture, and of those of all pictures: two renderings with one number show
-  // the same.
+  // A hash of the pixels of the newest picture, and of all pictures: equal numbers mean equal renderings.
   std::uint64_t pixels_of_newest() const { return newest_; }
   std::uint64_t pixels() const { return pixels_; }
 
@@ -47,7 +46,7 @@ class VideoFile {
   bool finished_ = false;
 };
 
-// Name of the file that is written to until the video is whole.
+// Name of the file that is written until the video is complete.
 std::string part_of(const std::string& video);
 
 }  // namespace tactus::visual

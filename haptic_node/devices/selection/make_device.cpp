@@ -1,6 +1,7 @@
 #include "haptic_node/devices/selection/make_device.h"
 
 #include <stdexcept>
+#include <tactus/waypoint_t.hpp>
 
 #include "haptic_node/devices/external.h"
 #include "haptic_node/devices/spidar/frame_file.h"

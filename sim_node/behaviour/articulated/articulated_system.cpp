@@ -6,11 +6,10 @@
 namespace tactus::sim::articulated {
 namespace {
 
-// A spring or damper whose rate times the step is above this is stiff: an explicit step of Dormand and Prince is
-// stable to 3.3 (Hairer and Wanner 1996, figure IV.2.1); the rest is room for poses in which less inertia opposes
-// it.
+// A spring or damper is stiff when its rate times the step exceeds this. An explicit step of Dormand and Prince is
+// stable up to 3.3 (Hairer and Wanner 1996, figure IV.2.1). The margin covers poses with less inertia.
 constexpr double kStiff = 0.3;
-// Growth of sub-steps (Hairer, Norsett and Wanner 1993, equation II.4.13, with the constants given there).
+// Limits of the growth of sub-steps (Hairer, Norsett and Wanner 1993, equation II.4.13, with its constants).
 constexpr double kSafety = 0.9, kLeast = 0.2, kMax = 5;
 
 void quaternion_rate(const double* q, const Eigen::Vector3d& spin, bool in_body, double* out) {
@@ -88,9 +87,9 @@ void ArticulatedSystem::set_state(const State& state) {
   slope_known_ = placed_ = false;
 }
 
-void ArticulatedSystem::set_burden(const Burden& burden) {
-  loads_ = burden.loads;
-  loaded_ = burden.loaded;
+void ArticulatedSystem::set_loads(const SavedLoads& saved_loads) {
+  loads_ = saved_loads.loads;
+  loaded_ = saved_loads.loaded;
   slope_known_ = false;
 }
 
@@ -165,12 +164,12 @@ double ArticulatedSystem::relative_error() const {
 void ArticulatedSystem::step(double h_s) {
   if (tree_->dofs.empty()) return;
   refresh();
-  const double finest = h_s / accuracy_.most_substeps;
+  const double finest = h_s / accuracy_.max_substeps;
   const auto slope = [this](const std::vector<double>& y, std::vector<double>& out) { slope_of(y, out); };
   double left = h_s;
   substeps_ = 0;
   while (left > finest * 1e-6) {
-    // Equal pieces for what is left, so that no sliver remains.
+    // Divides the rest into equal pieces, so that no very short one remains.
     const double pieces = std::ceil(left / std::max(state_.reach_s, finest) * (1 - 1e-12));
     const double h = left / std::max(1.0, pieces);
     pair_.attempt(slope, y_, h);

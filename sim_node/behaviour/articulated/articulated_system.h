@@ -1,5 +1,5 @@
-// Links on joints in reduced coordinates: the joints cannot come apart, and the energy of a swing is kept to the
-// accuracy of the integrator. Knows no contacts; the impulses of those arrive through strike().
+// Articulated bodies in reduced coordinates: joints cannot drift apart, and the energy of a swing is conserved to the
+// accuracy of the integrator. Independent of contacts; their impulses are applied by strike().
 #pragma once
 
 #include <memory>
@@ -13,66 +13,67 @@
 
 namespace tactus::sim::articulated {
 
-// How finely a step is divided where the motion is fast: a chain's whip turns its last joints at hundreds of
-// rad/s.
+// Sub-step control. In fast motion a step is divided: the end of a whipping chain turns its last joints at hundreds
+// of rad/s.
 struct Accuracy {
-  double position = 1e-5;  // most error of a coordinate in one sub-step, rad or m
-  double rate = 1e-4;      // of a rate, as a share of the fastest one plus 1 rad/s or m/s
-  int most_substeps = 16;  // of one step: bounds its cost
+  double position = 1e-5;  // maximum error of a coordinate per sub-step, rad or m
+  double rate = 1e-4;      // of a rate, as a share of the fastest rate plus 1 rad/s or m/s
+  int max_substeps = 16;   // per step; bounds the cost
 };
 
 class ArticulatedSystem {
  public:
-  // step_s: the length that steps will have; decides which springs and dampers are too stiff to be integrated.
-  // Throws std::invalid_argument: see Tree.
+  // step_s: length of the following steps; determines which springs and dampers are too stiff for explicit
+  // integration. Throws std::invalid_argument: see Tree.
   explicit ArticulatedSystem(const std::vector<LinkDef>& links, double step_s = 0.001, Accuracy accuracy = {});
 
-  // All that changes from step to step: copied out and in, the system continues to the bit.
+  // Complete state: after copying it out and in, the system continues bit-identically.
   struct State {
-    std::vector<double> positions, rates;  // as Dynamics::evaluate takes them
-    double reach_s = 0;                    // length of sub-step to try next
+    std::vector<double> positions, rates;  // in the order of Dynamics::evaluate
+    double reach_s = 0;                    // length of the next sub-step to try
   };
   const State& state() const { return state_; }
   void set_state(const State& state);
 
-  // The loads of the next step, copied out and in likewise.
-  struct Burden {
+  // Loads of the next step, copied out and in like the state.
+  struct SavedLoads {
     Loads loads;
     bool loaded;
   };
-  Burden burden() const { return {loads_, loaded_}; }
-  void copy_burden(Burden& out) const { out.loads = loads_, out.loaded = loaded_; }
-  void set_burden(const Burden& burden);
+  SavedLoads saved_loads() const { return {loads_, loaded_}; }
+  void copy_loads(SavedLoads& out) const { out.loads = loads_, out.loaded = loaded_; }
+  void set_loads(const SavedLoads& saved_loads);
 
-  // Act during the next step only; force N at a point of the world m, moment N m.
+  // Acts during the next step only. force N at a world point m; moment N m.
   void add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
   void add_moment(int link, const Eigen::Vector3d& moment_N_m);
-  // Acts along a degree of freedom from now on, N m or N.
+  // Acts along a degree of freedom until it is changed, N m or N.
   void set_torque(int dof, double torque);
-  // Hold from now on.
+  // These hold until they are changed.
   void set_gravity(int link, const Eigen::Vector3d& gravity_m_s2);
   void set_motor(int dof, double effort, double rate);
   void set_friction(int dof, double friction);
 
-  // Of every dof, at the present state. Realtime-safe: yes.
+  // Of every dof, at the current state. Real-time safe: yes.
   std::span<const double> accelerations();
-  // Lets time pass. Realtime-safe: yes; at most six evaluations for each of most_substeps plus as many refused.
+  // Integrates over h_s. Real-time safe: yes. Costs at most six evaluations for each of max_substeps, plus the same
+  // number for rejected ones.
   void step(double h_s);
 
-  // Adds to the rates; to the coordinates, as moving at these rates for one second would.
+  // Adds to the rates, or to the coordinates the displacement of these rates over one second.
   void add_rates(std::span<const double> change);
   void displace(std::span<const double> by);
 
   const Tree& tree() const { return *tree_; }
-  // At the present pose: for strike(), response() and jacobian().
+  // At the current pose, for strike(), response() and jacobian().
   Dynamics& dynamics();
-  // Springs and dampers of this dof are left to the contact solver, which takes them implicitly.
+  // The contact solver integrates the springs and dampers of this dof implicitly.
   bool is_stiff(int dof) const { return !passive_[static_cast<std::size_t>(dof)]; }
 
-  BodyMotion motion(int link) const;  // position and orientation: of the centre, turned since rest
+  BodyMotion motion(int link) const;  // position and orientation: of the centre, relative to rest
   double kinetic_energy_J();
-  double potential_energy_J();                     // of weight and springs; zero weight at the origin
-  int substeps_last() const { return substeps_; }  // tried in the last step
+  double potential_energy_J();                     // of gravity and springs; gravity is zero at the origin
+  int substeps_last() const { return substeps_; }  // number of sub-steps tried in the last step
 
  private:
   void slope_of(const std::vector<double>& y, std::vector<double>& slope);

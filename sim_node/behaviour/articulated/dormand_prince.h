@@ -1,5 +1,5 @@
-// One step of the explicit Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (Hairer, Norsett and Wanner
-// 1993, "Solving Ordinary Differential Equations I", table II.5.2), for an autonomous system y' = f(y).
+// One step of the explicit Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (Hairer, Norsett and Wanner 1993,
+// "Solving Ordinary Differential Equations I", table II.5.2), for an autonomous system y' = f(y).
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ class DormandPrince {
     for (auto& slope : slopes_) slope.resize(size);
   }
 
-  // The slope at the start of the next step: f(y) there. After accept() it is the one at the end of the step.
+  // Slope f(y) at the start of the next step. accept() sets it to the slope at the end of the step.
   std::vector<double>& slope() { return slopes_[0]; }
   void accept() { slopes_[0].swap(slopes_[6]); }
 
-  // Six evaluations of f(y, slope); the last is at the result.
+  // Evaluates f(y, slope) six times, the last time at the result.
   template <class F>
   void attempt(F&& f, const std::vector<double>& y, double h) {
     static constexpr double a[6][6] = {
@@ -28,7 +28,7 @@ class DormandPrince {
         {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
     };
-    // Weights of order 5 less those of order 4.
+    // Weights of order 5 minus those of order 4.
     static constexpr double e[7] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
                                     -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     const std::size_t n = y.size();
@@ -48,7 +48,7 @@ class DormandPrince {
   }
 
   const std::vector<double>& result() const { return trial_; }
-  // Estimate of what the step errs, per component.
+  // Error estimate of the step, per component.
   const std::vector<double>& error() const { return error_; }
 
  private:

@@ -166,7 +166,7 @@ Spatial Dynamics::respond(std::size_t i, const Spatial& before, const Eigen::Vec
   return before + w.axes.leftCols<N>() * rate;
 }
 
-// What a joint and its link do when the parent does `before` and `drive` acts along the joint.
+// Response of a joint and its link to the parent's motion `before` and the force `drive` along the joint.
 Spatial Dynamics::respond_link(std::size_t i, const Spatial& before, const Eigen::Vector3d& drive,
                                double* rates) const {
   switch (tree_.links[i].dofs) {
@@ -199,7 +199,8 @@ void Dynamics::evaluate(const double* positions, const double* rates, const Load
     double* out = accelerations + l.first_dof;
     if (l.def.is_free) {
       w.acceleration.noalias() = -(base_inverse_ * w.force);
-      // A spatial acceleration is that of the body's points as they pass the common point; its own point has more.
+      // A spatial acceleration belongs to the body point at the common point. The acceleration of the link's own
+      // point has an additional term.
       const Eigen::Vector3d own =
           w.acceleration.tail<3>() + w.velocity.head<3>().cross(Eigen::Vector3d(w.velocity.tail<3>()));
       for (int k = 0; k < 3; ++k) out[k] = w.acceleration[k], out[3 + k] = own[k];
@@ -222,8 +223,8 @@ double Dynamics::kinetic_energy_J() const {
   return sum;
 }
 
-// Inwards along the path from the link: each joint takes its share, the rest goes on to the parent.
-void Dynamics::send(int link, Spatial force) {
+// Inward pass along the path from the link: each joint takes its share and passes the rest to the parent.
+void Dynamics::propagate_inward(int link, Spatial force) {
   for (int i = link; i >= 0; i = tree_.links[index(i)].def.parent) {
     const Work& w = work_[index(i)];
     switch (tree_.links[index(i)].dofs) {
@@ -250,8 +251,8 @@ void Dynamics::send(int link, Spatial force) {
   }
 }
 
-// Outwards over all links; clears what was sent.
-void Dynamics::spread(std::span<double> rates) {
+// Outward pass over all links. Clears the forces that were sent.
+void Dynamics::propagate_outward(std::span<double> rates) {
   for (std::size_t i = 0; i < work_.size(); ++i) {
     const Link& l = tree_.links[i];
     if (l.def.is_free) {
@@ -268,15 +269,15 @@ void Dynamics::spread(std::span<double> rates) {
 
 void Dynamics::strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
                       std::span<double> rates) {
-  send(link, force_at(point_m - origin_, impulse));
-  spread(rates);
+  propagate_inward(link, force_at(point_m - origin_, impulse));
+  propagate_outward(rates);
 }
 
 void Dynamics::twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates) {
   Spatial couple = Spatial::Zero();
   couple.head<3>() = impulse;
-  send(link, couple);
-  spread(rates);
+  propagate_inward(link, couple);
+  propagate_outward(rates);
 }
 
 void Dynamics::strike_dof(int dof, std::span<double> rates) {
@@ -287,9 +288,9 @@ void Dynamics::strike_dof(int dof, std::span<double> rates) {
     base_struck_[k] = 1;
   } else {
     struck_[index(link)][k] = 1;
-    if (l.def.parent >= 0) send(l.def.parent, -work_[index(link)].shared.col(k));
+    if (l.def.parent >= 0) propagate_inward(l.def.parent, -work_[index(link)].shared.col(k));
   }
-  spread(rates);
+  propagate_outward(rates);
 }
 
 Eigen::Matrix3d Dynamics::response(int to_link, const Eigen::Vector3d& to_m, int from_link,
@@ -298,7 +299,7 @@ Eigen::Matrix3d Dynamics::response(int to_link, const Eigen::Vector3d& to_m, int
   for (int i = to_link; i >= 0; i = tree_.links[index(i)].def.parent) path_.push_back(i);
   Eigen::Matrix3d out;
   for (int k = 0; k < 3; ++k) {
-    send(from_link, force_at(from_m - origin_, Eigen::Vector3d::Unit(k)));
+    propagate_inward(from_link, force_at(from_m - origin_, Eigen::Vector3d::Unit(k)));
     Spatial change = kStill;
     for (auto i = path_.rbegin(); i != path_.rend(); ++i)
       change = tree_.links[index(*i)].def.is_free ? Spatial(base_inverse_ * base_struck_)

@@ -1,5 +1,5 @@
-// Forward dynamics of a tree by the articulated-body algorithm (Featherstone 2008, table 7.1), and what the system
-// does when it is struck: the same factors, once found, carry an impulse from any point to every joint.
+// Forward dynamics of a tree by the articulated-body algorithm (Featherstone 2008, table 7.1), and its response to
+// impulses, which uses the same factors.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace tactus::sim::articulated {
 
-// What acts on the system during a step; constant in it.
+// Loads of a system, constant during a step.
 struct Loads {
   std::vector<Eigen::Vector3d> force_N, moment_N_m;  // per link, world axes, at its centre
   std::vector<double> torque;                        // per dof, N m or N
@@ -25,14 +25,14 @@ class Dynamics {
  public:
   explicit Dynamics(const Tree& tree);
 
-  // Places the links, finds their velocities and the acceleration of every dof. positions: coordinates,
-  // quaternions w x y z of any length > 0; rates, accelerations: per dof. A ball's rates are the child's against
-  // its parent in the child's axes (those of the world at rest); a free base's are its spin and the velocity of
-  // its centre, world axes. passive: per dof; whether its spring and damper act here (stiff ones act elsewhere).
-  // Realtime-safe: yes.
+  // Computes the poses and velocities of the links and the acceleration of every dof. positions: coordinates;
+  // quaternions as w x y z of any length > 0. rates, accelerations: per dof. The rates of a ball joint are those of
+  // the child relative to the parent in the child's axes (the world's axes at rest). The rates of a free base are its
+  // angular velocity and the velocity of its centre, world axes. passive: per dof, whether its spring and damper act
+  // here (stiff ones act elsewhere). Real-time safe: yes.
   void evaluate(const double* positions, const double* rates, const Loads& loads, const std::vector<char>& passive,
                 double* accelerations);
-  // Only places the links and finds their velocities.
+  // Computes only the poses and velocities of the links.
   void place(const double* positions, const double* rates);
 
   // Of a link, as last evaluated or placed, world.
@@ -45,25 +45,25 @@ class Dynamics {
   }
   double kinetic_energy_J() const;
 
-  // The following need an evaluate() of the present pose.
-  // Change of every rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: all links once.
+  // The following functions need an evaluate() of the current pose. strike() gives the change of every rate by an
+  // impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.
   void strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse, std::span<double> rates);
-  // The same by an impulse of torque, N m s.
+  // The same for an angular impulse, N m s.
   void twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates);
   // Change of every rate by a unit impulse along one dof.
   void strike_dof(int dof, std::span<double> rates);
-  // Change of velocity of one point by a unit impulse at another, per axis: J_to M^-1 J_from^T, 1/kg. Cost: the
-  // paths from both links to the root. response(a, b) is the transpose of response(b, a).
+  // Change of velocity of one point per unit impulse at another, per axis: J_to M^-1 J_from^T, 1/kg. Cost: the paths
+  // from both links to the root. response(a, b) is the transpose of response(b, a).
   Eigen::Matrix3d response(int to_link, const Eigen::Vector3d& to_m, int from_link, const Eigen::Vector3d& from_m);
-  // Velocity of a point of a link for unit rate of each dof, 3 x dofs, row-major; zero for dofs that do not carry
-  // it.
+  // Velocity of a point of a link per unit rate of each dof, 3 x dofs, row-major; zero for dofs that do not move the
+  // link.
   void jacobian(int link, const Eigen::Vector3d& point_m, std::span<double> rows) const;
 
  private:
   struct Work {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Eigen::Vector3d centre;                       // from the common point, m
-    Eigen::Matrix<double, 6, kMaxDofs> axes;     // S: motion for unit rate of each dof
+    Eigen::Matrix<double, 6, kMaxDofs> axes;     // S: motion per unit rate of each dof
     Spatial velocity, bias;                       // v, and c: acceleration at zero joint acceleration
     SpatialInertia inertia;                       // rigid, then articulated: I^A
     Spatial force;                                // p^A
@@ -84,14 +84,14 @@ class Dynamics {
   template <int N>
   Spatial respond(std::size_t i, const Spatial& before, const Eigen::Vector3d& drive, double* rates) const;
   Spatial respond_link(std::size_t i, const Spatial& before, const Eigen::Vector3d& drive, double* rates) const;
-  void send(int link, Spatial force);
-  void spread(std::span<double> rates);
+  void propagate_inward(int link, Spatial force);
+  void propagate_outward(std::span<double> rates);
 
   const Tree& tree_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // the common point: the root's anchor or free centre
   std::vector<Work> work_;
   Eigen::Matrix<double, 6, 6> base_inverse_;  // of a free base: (I^A)^-1
-  // Of an impulse on its way: what reaches each joint, then how each link's velocity changes.
+  // Impulse propagation: the force at each joint, then the change of each link's velocity.
   std::vector<Eigen::Vector3d> struck_;
   std::vector<Spatial> change_;
   Spatial base_struck_ = Spatial::Zero();

@@ -1,14 +1,13 @@
-// Spatial vectors and inertias (Featherstone 2008, "Rigid Body Dynamics Algorithms", chapter 2). Those of one
-// system are all in world axes about one common point, so that nothing is transformed on its way from link to
-// link.
+// Spatial vectors and inertias (Featherstone 2008, "Rigid Body Dynamics Algorithms", chapter 2). All of one system
+// are in world axes about one common point, so that no transforms between links are needed.
 #pragma once
 
 #include <Eigen/Geometry>
 
 namespace tactus::sim::articulated {
 
-// Motion: angular above, linear at the common point below. Force: moment about the common point above, force
-// below.
+// Motion: angular part first, then linear at the common point. Force: moment about the common point first, then
+// force.
 using Spatial = Eigen::Matrix<double, 6, 1>;
 using SpatialInertia = Eigen::Matrix<double, 6, 6>;
 
@@ -18,13 +17,13 @@ inline Spatial spatial(const Eigen::Vector3d& top, const Eigen::Vector3d& bottom
   return out;
 }
 
-// v x m, equation 2.31: the rate of a motion vector m that is carried along with v.
+// v x m, equation 2.31: rate of a motion vector m that moves with v.
 inline Spatial cross_motion(const Spatial& v, const Spatial& m) {
   const Eigen::Vector3d w = v.head<3>(), l = v.tail<3>(), mw = m.head<3>(), ml = m.tail<3>();
   return spatial(w.cross(mw), w.cross(ml) + l.cross(mw));
 }
 
-// v x* f, equation 2.32, of a force vector.
+// v x* f, equation 2.32: the same for a force vector.
 inline Spatial cross_force(const Spatial& v, const Spatial& f) {
   const Eigen::Vector3d w = v.head<3>(), l = v.tail<3>(), n = f.head<3>(), p = f.tail<3>();
   return spatial(w.cross(n) + l.cross(p), w.cross(p));
@@ -36,7 +35,7 @@ inline Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
   return out;
 }
 
-// Equation 2.63: of a body of that mass, kg, with its centre at c, m, and its inertia about the centre, kg m^2.
+// Equation 2.63. mass, kg; centre c, m; inertia about the centre, kg m^2.
 inline SpatialInertia rigid_inertia(double mass_kg, const Eigen::Vector3d& c,
                                     const Eigen::Matrix3d& about_centre) {
   SpatialInertia out;
@@ -50,12 +49,12 @@ inline SpatialInertia rigid_inertia(double mass_kg, const Eigen::Vector3d& c,
   return out;
 }
 
-// The force at a point p, m from the common point.
+// Spatial force of a force at a point p, m from the common point.
 inline Spatial force_at(const Eigen::Vector3d& p, const Eigen::Vector3d& force) {
   return spatial(p.cross(force), force);
 }
 
-// The turn about a unit axis (Rodrigues).
+// Rotation matrix about a unit axis (Rodrigues).
 inline Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle_rad) {
   const double s = std::sin(angle_rad), c = std::cos(angle_rad), d = 1 - c;
   const double x = axis.x(), y = axis.y(), z = axis.z();

@@ -32,9 +32,10 @@ Tree::Tree(const std::vector<LinkDef>& defs) {
     };
     if (d.parent < -1 || d.parent >= static_cast<int>(i)) refuse("has a parent that does not come before it");
     if ((i == 0) != (d.parent < 0))
-      refuse("is a second root: a system hangs on the world, or flies, by its first link");
-    if (d.is_free && i > 0) refuse("is free though it has a parent");
-    // Massless links are joints of more degrees of freedom; a tree whose leaf weighs nothing has no dynamics.
+      refuse("is a second root; only the first link of a system may be a root");
+    if (d.is_free && i > 0) refuse("is free but has a parent");
+    // Joints with several degrees of freedom have massless links in between. A tree with a massless leaf has no
+    // dynamics.
     const Eigen::LLT<Eigen::Matrix3d> positive(d.inertia_kg_m2);
     if (!(d.mass_kg > 0) || positive.info() != Eigen::Success)
       refuse("has a mass or inertia that is not positive");

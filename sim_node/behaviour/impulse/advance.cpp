@@ -6,18 +6,18 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// A step is divided so far that turning takes no surface further than this from the straight way that the contacts
-// know, m; design: well inside the thinnest walls, from where surfaces are put apart to the side that they came
-// from.
+// Sub-division limit: rotation takes no surface further than this from the linear path of the contacts, m. Design
+// value: well inside the thinnest walls, from where overlaps are resolved to the original side.
 constexpr double kBend_m = 1e-4;
-// An overlap that deep may have its normal wrong: the step is halved instead, m.
+// An overlap deeper than this may have a wrong normal, m. The step is halved instead.
 constexpr double kDeep_m = 3e-4;
-// An overlap above this is put apart, m: design: half of what may be seen by the proofs, 10 um.
+// Overlaps deeper than this are resolved by positions, m. Design value: half of the proven limit of 10 um.
 constexpr double kOverlap_m = 5e-6, kMaxOverlap_m = 1e-5;
-// By so much a body may come further than its speed said, m; design: gravity over 4 ms; below what detectors add.
+// Tolerance of the distance that a body may move beyond its speed, m. Design value: gravity over 4 ms; below the
+// enlargement of the detectors.
 constexpr double kFurther_m = 1e-4;
-// Contacts are not sought further ahead than this, m: what was planar from afar may be seen edge on when it comes;
-// design: a step of 1 ms at 20 m/s.
+// Maximum look-ahead of contacts, m. A feature that is planar from afar may be an edge on arrival. Design value: a
+// step of 1 ms at 20 m/s.
 constexpr double kFarthest_m = 0.0201;
 constexpr int kMaxPieces = 64, kMaxRounds = 8, kMaxSearches = 3;
 
@@ -33,7 +33,7 @@ double deepest_of(std::span<const Manifold> contacts) {
   return depth;
 }
 
-// Calls each(pair, how deep it is) for every pair that overlaps by more than the limit, and by more than before.
+// Calls each(pair, depth) for every pair whose overlap exceeds the limit and has grown.
 template <class Each>
 void for_each_deeper(std::span<const Manifold> now, std::span<const Manifold> before, double limit, Each each) {
   auto old = before.begin();
@@ -50,14 +50,14 @@ double turned_rad(const BodyMotion& from, const BodyMotion& to) {
   return 2 * std::asin(std::min(1.0, (to.orientation * from.orientation.conjugate()).vec().norm()));
 }
 
-// How far a surface at that lever leaves the straight line while it turns by an angle.
+// Deviation from a linear path of a surface point at this lever arm after this rotation.
 double bend(double lever_m, double angle_rad) {
   return lever_m * (angle_rad < 1 ? angle_rad * angle_rad / 2 : angle_rad);
 }
 
 }  // namespace
 
-// Into how many the step must be divided, from what was just done in one go.
+// Number of pieces into which the step must be divided, from the result of the undivided step.
 int Advance::pieces_for(const World& world, std::span<const Manifold> contacts, double dt) const {
   const auto motions = world.motions();
   double most = 0;
@@ -70,8 +70,8 @@ int Advance::pieces_for(const World& world, std::span<const Manifold> contacts, 
   return most <= kBend_m ? 1 : static_cast<int>(std::ceil(std::sqrt(most / kBend_m)));
 }
 
-// Whether some body moved further than contacts were sought for; assumed_ then has how it really moved.
-bool Advance::came_further(const World& world, double dt) {
+// Whether a body moved further than the contacts were searched for. assumed_ then holds its actual motion.
+bool Advance::moved_too_far(const World& world, double dt) {
   bool further = false;
   const auto motions = world.motions();
   for (const int body : world.active_bodies()) {
@@ -99,34 +99,34 @@ bool Advance::lacks_pair(std::span<const Manifold> contacts) const {
   return false;
 }
 
-bool Advance::attempt(World& world, ContactSource& source, double& dt, double finest, double next_h,
+bool Advance::try_piece(World& world, ContactSource& source, double& dt, double finest, double next_h,
                       std::vector<Manifold>& contacts) {
   world.step(contacts, dt);
   const bool divisible = dt > finest * 1.001;
   if (const int pieces = pieces_for(world, contacts, dt); pieces > 1 && divisible) {
     dt = std::max(finest, dt / pieces);
-    world.take_back(kept_);
+    world.restore(saved_);
     return false;
   }
-  if (report_.found_again < kMaxSearches * report_.pieces && came_further(world, dt)) {
-    ++report_.found_again;
+  if (report_.repeated_searches < kMaxSearches * report_.pieces && moved_too_far(world, dt)) {
+    ++report_.repeated_searches;
     source.find(assumed_, world.active_bodies(), dt, ahead_);
     if (lacks_pair(contacts)) {
       std::swap(contacts, ahead_);
-      world.take_back(kept_);
+      world.restore(saved_);
       return false;
     }
   }
   source.find(world.motions(), world.active_bodies(), horizon_s(world, next_h), after_);
   if (divisible && worst(contacts, kDeep_m) > 0) {
     dt = std::max(finest, dt / 2);
-    world.take_back(kept_);
+    world.restore(saved_);
     return false;
   }
   return true;
 }
 
-// The deepest of the pairs that overlap by more than the limit, and by more than before; 0: none does.
+// The deepest pair whose overlap exceeds the limit and has grown; 0: none.
 double Advance::worst(std::span<const Manifold> before, double limit) const {
   double deepest = 0;
   for_each_deeper(after_, before, limit,
@@ -134,7 +134,7 @@ double Advance::worst(std::span<const Manifold> before, double limit) const {
   return deepest;
 }
 
-// Overlaps that a scene began with are left to the solver, which takes them back gently.
+// Deep overlaps of the initial scene are left to the solver, which corrects them gently.
 void Advance::clear_overlaps(World& world, ContactSource& source, double next) {
   const auto overlaps = [](const Manifold& m) {
     const double depth = deepest_of(m);
@@ -147,8 +147,8 @@ void Advance::clear_overlaps(World& world, ContactSource& source, double next) {
   }
 }
 
-// The last resort: what is deeper in something than at the start of the step stays there, at rest. What it was in
-// has moved there meanwhile, or stays too; in the end all are where nothing overlapped.
+// Last resort: a body whose overlap has grown in the step returns to its start pose, at rest. Its counterpart has
+// moved away or is held too. In the end all bodies are at poses without overlap.
 void Advance::hold_back(World& world, ContactSource& source, double next, std::span<const Manifold> before) {
   held_.clear();
   for (bool changed = true; changed;) {
@@ -160,7 +160,7 @@ void Advance::hold_back(World& world, ContactSource& source, double next, std::s
         if (unit < 0 || !std::binary_search(active.begin(), active.end(), unit)) continue;
         if (std::find(held_.begin(), held_.end(), unit) != held_.end()) continue;
         held_.push_back(unit);
-        world.hold(unit, kept_);
+        world.hold(unit, saved_);
         changed = true;
       }
     });
@@ -169,8 +169,8 @@ void Advance::hold_back(World& world, ContactSource& source, double next, std::s
   }
 }
 
-// Forces are means over the whole step, instants are counted from its start.
-void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun, double dt,
+// Forces become means over the whole step, times are counted from its start.
+void Advance::merge_piece(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun, double dt,
                      double h) {
   merged_.clear();
   auto old = solved.begin();
@@ -180,7 +180,7 @@ void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> pi
     for (ManifoldPoint& p : out.used()) p.normal_force_N *= dt / h;
     out.impact.first_s += begun, out.impact.last_s += begun;
     if (old == solved.end() || m.before(*old)) continue;
-    // One pair in two pieces: the points of the one that pressed more, with the forces of both.
+    // One pair in two pieces: keeps the points with the larger force and the sum of both forces.
     const auto force = [](const Manifold& x) {
       double sum = 0;
       for (const ManifoldPoint& p : x.used()) sum += p.normal_force_N;
@@ -188,10 +188,10 @@ void Advance::add_to(std::vector<Manifold>& solved, std::span<const Manifold> pi
     };
     const double before = force(*old), now = force(out);
     Impact impact = old->impact;
-    if (impact.blows == 0) {
+    if (impact.count == 0) {
       impact = out.impact;
-    } else if (out.impact.blows > 0) {
-      impact.blows += out.impact.blows;
+    } else if (out.impact.count > 0) {
+      impact.count += out.impact.count;
       impact.last_s = out.impact.last_s;
     }
     if (before > now) out = *old;
@@ -223,23 +223,23 @@ const StepReport& Advance::step(World& world, ContactSource& source, double h, s
   double begun = 0, dt = horizon_s(world, h);
   while (h - begun > 1e-9 * h) {
     const double left = h - begun;
-    // No sliver is left over.
+    // Avoids a very short last piece.
     dt = dt > left * 0.999 ? left : std::min(dt, left);
-    world.keep(kept_);
+    world.save(saved_);
     ++report_.pieces;
     assumed_.resize(world.motions().size());
     for (const int body : world.active_bodies())
       assumed_[static_cast<std::size_t>(body)] = world.motions()[static_cast<std::size_t>(body)];
-    while (!attempt(world, source, dt, finest, next_h, contacts)) {
+    while (!try_piece(world, source, dt, finest, next_h, contacts)) {
     }
     const double next = horizon_s(world, next_h);
-    add_to(solved, contacts, begun, dt, h);
+    merge_piece(solved, contacts, begun, dt, h);
     clear_overlaps(world, source, next);
     hold_back(world, source, next, contacts);
     std::swap(contacts, after_);
     begun += dt;
     dt = std::min({2 * dt, next, h});
-    if (h - begun > 1e-9 * h) world.load_again(kept_);
+    if (h - begun > 1e-9 * h) world.restore_loads(saved_);
   }
   report_.deepest_m = deepest_of(contacts);
   return report_;

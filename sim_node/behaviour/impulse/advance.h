@@ -1,8 +1,8 @@
-// A step of an impulse world after which nothing is in anything: the backstop behind contacts with gaps. Those are
-// linear: they say how far surfaces may close along their normals. What turns far within the step, what is struck
-// towards something that nobody expected it to reach, and what the sweeps left unsolved is found afterwards, at
-// the new poses, whose contacts the next step needs anyway; only then is the step divided or taken back (after
-// Mirtich 1996, "Impulse-based dynamic simulation", section 2: no step leads past the next contact).
+// Step of an impulse world with a guarantee against penetration: the backstop behind contacts with gaps. Contacts are
+// linear: they limit how far surfaces may close along their normals. Fast rotation, impacts on bodies beyond the
+// searched range, and residuals of the sweeps are detected afterwards at the new poses, whose contacts the next step
+// needs anyway. Only then is the step divided or taken back (after Mirtich 1996, "Impulse-based dynamic simulation",
+// section 2: no step passes the next contact).
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@
 
 namespace tactus::sim::impulse {
 
-// Finds contacts for a step of h_s that begins with these motions (as World::motions() gives them: places are
-// those of centres of mass), out to where it may lead.
+// Finds contacts for a step of h_s that starts with these motions, within the range of the step. Positions are
+// centres of mass, as in World::motions().
 class ContactSource {
  public:
   virtual ~ContactSource() = default;
@@ -23,8 +23,8 @@ class ContactSource {
                     std::vector<Manifold>& out) = 0;
 };
 
-// How far a body reaches from its centre of mass, m: bound: all of it; bend: what turning moves, less than bound
-// for balls, which turning leaves as they are.
+// Extent of a body from its centre of mass, m. bound: bounding radius. bend: lever arm of the points that rotation
+// moves; smaller than bound for balls, whose surface does not change with rotation.
 struct Extent {
   double bound_m = 0, bend_m = 0;
 };
@@ -34,31 +34,32 @@ class Advance {
   // extents: of every body of the world.
   explicit Advance(std::vector<Extent> extents) : extents_(std::move(extents)) {}
 
-  // How far ahead contacts are to be sought for a step of h_s: all of it, or less when something is fast.
+  // Look-ahead time of the contact search for a step of h_s: the whole step, or less with fast bodies.
   double horizon_s(const World& world, double h_s) const;
 
-  // contacts: of the present poses, found for a step of horizon_s(); those of the new poses afterwards, for a step of
-  // next_h_s, or of h_s again. solved: what the step did to them. Realtime-safe once its lists have grown.
+  // contacts: in, the contacts of the current poses, found for a step of horizon_s(); out, those of the new poses,
+  // for a step of next_h_s, or of h_s again. solved: the contacts of the step with forces and impacts. Real-time safe
+  // once its lists have grown.
   const StepReport& step(World& world, ContactSource& source, double h_s, std::vector<Manifold>& contacts,
                          std::vector<Manifold>& solved, double next_h_s = 0);
 
  private:
-  // One try of a piece of dt: false: it was taken back, and dt or the contacts have changed.
-  bool attempt(World& world, ContactSource& source, double& dt, double finest_s, double next_h_s,
+  // Tries one piece of dt. Returns false when it was taken back; dt or the contacts have then changed.
+  bool try_piece(World& world, ContactSource& source, double& dt, double finest_s, double next_h_s,
                std::vector<Manifold>& contacts);
   int pieces_for(const World& world, std::span<const Manifold> contacts, double dt) const;
-  bool came_further(const World& world, double dt);
+  bool moved_too_far(const World& world, double dt);
   bool lacks_pair(std::span<const Manifold> contacts) const;
   double worst(std::span<const Manifold> before, double limit_m) const;
   void clear_overlaps(World& world, ContactSource& source, double next_s);
   void hold_back(World& world, ContactSource& source, double next_s, std::span<const Manifold> before);
-  void add_to(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun_s, double dt,
+  void merge_piece(std::vector<Manifold>& solved, std::span<const Manifold> piece, double begun_s, double dt,
               double h_s);
 
   std::vector<Extent> extents_;
-  World::Kept kept_;
+  World::SavedStep saved_;
   std::vector<BodyMotion>
-      assumed_;  // motions at the start of a piece, with the speeds that contacts were sought for
+      assumed_;  // motions at the start of a piece, with the speeds of the contact search
   std::vector<Manifold> after_, ahead_, merged_;
   std::vector<int> held_;
   StepReport report_;

@@ -44,7 +44,7 @@ BodyMotion BodyFrames::motion(int body, const BodyMotion& moved) const {
 
 void BodyFrames::place_impacts(std::span<Manifold> solved) const {
   for (Manifold& m : solved) {
-    if (m.impact.blows == 0) continue;
+    if (m.impact.count == 0) continue;
     m.impact.a_body_m = frames_[static_cast<std::size_t>(m.body_a)].in_body * m.impact.a_body_m;
     m.impact.b_body_m = frames_[static_cast<std::size_t>(m.body_b)].in_body * m.impact.b_body_m;
   }

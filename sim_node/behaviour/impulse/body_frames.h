@@ -1,5 +1,5 @@
-// From what an impulse world moves, centres of mass and the turns of links since the start, to the frames of the bodies
-// of a scene, and back.
+// Conversion between the frames of an impulse world (centre of mass, rotation since the start) and the body frames of
+// a scene.
 #pragma once
 
 #include <span>
@@ -15,19 +15,20 @@ class BodyFrames {
  public:
   explicit BodyFrames(const WorldDef& def);
 
-  // Of every body as the scene has it: at rest, with its mass.
+  // Initial motion of every body of the scene: at rest, with its mass.
   std::vector<BodyMotion> at_start(const WorldDef& def) const;
-  // moved: of an impulse world. Of a body that moves. Realtime-safe: yes.
+  // moved: motion of the body in an impulse world. For moving bodies only. Real-time safe: yes.
   BodyMotion motion(int body, const BodyMotion& moved) const;
-  // Where surfaces met in a step, in the frames of the bodies of the scene; as an impulse world has it before, once only.
-  // Realtime-safe: yes.
+  // Converts the impact positions of a step from the frames of an impulse world to the body frames of the scene. Call
+  // it once per step. Real-time safe: yes.
   void place_impacts(std::span<Manifold> solved) const;
 
  private:
   struct Frame {
     Eigen::Vector3d centre_in_body_m;
-    Eigen::Quaterniond at_rest;  // of a link; else the identity
-    // From the frame that an impulse world has for it, which never moves for what does not.
+    Eigen::Quaterniond at_rest;  // of a link; the identity for other bodies
+    // From the body's frame in the impulse world to the body frame of the scene. The impulse world's frame of a
+    // static body never moves.
     Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
   };
   std::vector<Frame> frames_;

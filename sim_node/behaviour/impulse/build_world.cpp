@@ -35,7 +35,7 @@ class Builder {
       else
         world_->add_fixed();
     }
-    // From what holds them: first the systems that hang on the world, then those that fly.
+    // Builds the systems from their roots: first those connected to the world, then the free ones.
     for (std::size_t j = 0; j < def_.joints.size(); ++j) {
       const JointDef& joint = def_.joints[j];
       if (used_[j] || moves(joint.parent) == moves(joint.child)) continue;
@@ -73,7 +73,7 @@ class Builder {
     out.angular_damping_1_s = b.angular_damping_1_s;
     out.centre_m = b.pose * b.centre_of_mass_m;
     out.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
-    out.step_s = 0;  // the velocity is of now
+    out.step_s = 0;  // the velocity is the current one
     out.velocity_m_s = b.velocity_m_s;
     return out;
   }
@@ -87,7 +87,7 @@ class Builder {
       throw std::runtime_error(
           "sim_node: joint \"" + joint->name +
           "\" closes a loop, which the solver \"" +
-          settings_.solver + "\" cannot do; remove it or choose quick or step");
+          settings_.solver + "\" does not support; remove it or choose quick or step");
     placed_[index(body)] = true;
     const BodyDef& b = def_.bodies[index(body)];
     LinkDef l;
@@ -103,7 +103,7 @@ class Builder {
       l.joint = joint->kind;
       l.anchor_m = joint->anchor_m;
       for (int k = 0; k < 2; ++k) l.axes[k] = joint->axes[k];
-      // Seen from the other side the same angle turns about the opposite axis, and the child's axis comes first.
+      // From the other side the same angle rotates about the opposite axis, and the child's axis comes first.
       if (reversed) {
         if (joint->kind == JointKind::kUniversal) std::swap(l.axes[0], l.axes[1]);
         for (JointAxis& a : l.axes) a.axis = -a.axis;
@@ -112,7 +112,7 @@ class Builder {
     links_.push_back(l);
     bodies_.push_back(body);
   }
-  // Follows the joints outwards until there is no further body, and makes a system of what was found.
+  // Follows the joints outwards until no body is left, and creates a system of the bodies found.
   void finish() {
     for (std::size_t link = 0; link < bodies_.size(); ++link)
       for (std::size_t j = 0; j < def_.joints.size(); ++j) {
@@ -121,17 +121,17 @@ class Builder {
         if (used_[j] || !(onwards || back)) continue;
         used_[j] = true;
         const int other = onwards ? joint.child : joint.parent;
-        // A second hold on the world is a loop too.
+        // A second connection to the world is a loop too.
         add(moves(other) ? other : bodies_[link], static_cast<int>(link), &joint, back);
       }
     articulated::ArticulatedSystem system(links_, settings_.step_s);
-    set_off(system);
+    set_initial_velocities(system);
     world_->make_system(bodies_, std::move(system));
   }
 
-  // The velocities that its bodies have at the start: the joints share them as they would blows of such momenta on the
-  // system at rest, which is the motion of joints nearest to them, by kinetic energy.
-  void set_off(articulated::ArticulatedSystem& system) const {
+  // Initial velocities of the bodies. The system at rest receives impulses of the bodies' momenta, which gives the
+  // admissible motion with the least kinetic energy difference.
+  void set_initial_velocities(articulated::ArticulatedSystem& system) const {
     std::vector<double> rates(system.tree().dofs.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const BodyDef& b = def_.bodies[index(bodies_[i])];

@@ -1,5 +1,5 @@
-// The bodies and joints of a scene as the impulse solver takes them: what hangs on nothing flies freely, what
-// joints hold together is a system in joint coordinates.
+// Builds the impulse world of a scene: bodies without joints become free bodies, jointed bodies become systems in
+// joint coordinates.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace tactus::sim::impulse {
 
-// Numbers of bodies and shapes are those of the scene; tools and what is static do not move. Throws
-// std::runtime_error with one sentence when joints close a loop, or a mass or inertia is not positive.
+// Indices of bodies and shapes are those of the scene. Tools and static bodies do not move. Throws std::runtime_error
+// with one sentence when joints form a loop, or a mass or inertia is not positive.
 std::unique_ptr<World> build_world(const WorldDef& def, const Settings& settings);
 
 }  // namespace tactus::sim::impulse

@@ -7,19 +7,19 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Of one pair: sweeps over its points, and the change of speed below which they have settled, m/s.
+// Sweeps over the points of one pair, and the change of speed at which they have converged, m/s.
 constexpr int kMaxSweeps = 50;
 constexpr double kSettled_m_s = 1e-12;
-// Blows of one step per group: a row of n balls needs up to n/2 for each; beyond, the contact solver ends it.
-constexpr std::size_t kMaxBlows = 16;
-// A gap below this is none: the residual of the sweeps, m.
+// Impacts per group and step: a row of n balls needs up to n/2 each. The contact solver handles the rest.
+constexpr std::size_t kMaxImpacts = 16;
+// Gaps below this count as zero: the residual of the sweeps, m.
 constexpr double kTouching_m = 2e-6;
 
 }  // namespace
 
-// Calls each(velocity, pointer to its offset or null) for every component of what a mover moves.
+// Calls each(velocity, pointer to its offset or null) for every velocity component of a mover.
 template <class F>
-void Collisions::of_mover(int mover, F&& each) {
+void Collisions::for_each_component(int mover, F&& each) {
   if (mover < 0) return;
   const auto m = static_cast<std::size_t>(mover);
   if (m < velocity_->twists.size()) {
@@ -33,13 +33,13 @@ void Collisions::of_mover(int mover, F&& each) {
     each(velocity_->rates[i], nullptr);
 }
 
-// Solves gap + s t + (drift / h) t^2 = 0: the drift is gained evenly over the step, half of it on the mean.
+// Solves gap + s t + (drift / h) t^2 = 0: the drift grows linearly over the step, so half of it is in the mean.
 bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
   const double gap = p.gap_m + rows_->velocity(p, *aside_).x();
   const double speed = rows_->velocity(p, *velocity_).x(), bend = p.drift_m_s.x() / h_;
   double t = 0;
   if (gap < 0 && -gap > -1.5 * speed * h_) {
-    // Overlapped before the last step: meets now.
+    // The overlap is older than the last step: the impact is at t = 0.
     if (speed >= 0) return false;
   } else {
     const double inside = speed * speed - 4 * bend * gap;
@@ -58,7 +58,7 @@ bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
   return true;
 }
 
-// What acts within a step, weight for one, is no collision.
+// Speed gained within the step, for example by gravity, is no collision.
 bool Collisions::collides(const ContactPoint& p, Meeting& out) const {
   return meets(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
 }
@@ -74,13 +74,13 @@ double Collisions::approach(const ContactGroup& g) const {
     overlaps |= p.gap_m < 0;
   }
   if (g.restitution > 0 || overlaps) return fastest;
-  // Joints cannot be set aside: ahead of them the contact solver lets the gap close and no further.
+  // Joints get no offset. In front of them the contact solver lets the gap close to zero.
   const int twists = static_cast<int>(velocity_->twists.size());
-  return g.blows == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
+  return g.impacts == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
 }
 
-// Where the free motion leads a pair that took no blow, from a gap that is open.
-void Collisions::foresee(ContactGroup& g) const {
+// Predicts the meeting of a pair without impact from its free motion, when its gap is open.
+void Collisions::predict_meeting(ContactGroup& g) const {
   g.first_s = h_;
   for (int i = 0; i < g.count; ++i) {
     Meeting m;
@@ -111,7 +111,7 @@ void Collisions::rebound(ContactGroup& g) {
     }
   const double t = first.time_s;
   g.last_s = std::max(0.0, t);
-  if (g.blows++ == 0) {
+  if (g.impacts++ == 0) {
     g.met = struck;
     g.first_s = g.last_s;
     g.speed_m_s = first.speed_m_s;
@@ -130,8 +130,8 @@ void Collisions::rebound(ContactGroup& g) {
   }
   before_.clear();
   const auto keep = [this](double v, const double*) { before_.push_back(v); };
-  of_mover(g.mover_a, keep);
-  if (g.mover_b != g.mover_a) of_mover(g.mover_b, keep);
+  for_each_component(g.mover_a, keep);
+  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, keep);
   for (int round = 0; round < kMaxSweeps; ++round) {
     double change = 0;
     for (int i = 0; i < count; ++i) {
@@ -147,16 +147,16 @@ void Collisions::rebound(ContactGroup& g) {
     }
     if (change < kSettled_m_s) break;
   }
-  for (int i = 0; i < count; ++i) point(i).blow_N_s += impulse[static_cast<std::size_t>(i)].x();
-  // Joints are not set aside: their momentum depends on where they are, so they take the blow at the start of the
+  for (int i = 0; i < count; ++i) point(i).impact_N_s += impulse[static_cast<std::size_t>(i)].x();
+  // Joints get no offset: their momentum depends on their positions, so they receive the impulse at the start of the
   // step.
   std::size_t next = 0;
   const auto set_aside = [&](double v, double* x) {
     const double change = v - before_[next++];
     if (x) *x -= t * change;
   };
-  of_mover(g.mover_a, set_aside);
-  if (g.mover_b != g.mover_a) of_mover(g.mover_b, set_aside);
+  for_each_component(g.mover_a, set_aside);
+  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, set_aside);
 }
 
 void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,
@@ -168,8 +168,8 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   h_ = h;
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
-  const std::size_t most = kMaxBlows * rows.groups.size();
-  for (std::size_t blow = 0; blow < most; ++blow) {
+  const std::size_t most = kMaxImpacts * rows.groups.size();
+  for (std::size_t n = 0; n < most; ++n) {
     const auto fastest = std::max_element(approach_.begin(), approach_.end());
     if (*fastest <= 0) break;
     ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
@@ -182,7 +182,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
         approach_[i] = approach(rows.groups[i]);
   }
   for (ContactGroup& g : rows.groups)
-    if (g.blows == 0 && !g.stopped) foresee(g);
+    if (g.impacts == 0 && !g.stopped) predict_meeting(g);
 }
 
 }  // namespace tactus::sim::impulse

@@ -1,6 +1,6 @@
-// Collisions before contact (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking", section
-// 5): pairs rebound one after the other, the fastest approach first, until none approaches. Simultaneous equations
-// would share a blow among all that touch; in sequence it travels, as through Newton's cradle.
+// Collisions before contact (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking", section 5):
+// pairs rebound one after the other, fastest approach first, until none approaches. A simultaneous solution would
+// divide an impulse among all touching bodies; a sequential one propagates it, as in Newton's cradle.
 #pragma once
 
 #include <vector>
@@ -12,18 +12,18 @@ namespace tactus::sim::impulse {
 class Collisions {
  public:
   struct Limits {
-    double bounce_speed_m_s = 0.02;  // what is slower, beyond what a step adds, is left to the contact solver
-    double touching_m = 1e-4;        // points this near to the first that meets collide with it
+    double bounce_speed_m_s = 0.02;  // slower impacts, beyond what a step adds, are left to the contact solver
+    double touching_m = 1e-4;        // points whose gap is within this of the first collide together with it
   };
   explicit Collisions(Limits limits) : limits_(limits) {}
 
-  // velocity: at the start of the step, changed by the blows. aside: by how much each collision at an instant t
-  // inside the step sets free bodies aside, -t times their change of velocity (m, rad): moved from the start of
-  // the step with the new velocity and this offset, they lie on the path that turns at t. An overlap that came
-  // about in the last step is such an instant before the start. first_rate: of each system, and one past the last.
-  // Realtime-safe once its lists have grown.
-  // Each group is told how it meets. Without restitution a pair of free bodies takes one blow, so that it stops where and
-  // when it met; what follows is left to the contact solver, and all of it where joints are struck.
+  // velocity: at the start of the step, changed by the impulses. aside: position offset of free bodies, m and rad. A
+  // collision at a time t inside the step adds -t times the change of velocity: a body that moves from the start of
+  // the step with the new velocity and this offset follows the path with the impulse at t. An overlap from the last
+  // step is a collision at a time before the start. first_rate: of each system, and one past the last. Real-time safe
+  // once its lists have grown. Sets the impact data of each group. Without restitution a pair of free bodies takes
+  // one impulse, so that it stops where and when it met. The contact solver handles the rest, and all impacts on
+  // joints without restitution.
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, Velocities& velocity,
                Velocities& aside);
 
@@ -35,9 +35,9 @@ class Collisions {
   bool collides(const ContactPoint& p, Meeting& out) const;
   double approach(const ContactGroup& g) const;
   void rebound(ContactGroup& g);
-  void foresee(ContactGroup& g) const;
+  void predict_meeting(ContactGroup& g) const;
   template <class F>
-  void of_mover(int mover, F&& each);
+  void for_each_component(int mover, F&& each);
 
   Limits limits_;
   ContactRows* rows_ = nullptr;

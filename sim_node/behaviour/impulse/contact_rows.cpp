@@ -10,14 +10,13 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Painleve's contacts: friction turns the surface so far into the other that hardly anything, or less than
-// nothing, is left of the normal impulse's effect. Below this share of it the direction of sliding is searched
-// for.
+// Jamming (Painleve): friction rotates the surface into the other one, which nearly cancels or reverses the effect of
+// the normal impulse. Below this share of the effect the direction of sliding is searched for.
 constexpr double kWedged = 0.2;
 constexpr int kDirections = 48, kBisections = 40;
 
-// A cone's edge in every direction: where friction opposes the sliding that is left, with the surfaces not
-// parting. start: velocity without an impulse.
+// Searches the edge of the friction cone in all directions for an impulse at which friction opposes the remaining
+// sliding and the surfaces do not separate. start: velocity without an impulse.
 Eigen::Vector3d solve_wedged(const ContactPoint& p, const Eigen::Vector3d& start) {
   const auto at = [&](double angle, Eigen::Vector3d& impulse) {
     const Eigen::Vector3d ray(1, p.friction * std::cos(angle), p.friction * std::sin(angle));
@@ -25,7 +24,7 @@ Eigen::Vector3d solve_wedged(const ContactPoint& p, const Eigen::Vector3d& start
     impulse =
         moved > 1e-6 * p.mobility(0, 0) ? Eigen::Vector3d(-start.x() / moved * ray) : Eigen::Vector3d(0, 0, 0);
     const Eigen::Vector3d v = start + p.mobility * impulse;
-    // Of the sliding: what crosses the friction, and whether that opposes it.
+    // Of the sliding velocity: the component across the friction, and whether friction opposes it.
     return std::pair(v.z() * std::cos(angle) - v.y() * std::sin(angle),
                      moved > 1e-6 * p.mobility(0, 0) && v.y() * std::cos(angle) + v.z() * std::sin(angle) <= 0);
   };
@@ -76,11 +75,11 @@ void ContactRows::apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& 
   }
 }
 
-void ContactRows::weigh(ContactPoint& p) const {
+void ContactRows::compute_mobility(ContactPoint& p) const {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
   const auto add = [&](int twist, const Eigen::Vector3d& arm) {
     if (!twist) return;
-    const Inertness& m = inert[static_cast<std::size_t>(twist)];
+    const InverseInertia& m = inert[static_cast<std::size_t>(twist)];
     Eigen::Matrix3d turn;  // columns: arm x axis
     for (int i = 0; i < 3; ++i) turn.col(i) = arm.cross(Eigen::Vector3d(p.axes.row(i)));
     k.noalias() += turn.transpose() * (m.inverse_inertia * turn);
@@ -95,8 +94,8 @@ void ContactRows::weigh(ContactPoint& p) const {
     const Rows jacobian(pool.data() + q.jacobian, 3, n), response(pool.data() + q.response, 3, n);
     k.noalias() += jacobian.lazyProduct(response.transpose());
   }
-  // A joint may leave no way to move along an axis: what is left then is a billionth of the rest, so that it can
-  // be inverted; the impulse along it changes nothing.
+  // Joints may leave no mobility along an axis. It is set to a billionth of the rest, so that the matrix is
+  // invertible; the impulse along it has no effect.
   k.diagonal().array() += 1e-9 * k.trace();
   p.mobility = k;
   p.inverse_mobility = k.inverse();

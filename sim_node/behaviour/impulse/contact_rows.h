@@ -1,5 +1,5 @@
-// Contact points as rows that an impulse solver sweeps: each knows the bodies or joints that it moves, the
-// velocity of its surfaces and what an impulse does to it. Contiguous, and built once a step.
+// Contact points as constraint rows for the sweeps of an impulse solver: each stores its bodies or joints, and gives
+// the relative velocity of its surfaces and the effect of an impulse. Contiguous, rebuilt in each step.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,8 +7,8 @@
 
 namespace tactus::sim::impulse {
 
-// Velocities of everything that moves: of free bodies, and the rates of the joints of all systems one after the
-// other. Twist 0 is that of what never moves.
+// Velocities of all moving bodies: twists of free bodies, and the joint rates of all systems in sequence. Twist 0
+// belongs to static bodies.
 struct Twist {
   Eigen::Vector3d linear_m_s = Eigen::Vector3d::Zero(), angular_rad_s = Eigen::Vector3d::Zero();
 };
@@ -16,55 +16,55 @@ struct Velocities {
   std::vector<Twist> twists;
   std::vector<double> rates;
 };
-struct Inertness {  // of a free body, world axes; zero: never moves
+struct InverseInertia {  // of a free body, world axes; zero: static
   double inverse_mass_1_kg = 0;
   Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
 };
 
-// What an impulse at a point does to a system of joints, in the axes of the point.
+// Effect of an impulse at a point on a system of joints, in the axes of the point.
 struct Coupling {
   std::size_t first_rate = 0, rates = 0;
-  std::size_t jacobian = 0, response = 0;  // where each 3 x rates, row-major, begins in the pool
+  std::size_t jacobian = 0, response = 0;  // start of each 3 x rates matrix, row-major, in the pool
 };
 
-// How a point presses before its surfaces meet: not at all, with a spring and a damper of the end of the step, or
-// with an impulse that is given.
+// Force of a point before its surfaces meet: none, a spring and damper evaluated at the end of the step (implicit),
+// or a given impulse (explicit).
 enum class Press { kNone, kSoft, kGiven };
 
-// In its own axes: normal (from a to b), and two tangents. Impulses act on b, and oppositely on a.
+// In its own axes: normal (from a to b) and two tangents. Impulses act on b, and with opposite sign on a.
 struct ContactPoint {
-  int a = 0, b = 0;  // twists; 0 too for a link
+  int a = 0, b = 0;  // indices of twists; 0 also for a link
   int first_coupling = 0, couplings = 0;
   Eigen::Matrix3d axes;                        // rows: normal, tangents
   Eigen::Vector3d arm_a, arm_b;                // from the centres of mass, m
-  Eigen::Matrix3d mobility, inverse_mobility;  // velocity by unit impulse, 1/kg
+  Eigen::Matrix3d mobility, inverse_mobility;  // velocity per unit impulse, 1/kg
   double sliding_mobility = 0;                 // largest along the tangents
   double friction = 0;
   double gap_m = 0;            // at the start of the step; negative: overlap
-  double least_speed_m_s = 0;  // of parting that the contact asks for; negative: how fast the gap may close
+  double least_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
   Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
-  double blow_N_s = 0;                                // along the normal, of collisions before
-  int mover_a = 0, mover_b = 0;                       // as those of its group, plus one; 0: nothing
-  int visit = -1;                                     // the one of the sweep at which it was last solved
+  double impact_N_s = 0;                              // along the normal, of the collision phase
+  int mover_a = 0, mover_b = 0;                       // as in its group, plus one; 0: static
+  int visit = -1;                                     // counter value at which it was last solved
   Press press = Press::kNone;
-  double lasts_s = 0;  // what its impulse is the force of: from the middle of the step before to that of this one
+  double force_time_s = 0;  // time that relates its impulse to a force: from the middle of the previous step to the middle of this one
   double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
   double pressed_N_s = 0;                        // kGiven
-  double shell_m = -1;                           // from which gap on it presses; negative: not known yet
+  double shell_m = -1;                           // gap below which it presses; negative: not yet known
 };
 
 // The points of one manifold.
 struct ContactGroup {
   int first = 0, count = 0, manifold = 0;
-  int mover_a = -1, mover_b = -1;  // what they move: a twist, or beyond those a system; -1: nothing
+  int mover_a = -1, mover_b = -1;  // index of a twist, or beyond those of a system; -1: static
   double restitution = 0;
-  // How the surfaces meet in the step: blows so far, at their first and last instants after its start, and the
-  // point and speed of the first; without a blow, where the free motion leads. met: -1: nowhere.
-  int blows = 0, met = -1;
+  // Impacts in the step: their number, the times of the first and the last after its start, and the point and speed
+  // of the first. Without an impact, the predicted meeting of the free motion. met: -1: none.
+  int impacts = 0, met = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
-  bool shielded = false;  // takes no blow: springs press
-  bool stopped = false;   // by these, before the surfaces meet
+  bool shielded = false;  // no impulses: springs press
+  bool stopped = false;   // by springs, before the surfaces meet
 };
 
 class ContactRows {
@@ -73,22 +73,24 @@ class ContactRows {
   std::vector<ContactGroup> groups;
   std::vector<Coupling> couplings;
   std::vector<double> pool;
-  std::vector<Inertness> inert;  // per twist
+  std::vector<InverseInertia> inert;  // per twist
 
   void clear();
-  // Of the surface of b against that of a, in the point's axes.
+  // Relative velocity of the surface of b with respect to a, in the point's axes.
   Eigen::Vector3d velocity(const ContactPoint& p, const Velocities& v) const;
   void apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
-  // The same as solve() where something presses before the surfaces meet.
-  static Eigen::Vector3d answer(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v) {
+  // The same as solve(), with support for points that press before the surfaces meet.
+  static Eigen::Vector3d solve_point(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v) {
     return p.press == Press::kNone ? solve(p, impulse, v) : solve_pressed(p, impulse, v);
   }
-  // Completes the mobility from the arms and couplings; call when those are set.
-  void weigh(ContactPoint& p) const;
+  // Computes the mobility from the arms and couplings. Call it after they are set.
+  void compute_mobility(ContactPoint& p) const;
 
-  // The impulse that the point should have instead of `impulse`, when its velocity less what is asked for is v:
-  // none where the surfaces part anyway, no sliding where the cone allows it, otherwise on the cone and against
-  // the sliding. The cone is round: |tangential| <= friction * normal. Fixed points satisfy Coulomb's law exactly.
+  // Returns the impulse that replaces `impulse` at a velocity v, measured relative to the required velocity: zero
+  // when the surfaces separate anyway, without sliding when the friction cone allows it, otherwise on the cone and
+  // opposite to the sliding. The cone is round:
+  // tangential
+  // <= friction * normal. Fixed points satisfy Coulomb's law exactly.
   static Eigen::Vector3d solve(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v);
 
  private:
@@ -101,11 +103,11 @@ class ContactRows {
                                        const Eigen::Vector3d& v, double alone);
 };
 
-// The innermost loop of a step is made of these three: written out, since products of whole matrices are not made
-// inline and wait for what has just been stored. The order of the sums is theirs, so that states stay what they
-// were to the bit.
+// The innermost loop of a step consists of these three functions. They are written out, since the compiler does not
+// inline products of whole matrices and these wait for recent stores. The order of the sums is that of the matrix
+// products, so that results stay bit-identical.
 
-// m * (x, y, z), added to or taken from out.
+// Adds m * (x, y, z) to out, or subtracts it.
 template <int kSign>
 inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x, double y, double z) {
   const double* c = m.data();  // by columns
@@ -145,7 +147,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
                z = c[6] * n + c[7] * s + c[8] * t;
   if (p.b) {
     Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-    const Inertness& m = inert[static_cast<std::size_t>(p.b)];
+    const InverseInertia& m = inert[static_cast<std::size_t>(p.b)];
     const double k = m.inverse_mass_1_kg;
     b.linear_m_s[0] += k * x, b.linear_m_s[1] += k * y, b.linear_m_s[2] += k * z;
     const Eigen::Vector3d& r = p.arm_b;
@@ -154,7 +156,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
   }
   if (p.a) {
     Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    const Inertness& m = inert[static_cast<std::size_t>(p.a)];
+    const InverseInertia& m = inert[static_cast<std::size_t>(p.a)];
     const double k = m.inverse_mass_1_kg;
     a.linear_m_s[0] -= k * x, a.linear_m_s[1] -= k * y, a.linear_m_s[2] -= k * z;
     const Eigen::Vector3d& r = p.arm_a;

@@ -8,11 +8,11 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// A body that turns less than this in a step turns evenly, rad: what its spin changes by is the square of it,
-// 1e-10.
+// A body that rotates less than this in a step has constant angular velocity, rad: the change is of the order of its
+// square, 1e-10.
 constexpr double kHardlyTurns_rad = 1e-5;
-// The turn of a step is integrated in pieces of this, rad, where the classical step errs by its fifth power, 1e-4;
-// design: a body that turns further than 32 of them in a step spins faster than any step resolves.
+// Rotation per integration piece, rad. The error of the classical Runge-Kutta step is its fifth power, 1e-4. Design
+// value: a body that rotates more than 32 pieces in a step is too fast for any step.
 constexpr double kPiece_rad = 0.15;
 constexpr int kMaxPieces = 32;
 
@@ -27,12 +27,12 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& q, const Eigen::Vector3d& by
   return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, by / angle)) * q).normalized();
 }
 
-// A body that is alike about all axes turns evenly.
+// A body with equal principal inertias has constant angular velocity.
 bool is_even(const Eigen::Matrix3d& inertia) {
   return (inertia - inertia(0, 0) * Eigen::Matrix3d::Identity()).norm() < 1e-9 * inertia(0, 0);
 }
 
-// Mean spin over the step at constant spin momentum; spin: at its start.
+// Mean angular velocity over the step at constant angular momentum. spin: at its start.
 Eigen::Vector3d mean_spin(const FreeBody& body, const Eigen::Vector3d& momentum, const Eigen::Vector3d& spin,
                           double step) {
   const Eigen::Matrix3d inverse = body.inertia_kg_m2.inverse();
@@ -51,7 +51,7 @@ Eigen::Vector3d mean_spin(const FreeBody& body, const Eigen::Vector3d& momentum,
     q.normalize();
   }
   const Eigen::AngleAxisd turn(Eigen::Quaterniond(q) * body.orientation.conjugate());
-  // Poses do not tell whole turns; the spin does.
+  // Poses do not contain whole turns. The angular velocity does.
   const double whole =
       2 * std::numbers::pi * std::round((spin.dot(turn.axis()) * step - turn.angle()) / (2 * std::numbers::pi));
   return (turn.angle() + whole) / step * turn.axis();

@@ -1,4 +1,4 @@
-// A rigid body that hangs on nothing: its state, and its flight over one step without contacts.
+// A free rigid body: its state, and its flight over one step without contacts.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,36 +15,35 @@ struct FreeBody {
 
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  // Of the middle of the step before, so that steps of x += h v lie on the parabola (leapfrog).
+  // At the middle of the previous step, so that steps of x += h v follow the parabola (leapfrog).
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
-  double step_s = -1;  // length of that step; negative: the same as the next one's
-  Eigen::Vector3d spin_rad_s = Eigen::Vector3d::Zero();  // now
+  double step_s = -1;  // length of that step; negative: equal to the next one
+  Eigen::Vector3d spin_rad_s = Eigen::Vector3d::Zero();  // current
 
-  // Act during the next step, at the centre.
+  // Act during the next step, at the centre of mass.
   Eigen::Vector3d force_N = Eigen::Vector3d::Zero(), moment_N_m = Eigen::Vector3d::Zero();
 };
 
-// What a body would do in the next step if it touched nothing. World axes.
+// Motion of a body in the next step without contacts. World axes.
 struct Flight {
   Eigen::Matrix3d inertia, inverse_inertia;  // kg m^2, 1/(kg m^2)
   Eigen::Vector3d spin_momentum;             // kg m^2/s, at the end of the step
   Eigen::Vector3d start_m_s, mean_m_s;       // velocity at the start of the step, and its mean over it
-  Eigen::Vector3d start_rad_s, mean_rad_s;   // spin: turning so through the step leads to the free orientation
+  Eigen::Vector3d start_rad_s, mean_rad_s;   // angular velocity; rotation with the mean through the step gives the free orientation
 };
 
-// The turn of a body without torque is found with its spin momentum held exactly, by the classical Runge-Kutta
-// step (Hairer, Norsett and Wanner 1993, table II.1.2). Realtime-safe: yes.
+// Integrates the rotation of a torque-free body with exact angular momentum, by the classical Runge-Kutta method
+// (Hairer, Norsett and Wanner 1993, table II.1.2). Real-time safe: yes.
 Flight fly(const FreeBody& body, double h_s);
 
-// Ends a step in which the body moved with these mean velocities instead, and was set aside by these offsets (m,
-// rad).
+// Completes a step in which the body moved with these mean velocities and got these offsets (m, rad).
 void land(FreeBody& body, const Flight& flight, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
           const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h_s);
 
-// Sets a body aside (m, rad); its velocities stay.
+// Moves a body by an offset (m, rad); its velocities do not change.
 void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad);
 
-// The velocity as of the middle of a step of another length; 0: of now.
+// The velocity at the middle of a step of another length; 0: current.
 Eigen::Vector3d velocity_for(const FreeBody& body, double step_s);
 
 BodyMotion motion_of(const FreeBody& body);

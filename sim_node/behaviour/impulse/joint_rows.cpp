@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNoLimit = 1e15;
 constexpr double kUnbounded = std::numeric_limits<double>::max();
-// A limit further away than this many steps at the present rate, and this far besides, is left out, rad or m.
+// A limit further away than this number of steps at the current rate plus this distance, rad or m, gets no row.
 constexpr double kStepsAhead = 4, kAhead = 0.05;
 
 bool of_ball(const articulated::Tree& tree, const articulated::Dof& d) {
@@ -51,17 +51,17 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     pool.resize(pool.size() + n);
     system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    const auto add = [&](double wanted, double softness, double least, double most, double& kept) {
+    const auto add = [&](double wanted, double softness, double least, double most, double& saved) {
       row.wanted = wanted;
       row.softness = softness;
       row.least = least;
       row.most = most;
-      row.impulse = std::clamp(kept, least, most);
-      row.memory = &kept;
+      row.impulse = std::clamp(saved, least, most);
+      row.memory = &saved;
       rows.push_back(row);
     };
     if (stiff) {
-      // The spring and damper at the end of the step: impulse = -h (k (q + h rate - reference) + d rate).
+      // Spring and damper at the end of the step: impulse = -h (k (q + h rate - reference) + d rate).
       const double softness = 1 / (h * (d.damping + h * d.stiffness));
       add(-h * d.stiffness * (q - d.reference) * softness, softness, -kUnbounded, kUnbounded, memory.spring[j]);
     }
@@ -104,8 +104,9 @@ void apply(const JointRow& row, double impulse, const std::vector<double>& pool,
 
 namespace {
 
-// Three rows of one torque, bounded as a whole: towards standing still by the weakest of the three answers, then into
-// the ball of what friction can give. Fixed points are still, or have all of the torque against the turning.
+// Three rows of one torque, bounded as a whole: first a step towards zero rate with the sum of the three mobilities,
+// then a projection into the ball of the friction limit. A fixed point is at rest, or has the full torque against the
+// rotation.
 double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v) {
   double mobility = 0;
   for (int k = 0; k < 3; ++k) mobility += rows[k].mobility;

@@ -5,8 +5,8 @@
 namespace tactus::sim {
 namespace {
 
-// Surfaces meet at this gap, so that what the sweeps leave unsolved is no overlap; design: what overlap is
-// allowed, 10 um, once more. Of it what is not repaired: a fifth, above the rounding of detectors.
+// kShell_m: surfaces meet at this gap, so that residuals of the sweeps are no overlaps. Design value: equal to the
+// allowed overlap, 10 um. kSlack_m: the part that is not corrected, a fifth, above the rounding of detectors.
 constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 }  // namespace
@@ -22,7 +22,7 @@ impulse::Law law_of(const Settings& s) {
     law.shell_m = kShell_m;
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,
                    .damping_N_s_m = s.penalty_damping_Ns_m,
-                   .thickness_m = s.contact_tolerance_m - kShell_m,  // ends where surfaces meet
+                   .thickness_m = s.contact_tolerance_m - kShell_m,  // ends at the gap where surfaces meet
                    .is_explicit = s.solver == "penalty_explicit",
                    .rise_m_s = s.correcting_speed_m_s};
   }

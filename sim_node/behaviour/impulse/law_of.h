@@ -1,4 +1,4 @@
-// The law of an impulse world that the settings of a scene ask for.
+// The contact law of an impulse world, from the settings of a scene.
 #pragma once
 
 #include "sim_node/behaviour/impulse/world.h"
@@ -6,7 +6,7 @@
 
 namespace tactus::sim {
 
-// The settings name a model that is solved by impulses.
+// The settings must name a model that is solved by impulses.
 impulse::Law law_of(const Settings& settings);
 
 }  // namespace tactus::sim

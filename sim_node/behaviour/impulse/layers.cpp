@@ -6,9 +6,9 @@ namespace tactus::sim::impulse {
 namespace {
 
 constexpr int kFlies = 1 << 20;
-constexpr int kMaxLayers = 256;   // what is higher counts as flying
-constexpr std::size_t kTurns = 8;  // groups that take turns; design: as many as hide the latency of one point
-constexpr int kSweeps = 5;         // over the points of one group; design: four corners settle to 1 %
+constexpr int kMaxLayers = 256;   // bodies above count as flying
+constexpr std::size_t kInterleaved = 8;  // number of interleaved groups; design: hides the latency of one point
+constexpr int kSweeps = 5;         // over the points of one group; design: four corners converge to 1 %
 
 }  // namespace
 
@@ -39,8 +39,8 @@ void Layers::find(const ContactRows& rows, int movers) {
   std::sort(order_.begin(), order_.end(),
             [&](int a, int b) { return height(a) != height(b) ? height(a) < height(b) : a < b; });
   points_.clear();
-  for (std::size_t begin = 0; begin < order_.size(); begin += kTurns) {
-    const std::size_t end = std::min(order_.size(), begin + kTurns);
+  for (std::size_t begin = 0; begin < order_.size(); begin += kInterleaved) {
+    const std::size_t end = std::min(order_.size(), begin + kInterleaved);
     for (int point = 0;; ++point) {
       const std::size_t before = points_.size();
       for (std::size_t i = begin; i < end; ++i) {
@@ -61,20 +61,19 @@ void Layers::settle(ContactRows& rows, Velocities& v) {
     const bool b_above = layer_of(g.mover_b) > layer_of(g.mover_a);
     ContactPoint* first = rows.points.data() + g.first;
     if (first->couplings > 0) continue;
-    // The lower body's share of the velocity is kept as drift, so that the point can be solved as if it stood
-    // still.
+    // The velocity of the lower body is stored as drift, so that the point can be solved as if the body were static.
     above_.points.assign(first, first + g.count);
     for (ContactPoint& p : above_.points) {
       const Eigen::Vector3d both = rows.velocity(p, v);
       (b_above ? p.a : p.b) = 0;
       p.drift_m_s = both - above_.velocity(p, v);
-      above_.weigh(p);
+      above_.compute_mobility(p);
     }
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (ContactPoint& p : above_.points) {
         Eigen::Vector3d u = above_.velocity(p, v) + p.drift_m_s;
         u.x() -= p.least_speed_m_s;
-        const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, u), by = next - p.impulse;
+        const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, u), by = next - p.impulse;
         p.impulse = next;
         above_.apply(p, by, v);
       }

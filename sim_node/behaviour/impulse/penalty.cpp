@@ -17,7 +17,8 @@ void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocit
         p.shell_m = std::clamp(p.gap_m + h * std::max(0.0, closing), 0.0, penalty.thickness_m);
       else
         p.shell_m = std::min(penalty.thickness_m, p.shell_m + h * penalty.rise_m_s);
-      // Kinetic energy against what the spring still can take: v^2 / 2 M against k (shell^2 - inside^2) / 2.
+      // Compares kinetic energy with the remaining capacity of the spring: v^2 / 2 M against k (shell^2 - inside^2) /
+      // 2.
       const double inside = std::clamp(p.shell_m - p.gap_m, 0.0, p.shell_m);
       const double bears = penalty.stiffness_N_m * p.mobility(0, 0) * (p.shell_m * p.shell_m - inside * inside);
       if (closing > 0 && closing * closing > bears) g.stopped = false;
@@ -28,12 +29,13 @@ void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocit
 
 void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
   for (ContactPoint& p : rows.points) {
-    p.lasts_s = h;
+    p.force_time_s = h;
     const double inside = p.shell_m - p.gap_m;
     const double damping =
         penalty.damping_N_s_m * std::clamp(inside / (kDamperSetsIn * penalty.thickness_m), 0.0, 1.0);
     if (penalty.is_explicit) {
-      // Of the step before: what acts in this one is not in it yet, or what rests would seem to sink.
+      // Closing speed of the previous step, without the forces of this one. Otherwise a resting body would seem to
+      // sink.
       const double closing = 2 * p.drift_m_s.x() - rows.velocity(p, velocity).x();
       p.press = Press::kGiven;
       p.pressed_N_s = inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
@@ -46,7 +48,7 @@ void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity
   }
 }
 
-// Normal first, then friction within its cone: sweeps bring the two together.
+// Solves the normal first, then friction within its cone. Sweeps couple the two.
 Eigen::Vector3d ContactRows::solve_pressed(const ContactPoint& p, const Eigen::Vector3d& impulse,
                                            const Eigen::Vector3d& v) {
   const double k = p.mobility(0, 0);
@@ -55,7 +57,7 @@ Eigen::Vector3d ContactRows::solve_pressed(const ContactPoint& p, const Eigen::V
     const double lacks = v.x() + p.least_speed_m_s - p.soft_speed_m_s + p.softness_1_kg * impulse.x();
     normal = std::max(0.0, impulse.x() - lacks / (k + p.softness_1_kg));
   }
-  // The shell is run through: the surfaces meet.
+  // The body crosses the shell: the surfaces meet.
   if (v.x() + k * (normal - impulse.x()) < 0) normal = std::max(0.0, impulse.x() - v.x() / k);
   const Eigen::Vector2d sliding = v.tail<2>() + p.mobility.block<2, 1>(1, 0) * (normal - impulse.x());
   const double a = p.mobility(1, 1), b = p.mobility(1, 2), d = p.mobility(2, 2), det = a * d - b * b;

@@ -1,4 +1,4 @@
-// What of a scene may be set while impulses move it, by its names and frames, in any of the worlds that move it.
+// Changes of a scene during an impulse simulation, by the scene's names and frames, for any of its worlds.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tactus::sim::impulse {
 
-// What holds for a scene from now on; poses and velocities are of the moment, and not here.
+// Changes that hold from now on. Poses and velocities are momentary and therefore not included.
 struct SceneChange {
   enum Kind { kGravity, kMass, kFriction, kRestitution, kMotor, kJointFriction };
   int kind = kGravity;
@@ -18,7 +18,7 @@ struct SceneChange {
   int axis = 0;
   Eigen::Vector3d values = Eigen::Vector3d::Zero();
 
-  // bodies: how many the world has.
+  // bodies: number of bodies in the world.
   void archive(StateArchive& a, std::size_t bodies);
 };
 
@@ -27,12 +27,12 @@ class SceneSettings {
   // world: one of this scene.
   SceneSettings(const WorldDef& def, const World& world);
 
-  // False: there is no such thing.
+  // Returns false when the target does not exist.
   bool apply(World& world, const SceneChange& change) const;
   bool set_pose(World& world, int body, const Eigen::Isometry3d& pose) const;
 
  private:
-  // The link that a joint carries; from the other side its axes are numbered the other way round.
+  // The link that a joint moves. Seen from the other side, its axes are numbered in reverse.
   struct Joint {
     std::string name;
     int body;

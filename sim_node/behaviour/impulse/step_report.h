@@ -1,14 +1,14 @@
-// What it took that nothing was in anything after a step of an impulse world.
+// Statistics of one step's penetration recovery in an impulse world.
 #pragma once
 
 namespace tactus::sim::impulse {
 
 struct StepReport {
-  int pieces = 0;        // in which the step was done; 1: the usual case
-  int found_again = 0;   // times that bodies came further than their contacts had been sought
-  int separated = 0;     // rounds in which overlaps were put apart
-  int held = 0;          // units that stayed where they were, as nothing else kept them apart
-  double deepest_m = 0;  // overlap that is left; negative: gap
+  int pieces = 0;        // number of pieces of the step; usually 1
+  int repeated_searches = 0;  // number of contact searches repeated because bodies moved too far
+  int separated = 0;     // rounds of overlap correction by positions
+  int held = 0;          // units that were reset to their start pose, as the last resort
+  double deepest_m = 0;  // remaining overlap; negative: gap
 };
 
 }  // namespace tactus::sim::impulse

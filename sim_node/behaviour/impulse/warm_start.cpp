@@ -5,8 +5,8 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// A point further than this from where it was is another point, m; design: well below the size of a patch, above
-// what slides by in a step.
+// A point further than this from its previous position is a new point, m. Design value: well below the size of a
+// patch, above the sliding distance of a step.
 constexpr double kSame_m = 0.01;
 
 Eigen::Vector3d place(const Manifold& m, const ManifoldPoint& p, std::span<const BodyMotion> poses) {
@@ -18,22 +18,22 @@ Eigen::Vector3d place(const Manifold& m, const ManifoldPoint& p, std::span<const
 
 void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
                        ContactRows& rows) const {
-  auto kept = kept_.begin();
+  auto stored = stored_.begin();
   for (const ContactGroup& g : rows.groups) {
     const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
-    const auto before = [&](const Kept& k) {
+    const auto before = [&](const StoredPoint& k) {
       return k.shape_a != m.shape_a ? k.shape_a < m.shape_a : k.shape_b < m.shape_b;
     };
-    while (kept != kept_.end() && before(*kept)) ++kept;
+    while (stored != stored_.end() && before(*stored)) ++stored;
     for (int i = 0; i < g.count; ++i) {
       ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
       const Eigen::Vector3d here = place(m, m.points[static_cast<std::size_t>(i)], poses);
       double nearest = kSame_m * kSame_m;
-      for (auto k = kept; k != kept_.end() && k->shape_a == m.shape_a && k->shape_b == m.shape_b; ++k) {
+      for (auto k = stored; k != stored_.end() && k->shape_a == m.shape_a && k->shape_b == m.shape_b; ++k) {
         const double apart = (k->place_m - here).squaredNorm();
         if (apart >= nearest) continue;
         nearest = apart;
-        p.impulse = p.lasts_s * (p.axes * k->force_N);
+        p.impulse = p.force_time_s * (p.axes * k->force_N);
         p.impulse.x() = std::max(0.0, p.impulse.x());
         p.shell_m = k->shell_m;
       }
@@ -41,16 +41,16 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
   }
 }
 
-void WarmStart::keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
+void WarmStart::store(std::span<const Manifold> contacts, std::span<const BodyMotion> poses,
                      const ContactRows& rows) {
-  kept_.clear();
+  stored_.clear();
   for (const ContactGroup& g : rows.groups) {
     const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
     for (int i = 0; i < g.count; ++i) {
       const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
       if (p.impulse.x() <= 0 && p.press == Press::kNone) continue;
-      kept_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
-                       p.axes.transpose() * p.impulse / p.lasts_s, p.shell_m});
+      stored_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
+                       p.axes.transpose() * p.impulse / p.force_time_s, p.shell_m});
     }
   }
 }

@@ -1,5 +1,5 @@
-// Impulses of the step before, for the points that are still there: the solver starts from them, so that what
-// rests has its answer at once and a stack gathers it over the steps.
+// Warm start: impulses of the previous step for persistent points. Resting contacts converge at once, and a stack
+// over several steps.
 #pragma once
 
 #include <span>
@@ -14,22 +14,22 @@ namespace tactus::sim::impulse {
 
 class WarmStart {
  public:
-  // Sets point.impulse from the force of the point of the same pair of shapes that lies nearest in the moving
-  // body. contacts: ordered by their shapes, those of the groups; poses: of every body, at the start of the step.
+  // Sets point.impulse from the force of the nearest point, in the frame of the moving body, of the same pair of
+  // shapes. contacts: those of the groups, ordered by their shapes. poses: of every body, at the start of the step.
   void recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, ContactRows& rows) const;
-  // Keeps those that were found.
-  void keep(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, const ContactRows& rows);
-  void clear() { kept_.clear(); }
+  // Stores the impulses of this step.
+  void store(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, const ContactRows& rows);
+  void clear() { stored_.clear(); }
   void archive(StateArchive& a, std::size_t shapes);
 
  private:
-  struct Kept {
+  struct StoredPoint {
     int shape_a = -1, shape_b = -1;
-    Eigen::Vector3d place_m;  // in the frame of the body that moves
+    Eigen::Vector3d place_m;  // in the frame of the moving body
     Eigen::Vector3d force_N;  // world, on b
-    double shell_m = -1;      // as of its point
+    double shell_m = -1;      // as in ContactPoint
   };
-  std::vector<Kept> kept_;
+  std::vector<StoredPoint> stored_;
 };
 
 }  // namespace tactus::sim::impulse

@@ -17,7 +17,7 @@ int World::add_fixed() {
 int World::add_free(const FreeBody& body) {
   movers_.push_back({Kind::kFree, static_cast<int>(free_.size()), 0});
   free_.push_back(body);
-  lasts_s_.push_back(0);
+  force_time_s_.push_back(0);
   body_of_.push_back(static_cast<int>(movers_.size()) - 1);
   motions_.push_back(motion_of(body));
   return static_cast<int>(movers_.size()) - 1;
@@ -81,7 +81,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
     if (i < free_.size()) {
       FreeBody& b = free_[i];
       b.velocity_m_s = velocity_for(b, h);
-      lasts_s_[i] = b.step_s < 0 ? h : (b.step_s + h) / 2;
+      force_time_s_[i] = b.step_s < 0 ? h : (b.step_s + h) / 2;
       b.step_s = h;
       const Flight& f = flights_[i] = fly(b, h);
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
@@ -111,7 +111,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
   }
 }
 
-// Rows of the joints between the sides of a point and the world: links a and b of one system, -1: not of it.
+// Appends the coupling rows of a point to a system. link_a, link_b: links of the system on the two sides; -1: none.
 void World::couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m) {
   articulated::ArticulatedSystem& s = systems_[index(system)].system;
   const std::size_t n = s.tree().dofs.size();
@@ -158,21 +158,21 @@ void World::build_rows(std::span<const Manifold> contacts, double h) {
       if (a.kind == Kind::kFree) {
         p.a = a.index + 1;
         p.arm_a = at.point_m - free_[index(a.index)].centre_m;
-        p.lasts_s = lasts_s_[index(a.index)];
+        p.force_time_s = force_time_s_[index(a.index)];
       }
       if (b.kind == Kind::kFree) {
         p.b = b.index + 1;
         p.arm_b = at.point_m - free_[index(b.index)].centre_m;
-        p.lasts_s = std::max(p.lasts_s, lasts_s_[index(b.index)]);
+        p.force_time_s = std::max(p.force_time_s, force_time_s_[index(b.index)]);
       } else {
         p.arm_b.setZero();
       }
-      if (a.kind == Kind::kLink || b.kind == Kind::kLink) p.lasts_s = h;
+      if (a.kind == Kind::kLink || b.kind == Kind::kLink) p.force_time_s = h;
       const bool one = a.kind == Kind::kLink && b.kind == Kind::kLink && a.index == b.index;
       if (one) couple(p, a.index, a.link, b.link, at.point_m);
       if (a.kind == Kind::kLink && !one) couple(p, a.index, a.link, -1, at.point_m);
       if (b.kind == Kind::kLink && !one) couple(p, b.index, -1, b.link, at.point_m);
-      rows_.weigh(p);
+      rows_.compute_mobility(p);
       p.drift_m_s = rows_.velocity(p, drift_);
       rows_.points.push_back(p);
     }
@@ -192,8 +192,8 @@ void World::build_joints(double h) {
     }
 }
 
-// What each contact asks for: that its gap does not close beyond zero, that an overlap is taken back gently.
-void World::ask(double h) {
+// Sets the minimum separating speeds: a gap closes at most to zero, and an overlap is corrected gently.
+void World::set_required_speeds(double h) {
   const auto repair = [&](double overlap) {
     return std::min(law_.repair_speed_m_s, law_.repair * std::max(0.0, overlap - law_.slack_m) / h);
   };
@@ -213,19 +213,19 @@ void World::sweep(double h) {
   for (const ContactPoint& p : rows_.points)
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
-  // What has settled is left alone until something stirs one of its sides.
-  stirred_.resize(free_.size() + systems_.size() + 2);
+  // Converged points are skipped until one of their sides changes.
+  last_change_.resize(free_.size() + systems_.size() + 2);
   for (const ContactGroup& g : rows_.groups)
-    for (const int moved : {g.mover_a, g.mover_b}) stirred_[index(moved + 1)] = 0;
-  for (const JointRow& row : joints_) stirred_[index(row.mover + 1)] = 0;
+    for (const int moved : {g.mover_a, g.mover_b}) last_change_[index(moved + 1)] = 0;
+  for (const JointRow& row : joints_) last_change_[index(row.mover + 1)] = 0;
   int visits = 0;
   const auto point = [&](ContactPoint& p) {
-    int &a = stirred_[index(p.mover_a)], &b = stirred_[index(p.mover_b)];
+    int &a = last_change_[index(p.mover_a)], &b = last_change_[index(p.mover_b)];
     if (a <= p.visit && b <= p.visit) return 0.0;
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
     v.x() -= p.least_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::answer(p, p.impulse, v);
+    const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, v);
     const Eigen::Vector3d by(next[0] - p.impulse[0], next[1] - p.impulse[1], next[2] - p.impulse[2]);
     const double change = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])}) * p.mobility(0, 0);
     if (change == 0) return 0.0;
@@ -240,7 +240,7 @@ void World::sweep(double h) {
   };
   const auto joint = [&](JointRow& row) {
     const double change = impulse::sweep(row, rows_.pool, velocity_);
-    if (change >= settled_m_s) stirred_[index(row.mover + 1)] = ++visits;
+    if (change >= settled_m_s) last_change_[index(row.mover + 1)] = ++visits;
     return change;
   };
   for (sweeps_ = 0; sweeps_ < law_.sweeps;) {
@@ -248,7 +248,7 @@ void World::sweep(double h) {
     const auto visit = [&](int number) { change = std::max(change, point(rows_.points[index(number)])); };
     for (JointRow& row : joints_) change = std::max(change, joint(row));
     const auto& order = layers_.points();
-    // Up and down, so that neither end of a stack is always the last to hear of the other.
+    // Alternates the direction, so that information travels through a stack both ways.
     if (sweeps_++ % 2 == 0)
       for (auto number = order.begin(); number != order.end(); ++number) visit(*number);
     else
@@ -295,7 +295,7 @@ void World::finish(std::size_t s, double h) {
   }
 }
 
-// Half of what acts evenly through the step is in its mean velocities.
+// Half of the effect of constant loads over the step is in the mean velocities.
 void World::add_drift() {
   for (const int unit : active_) {
     const std::size_t i = index(unit);
@@ -309,20 +309,20 @@ void World::add_drift() {
   }
 }
 
-// What the step did to each contact: forces, and how it met.
-void World::tell(std::span<Manifold> contacts, double h) const {
+// Writes the forces and impacts of the step to the contacts.
+void World::write_results(std::span<Manifold> contacts, double h) const {
   for (const ContactGroup& g : rows_.groups) {
     Manifold& m = contacts[index(g.manifold)];
     for (int i = 0; i < g.count; ++i) {
       const ContactPoint& p = rows_.points[index(g.first + i)];
-      m.points[index(i)].normal_force_N = p.blow_N_s / h + p.impulse.x() / p.lasts_s;
+      m.points[index(i)].normal_force_N = p.impact_N_s / h + p.impulse.x() / p.force_time_s;
     }
     m.impact = {};
     if (g.met < 0 || m.points[index(g.met)].normal_force_N <= 0) continue;
     const ManifoldPoint& at = m.points[index(g.met)];
     const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
     const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
-    m.impact.blows = std::max(1, g.blows);
+    m.impact.count = std::max(1, g.impacts);
     m.impact.first_s = std::min(g.first_s, h);
     m.impact.last_s = std::min(g.last_s, h);
     m.impact.speed_m_s = g.speed_m_s;
@@ -330,7 +330,7 @@ void World::tell(std::span<Manifold> contacts, double h) const {
     const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
                           met_b = on_b + g.first_s * b.velocity_at(on_b);
     m.impact.place_m = (met_a + met_b) / 2;
-    // Along the normal, what stands still knows better.
+    // Along the normal, the position on the static body is exact.
     if (!a.moves() || !b.moves())
       m.impact.place_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.place_m) * at.normal;
     m.impact.normal = at.normal;
@@ -349,14 +349,14 @@ void World::step(std::span<Manifold> contacts, double h) {
   if (presses) shield(rows_, law_.penalty, velocity_, h);
   collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
   add_drift();
-  ask(h);
+  set_required_speeds(h);
   if (presses) press(rows_, law_.penalty, velocity_, h);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep(h);
   if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);
-  warm_.keep(contacts, motions_, rows_);
+  warm_.store(contacts, motions_, rows_);
   for (const JointRow& row : joints_) *row.memory = row.impulse;
-  tell(contacts, h);
+  write_results(contacts, h);
   finish(h);
 }
 

@@ -1,6 +1,6 @@
-// Free bodies, systems of joints and things that never move, and the impulses between them: one step at a time, in
-// the order of Guendelman, Bridson and Fedkiw 2003: collisions, velocities, contact, positions. Bodies and links
-// are moved by the same sweep. Knows no shapes: contacts are an argument.
+// Free bodies, systems of joints and static bodies, with impulses between them. One step follows Guendelman, Bridson
+// and Fedkiw 2003: collisions, velocities, contact, positions. The same sweep solves bodies and links. Independent of
+// shapes: contacts are an argument.
 #pragma once
 
 #include <span>
@@ -20,28 +20,28 @@
 namespace tactus::sim::impulse {
 
 struct Law {
-  int sweeps = 40;             // most, over all contacts of a step
-  double settled_m_s2 = 1e-6;  // sweeps end when no point changes by more in the time of a step: 1e-7 of weight
+  int sweeps = 40;             // maximum, over all contacts of a step
+  double settled_m_s2 = 1e-6;  // sweeps end when no point changes by more per time of a step: 1e-7 of weight
   double bounce_speed_m_s = 0.02;  // slower impacts do not bounce
-  double slack_m = 1e-4;           // overlap that is not repaired
-  double repair = 0.2;             // share of a deeper one that is taken back in a step
-  double repair_speed_m_s = 0.02;  // and at most so fast
-  double shell_m = 0;              // surfaces meet at this gap: what is left of it keeps them apart in truth
-  Penalty penalty = {};            // in a shell beyond that gap, instead of collisions that its springs can stop
+  double slack_m = 1e-4;           // overlap that is not corrected
+  double repair = 0.2;             // share of a deeper overlap that is corrected per step
+  double repair_speed_m_s = 0.02;  // upper limit of the correction speed
+  double shell_m = 0;              // surfaces meet at this gap, so that residuals stay free of overlap
+  Penalty penalty = {};            // in a shell beyond that gap, in place of collisions that its springs can stop
 };
 
 struct Surface {
   double friction = 0.5,
-         restitution = 0;  // a pair takes the geometric mean of friction and the smaller restitution
+         restitution = 0;  // a pair uses the geometric mean of friction and the smaller restitution
 };
 
-// What moves as one, by value: a free body, or all links of a system.
+// State of a unit, by value: a free body, or all links of a system.
 struct UnitState {
   struct {
     Eigen::Vector3d centre_m{0, 0, 0};
     Eigen::Quaterniond orientation{1, 0, 0, 0};
     Eigen::Vector3d velocity_m_s{0, 0, 0}, spin_rad_s{0, 0, 0};
-  } body;  // of now
+  } body;  // current
   articulated::ArticulatedSystem::State joints;
 };
 
@@ -49,13 +49,13 @@ class World {
  public:
   explicit World(Law law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slack_m}) {}
 
-  // Each gives the next number of a body, from 0; a system as many as it has links, in their order.
+  // Each returns the next body index, from 0. A system takes one index per link, in order.
   int add_fixed();
   int add_free(const FreeBody& body);
   int add_system(articulated::ArticulatedSystem system);
-  // Bodies that were added as fixed become the links of a system, in their order.
+  // Turns bodies that were added as fixed into the links of a system, in order.
   void make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system);
-  // Gives the next number of a shape.
+  // Returns the next shape index.
   int add_surface(const Surface& surface);
 
   FreeBody& free_body(int body) { return free_[index(movers_[index(body)].index)]; }
@@ -65,73 +65,73 @@ class World {
   // Acts during the next step.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
 
-  // Units: free bodies and systems in the order in which they were added, the free bodies first. Of a body; -1: it
-  // does not move. unit_bodies: its bodies, into `out`, appended.
+  // Units are the free bodies, then the systems, each in the order of addition. unit_of: -1 for a static body.
+  // unit_bodies: appends the bodies of a unit to `out`.
   int units() const { return static_cast<int>(free_.size() + systems_.size()); }
   int unit_of(int body) const;
-  // The body that a link's joint hangs it on; -1: the world, or no link.
+  // The body that a link's joint connects it to; -1: the world, or no link.
   int parent_of(int body) const;
   bool is_free(int body) const { return movers_[index(body)].kind == Kind::kFree; }
   void unit_bodies(int unit, std::vector<int>& out) const;
-  // Only these units, ascending, are there from now on: the others keep their state, and stand still for what
-  // touches them. All of them at first. A step costs what the active ones do. Realtime-safe once its lists have
-  // grown.
+  // Activates only these units, ascending. Others keep their state and act as static bodies. Initially all are
+  // active. The cost of a step depends on the active units only. Real-time safe once its lists have grown.
   void set_active(std::span<const int> units);
   std::span<const int> active_units() const { return active_; }
   // Their bodies, ascending.
   std::span<const int> active_bodies() const { return active_bodies_; }
-  // The state of a unit at the end of its last step: put into another world of the same units, it goes on there,
-  // whatever the steps of the two. Realtime-safe once the lists of `out` have grown.
+  // The state of a unit at the end of its last step. In another world with the same units it continues unchanged,
+  // also with different step lengths. Real-time safe once the lists of `out` have grown.
   void copy_state(int unit, UnitState& out) const;
   void set_state(int unit, const UnitState& state);
 
-  // contacts: of the present poses, ordered by their shapes, with gaps (negative depth) out to where a step may
-  // lead; each point's normal_force_N is filled in, mean over the step, blows included. Deterministic.
-  // Realtime-safe once its lists have grown.
+  // contacts: of the current poses, ordered by their shapes, with gaps (negative depth) within the range of a step.
+  // Sets each point's normal_force_N, the mean over the step, impacts included. Deterministic. Real-time safe once
+  // its lists have grown.
   void step(std::span<Manifold> contacts, double h_s);
 
   // Acts during the next step, N m.
   void add_torque(int body, const Eigen::Vector3d& torque_N_m);
-  // All that the next steps depend on. Throws BadState when what is read does not fit; this is then half changed.
+  // Archives all state of the next steps. Throws BadState when the data does not fit; the world is then partly
+  // changed.
   void archive(StateArchive& a);
 
-  // All that a step changes of the active units, so that it can be taken back.
-  struct Kept {
+  // Everything that a step changes in the active units, to take it back.
+  struct SavedStep {
     std::vector<FreeBody> free;
     std::vector<articulated::ArticulatedSystem::State> states;
-    std::vector<articulated::ArticulatedSystem::Burden> burdens;
+    std::vector<articulated::ArticulatedSystem::SavedLoads> saved_loads;
     std::vector<JointMemory> memories;
     std::vector<BodyMotion> motions;  // of the active bodies
     WarmStart warm;
   };
-  // Realtime-safe once the lists of `out` have grown. The active units must be the same until it is taken back.
-  void keep(Kept& out);
-  void take_back(const Kept& kept);
-  // What acted in the step after which this was kept acts in the next one too.
-  void load_again(const Kept& kept);
-  // Puts a unit where it was, at rest.
-  void hold(int unit, const Kept& kept);
-  // Moves what overlaps apart, along the shortest way that the contacts leave and as inertia divides it: positions
-  // alone, no speed comes of it. contacts: of the present poses; overlaps deeper than most_m are left alone.
+  // save() is real-time safe once the lists of `out` have grown. The active units must not change until restore().
+  void save(SavedStep& out);
+  void restore(const SavedStep& saved);
+  // Applies the loads of the saved step to the next step too.
+  void restore_loads(const SavedStep& saved);
+  // Resets a unit to its saved pose, at rest.
+  void hold(int unit, const SavedStep& saved);
+  // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
+  // only, not velocities. contacts: of the current poses. Overlaps deeper than most_m are ignored.
   void separate(std::span<const Manifold> contacts, double most_m);
 
-  // What may be set between steps; each holds from the next one on. Velocities of a link are those that it has at
-  // the instant when its joints begin to hold: the others take their share, as from a blow (Featherstone 2008,
-  // section 11.7). False: the body is not free, or has no such axis.
+  // Changes between steps, in force from the next step on. The velocity of a link acts like an impulse: the other
+  // joints take their share (Featherstone 2008, section 11.7). Functions return false when the body is not free or
+  // has no such axis.
   void set_gravity(int body, const Eigen::Vector3d& gravity_m_s2);
-  bool set_mass(int body, double mass_kg);  // the inertia in proportion
+  bool set_mass(int body, double mass_kg);  // scales the inertia
   bool set_pose(int body, const Eigen::Vector3d& centre_m, const Eigen::Quaterniond& orientation);
   void set_velocity(int body, const Eigen::Vector3d& velocity_m_s);
   void set_spin(int body, const Eigen::Vector3d& spin_rad_s);
   void set_surface(int shape, const Surface& surface) { surfaces_[index(shape)] = surface; }
   const Surface& surface(int shape) const { return surfaces_[index(shape)]; }
-  // axis: of the joint that carries this link, as its LinkDef numbers them.
+  // axis: of the joint that moves this link, in the order of its LinkDef.
   bool set_motor(int body, int axis, double effort, double rate);
   bool set_joint_friction(int body, int axis, double friction);
-  // Speed that a unit impulse along n at the point gives to that point, 1/kg; joints included.
+  // Speed of the point along n per unit impulse along n at the point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
 
-  // After a step (or none): velocities are the means over it. position: the centre of mass.
+  // After a step, velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
   bool moves(int body) const { return movers_[index(body)].kind != Kind::kFixed; }
@@ -155,9 +155,9 @@ class World {
   void build_rows(std::span<const Manifold> contacts, double h);
   void build_joints(double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
-  void ask(double h);
-  void tell(std::span<Manifold> contacts, double h) const;
-  void weigh_anew(std::span<const Manifold> contacts);
+  void set_required_speeds(double h);
+  void write_results(std::span<Manifold> contacts, double h) const;
+  void update_inertia(std::span<const Manifold> contacts);
   void separate(std::size_t system);
   void refresh(System& system);
   int dof_of(int body, int axis) const;
@@ -173,10 +173,10 @@ class World {
 
   Law law_;
   std::vector<Mover> movers_;
-  std::vector<char> present_;                // of each body: its unit is active
+  std::vector<char> present_;                // per body: its unit is active
   std::vector<int> active_, active_bodies_;  // ascending; empty before the first step
-  std::vector<int> body_of_;                 // of each free body
-  bool chosen_ = false;                      // else all are active
+  std::vector<int> body_of_;                 // per free body
+  bool has_active_set_ = false;              // false: all units are active
   std::vector<Surface> surfaces_;
   std::vector<FreeBody> free_;
   std::vector<System> systems_;
@@ -187,11 +187,11 @@ class World {
   WarmStart warm_;
   Layers layers_;
   std::vector<Flight> flights_;             // of free bodies
-  std::vector<double> lasts_s_;             // of each: from the middle of the step before to that of this one
+  std::vector<double> force_time_s_;        // per free body: time from the middle of the previous step to the middle of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
   Velocities velocity_, drift_, aside_;
   std::vector<double> scratch_;
-  std::vector<int> stirred_;  // per mover plus one: the visit that last changed it
+  std::vector<int> last_change_;  // per mover plus one: counter value of its last change
   int sweeps_ = 0;
 };
 

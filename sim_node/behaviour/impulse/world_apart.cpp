@@ -1,4 +1,4 @@
-// Taking a step back, and putting apart what it left overlapping.
+// Takes a step back, and resolves overlaps that it left.
 #include <algorithm>
 #include <cmath>
 
@@ -7,20 +7,20 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Sweeps over all contacts, most, and the change below which they end, m: a hundredth of what may be left.
+// Maximum sweeps over all contacts, and the change at which they end, m: a hundredth of the allowed rest.
 constexpr int kMaxSweeps = 200;
 constexpr double kSettled_m = 1e-7;
 
 }  // namespace
 
-void World::keep(Kept& out) {
+void World::save(SavedStep& out) {
   activate_all();
   out.free.clear();
   out.motions.clear();
   out.states.resize(systems_.size());
   out.memories.resize(systems_.size(), JointMemory(0));
-  for (std::size_t s = out.burdens.size(); s < systems_.size(); ++s)
-    out.burdens.push_back(systems_[s].system.burden());
+  for (std::size_t s = out.saved_loads.size(); s < systems_.size(); ++s)
+    out.saved_loads.push_back(systems_[s].system.saved_loads());
   for (const int unit : active_) {
     if (index(unit) < free_.size()) {
       out.free.push_back(free_[index(unit)]);
@@ -28,31 +28,31 @@ void World::keep(Kept& out) {
     }
     const std::size_t s = index(unit) - free_.size();
     out.states[s] = systems_[s].system.state();
-    systems_[s].system.copy_burden(out.burdens[s]);
+    systems_[s].system.copy_loads(out.saved_loads[s]);
     out.memories[s] = systems_[s].memory;
   }
   for (const int body : active_bodies_) out.motions.push_back(motions_[index(body)]);
   out.warm = warm_;
 }
 
-void World::take_back(const Kept& kept) {
-  auto free = kept.free.begin();
+void World::restore(const SavedStep& saved) {
+  auto free = saved.free.begin();
   for (const int unit : active_) {
     if (index(unit) < free_.size()) {
       free_[index(unit)] = *free++;
       continue;
     }
     const std::size_t s = index(unit) - free_.size();
-    systems_[s].system.set_state(kept.states[s]);
-    systems_[s].system.set_burden(kept.burdens[s]);
-    systems_[s].memory = kept.memories[s];
+    systems_[s].system.set_state(saved.states[s]);
+    systems_[s].system.set_loads(saved.saved_loads[s]);
+    systems_[s].memory = saved.memories[s];
   }
-  for (std::size_t i = 0; i < active_bodies_.size(); ++i) motions_[index(active_bodies_[i])] = kept.motions[i];
-  warm_ = kept.warm;
+  for (std::size_t i = 0; i < active_bodies_.size(); ++i) motions_[index(active_bodies_[i])] = saved.motions[i];
+  warm_ = saved.warm;
 }
 
-void World::load_again(const Kept& kept) {
-  auto free = kept.free.begin();
+void World::restore_loads(const SavedStep& saved) {
+  auto free = saved.free.begin();
   for (const int unit : active_) {
     if (index(unit) < free_.size()) {
       free_[index(unit)].force_N = free->force_N;
@@ -60,41 +60,41 @@ void World::load_again(const Kept& kept) {
       ++free;
     } else {
       const std::size_t s = index(unit) - free_.size();
-      systems_[s].system.set_burden(kept.burdens[s]);
+      systems_[s].system.set_loads(saved.saved_loads[s]);
     }
   }
 }
 
-void World::hold(int unit, const Kept& kept) {
+void World::hold(int unit, const SavedStep& saved) {
   std::size_t nth = 0;
   for (const int other : active_) {
     if (other == unit) break;
     if (index(other) < free_.size()) ++nth;
   }
-  const auto kept_motion = [&](int body) -> const BodyMotion& {
+  const auto saved_motion = [&](int body) -> const BodyMotion& {
     const auto at = std::lower_bound(active_bodies_.begin(), active_bodies_.end(), body);
-    return kept.motions[static_cast<std::size_t>(at - active_bodies_.begin())];
+    return saved.motions[static_cast<std::size_t>(at - active_bodies_.begin())];
   };
   const auto rest = [&](int body) {
-    BodyMotion& m = motions_[index(body)] = kept_motion(body);
+    BodyMotion& m = motions_[index(body)] = saved_motion(body);
     m.velocity_m_s = m.spin_rad_s = Eigen::Vector3d::Zero();
   };
   if (index(unit) < free_.size()) {
     FreeBody& b = free_[index(unit)];
-    b = kept.free[nth];
+    b = saved.free[nth];
     b.velocity_m_s = b.spin_rad_s = b.force_N = b.moment_N_m = Eigen::Vector3d::Zero();
     rest(body_of_[index(unit)]);
     return;
   }
   System& s = systems_[index(unit) - free_.size()];
-  articulated::ArticulatedSystem::State state = kept.states[index(unit) - free_.size()];
+  articulated::ArticulatedSystem::State state = saved.states[index(unit) - free_.size()];
   std::fill(state.rates.begin(), state.rates.end(), 0.0);
   s.system.set_state(state);
   for (const int body : s.bodies) rest(body);
 }
 
-// The inertia of what the contacts are about, at the present poses.
-void World::weigh_anew(std::span<const Manifold> contacts) {
+// Updates the inertia of the bodies in contact, at the current poses.
+void World::update_inertia(std::span<const Manifold> contacts) {
   for (const Manifold& m : contacts)
     for (const int body : {m.body_a, m.body_b}) {
       const Mover& at = mover(body);
@@ -115,9 +115,9 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
       for (std::size_t j = first_rate_[s]; j < first_rate_[s + 1]; ++j) velocity_.rates[j] = drift_.rates[j] = 0;
     }
   }
-  weigh_anew(contacts);
+  update_inertia(contacts);
   build_rows(contacts, 1);
-  // As velocities over one second: the least change, by inertia, that leaves no overlap.
+  // Velocities over one second: the smallest change, weighted by inertia, that leaves no overlap.
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (ContactPoint& p : rows_.points) {
@@ -144,7 +144,7 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
   }
 }
 
-// Applies what was found for a system.
+// Applies the result to a system.
 void World::separate(std::size_t s) {
   const std::span<const double> by(velocity_.rates.data() + first_rate_[s], first_rate_[s + 1] - first_rate_[s]);
   if (std::all_of(by.begin(), by.end(), [](double x) { return x == 0; })) return;
@@ -154,7 +154,7 @@ void World::separate(std::size_t s) {
     place(motions_[index(systems_[s].bodies[i])], systems_[s].system.motion(static_cast<int>(i)));
 }
 
-// A pose alone.
+// Changes a pose only.
 void World::place(BodyMotion& m, const BodyMotion& at) {
   m.position_m = at.position_m;
   m.centre_m = at.centre_m;

@@ -1,9 +1,9 @@
-// What of a world may be set between its steps.
+// Changes of a world between its steps.
 #include "sim_node/behaviour/impulse/world.h"
 
 namespace tactus::sim::impulse {
 
-// The motions of its links, after its state was changed.
+// Updates the motions of the links after a change of state.
 void World::refresh(System& s) {
   s.system.dynamics();
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
@@ -15,7 +15,7 @@ void World::set_gravity(int body, const Eigen::Vector3d& g) {
   if (m.kind == Kind::kLink) systems_[index(m.index)].system.set_gravity(m.link, g);
   if (m.kind != Kind::kFree) return;
   FreeBody& b = free_[index(m.index)];
-  // The velocity is that of half a step ago, under the old gravity.
+  // The stored velocity is half a step old, under the old gravity.
   b.velocity_m_s = velocity_for(b, 0);
   if (b.step_s >= 0) b.step_s = 0;
   b.gravity_m_s2 = g;
@@ -77,7 +77,7 @@ void World::set_spin(int body, const Eigen::Vector3d& w) {
   refresh(s);
 }
 
-// -1: none.
+// Returns -1 when there is none.
 int World::dof_of(int body, int axis) const {
   const Mover& m = movers_[index(body)];
   if (m.kind != Kind::kLink) return -1;

@@ -6,7 +6,7 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Points that one step remembers: as many as a step of ODE may solve.
+// Maximum number of stored points: the number that a step of ODE may solve.
 constexpr std::size_t kMaxKept = 16384;
 
 void archive(StateArchive& a, FreeBody& b) {
@@ -14,7 +14,7 @@ void archive(StateArchive& a, FreeBody& b) {
   const Eigen::LLT<Eigen::Matrix3d> positive(b.inertia_kg_m2);
   a.require(b.mass_kg > 0 && positive.info() == Eigen::Success, "the state holds a mass that is not positive");
   a(b.centre_m), a(b.orientation), a(b.velocity_m_s), a(b.step_s), a(b.spin_rad_s), a(b.force_N), a(b.moment_N_m);
-  a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an orientation that is none");
+  a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an invalid orientation");
 }
 
 void archive(StateArchive& a, articulated::ArticulatedSystem& system) {
@@ -42,7 +42,7 @@ void archive(StateArchive& a, articulated::ArticulatedSystem& system) {
 }  // namespace
 
 void WarmStart::archive(StateArchive& a, std::size_t shapes) {
-  a.list(kept_, kMaxKept, [&](Kept& k) {
+  a.list(stored_, kMaxKept, [&](StoredPoint& k) {
     a.index(k.shape_a, shapes), a.index(k.shape_b, shapes);
     a(k.place_m), a(k.force_N), a(k.shell_m);
   });

@@ -1,4 +1,4 @@
-// What of a world moves, and its state by value.
+// Units of a world, and their state by value.
 #include <algorithm>
 
 #include "sim_node/behaviour/impulse/world.h"
@@ -36,16 +36,16 @@ void World::set_active(std::span<const int> units) {
   for (const int unit : active_) unit_bodies(unit, active_bodies_);
   std::sort(active_bodies_.begin(), active_bodies_.end());
   for (const int body : active_bodies_) present_[index(body)] = 1;
-  chosen_ = true;
+  has_active_set_ = true;
 }
 
-// What has been added since is active too, until somebody chooses.
+// Units added later are active too, until set_active() is called.
 void World::activate_all() {
-  if (chosen_ || index(units()) == active_.size()) return;
+  if (has_active_set_ || index(units()) == active_.size()) return;
   active_.resize(index(units()));
   for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = static_cast<int>(i);
   set_active(std::vector<int>(active_));
-  chosen_ = false;
+  has_active_set_ = false;
 }
 
 void World::copy_state(int unit, UnitState& out) const {

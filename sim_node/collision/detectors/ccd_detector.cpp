@@ -12,11 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// libccd compares it with squared distances: 10 um, below what the senses resolve.
+// libccd compares this value with squared distances: 10 um, below what users can perceive.
 constexpr double kAccuracy_m2 = 1e-10;
-// Rounds after which libccd gives up; curved shapes take tens.
+// Iteration limit of libccd. Curved shapes take tens of iterations.
 constexpr unsigned long kMaxRounds = 200;
-// A vertex may stick so far out of the plane of a face of a convex mesh, m: rounding of a file's decimals.
+// Tolerance of the convexity check: how far a vertex may stick out of the plane of a face, m. Covers the rounding of
+// decimals in files.
 constexpr double kConvex_m = 1e-6;
 
 struct Convex {
@@ -69,8 +70,8 @@ void centre(const void* object, ccd_vec3_t* out) {
   ccdVec3Set(out, at.x(), at.y(), at.z());
 }
 
-// Empty when every vertex is behind every face.
-std::string not_convex(const TriangleMesh& mesh) {
+// Returns an empty string when every vertex is behind every face, else the fault.
+std::string convexity_fault(const TriangleMesh& mesh) {
   const auto at = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(mesh.indices[i])]; };
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Vector3d n = (at(i + 1) - at(i)).cross(at(i + 2) - at(i));
@@ -102,10 +103,10 @@ class CcdDetector : public Detector {
     Convex c{shape.kind, shape.size_m, {}, {0, 0, 0}};
     if (shape.kind == ShapeKind::kMesh) {
       const TriangleMesh& mesh = world.meshes.at(static_cast<std::size_t>(shape.mesh));
-      const std::string fault = not_convex(mesh);
+      const std::string fault = convexity_fault(mesh);
       if (!fault.empty())
         throw std::runtime_error("sim_node: the detector \"" + std::string(abilities().name) +
-                                 "\" takes convex meshes only, and that of shape \"" + shape.name + "\" " + fault +
+                                 "\" supports convex meshes only, but the mesh of shape \"" + shape.name + "\" " + fault +
                                  "; choose \"layers\" or \"ode\"");
       c.vertices = mesh.vertices;
       for (const Vector3d& v : c.vertices) c.centre += v / static_cast<double>(c.vertices.size());
@@ -117,9 +118,9 @@ class CcdDetector : public Detector {
   void query(int a, const Eigen::Isometry3d& pose_a, int b, const Eigen::Isometry3d& pose_b, double reach_m,
              std::vector<PointPair>& out) override {
     out.clear();
-    // libccd knows overlap only. Shapes that are both rounded by half the reach overlap by what the gap is short
-    // of it; the portal's depth is right for the pair of surfaces it happens to look at, which is too little for
-    // that.
+    // libccd reports overlap only. Both shapes are therefore inflated by half the reach, so that the overlap is the
+    // reach minus the gap. The depth of MPR belongs to the pair of surfaces that its portal meets, which is too
+    // inaccurate for this.
     const double reach = mpr_ ? 0 : reach_m;
     const Placed pa{&shapes_[static_cast<std::size_t>(a)], pose_a, reach / 2},
         pb{&shapes_[static_cast<std::size_t>(b)], pose_b, reach / 2};

@@ -9,7 +9,7 @@ namespace tactus::sim {
 ChosenDetector::ChosenDetector(const WorldDef& world, const Settings& settings) {
   for (const ShapeDef& s : world.shapes) kinds_.push_back(s.kind);
   number_.resize(world.shapes.size(), -1);
-  // Of itself ODE finds contacts where ODE solves them.
+  // The ODE solver uses ODE's contacts by default.
   if (settings.detector == "ode" || settings.detector == "auto") return;
   detector_ = make_detector(settings.detector, layer_options(settings));
   triangles_only_ = settings.detector == "layers";

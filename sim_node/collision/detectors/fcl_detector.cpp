@@ -40,7 +40,7 @@ class FclDetector : public Detector {
                mesh_b = kinds_[static_cast<std::size_t>(b)] == ShapeKind::kMesh;
     fcl::DistanceResultd apart;
     fcl::DistanceRequestd ask(true);
-    ask.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the other one asserts on flat contacts
+    ask.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the libccd solver asserts on flat contacts
     const double gap = fcl::distance(&ga, pose_a, &gb, pose_b, ask, apart);
     if (gap > reach_m) return;
     PointPair p;
@@ -87,7 +87,7 @@ class FclDetector : public Detector {
       default: break;
     }
     const TriangleMesh& mesh = world.meshes.at(static_cast<std::size_t>(shape.mesh));
-    // Oriented boxes with swept spheres: the only ones for which FCL does not copy the mesh at every query.
+    // OBBRSS is the only bounding volume for which FCL does not copy the mesh at every query.
     auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
     std::vector<fcl::Triangle> triangles;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)

@@ -1,5 +1,5 @@
-// Every pair of shapes, with gaps: closed forms for balls and planes, faces and nearest points for convex shapes,
-// triangle by triangle for meshes, and the three layers for meshes against meshes and boxes.
+// Detector for every pair of shapes, with gaps. Balls and planes use closed forms, convex shapes use faces and
+// nearest points, meshes are tested triangle by triangle, and meshes against meshes and boxes use the three layers.
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -7,6 +7,7 @@
 
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/detector.h"
+#include "sim_node/collision/detectors/mesh_trees.h"
 #include "sim_node/collision/gaps/convex_pair.h"
 #include "sim_node/collision/gaps/mesh_nearest.h"
 #include "sim_node/collision/gaps/mesh_pair.h"
@@ -17,7 +18,7 @@ namespace {
 
 using Eigen::Isometry3d;
 
-// As of the detector "layers".
+// The same share as in the detector "layers".
 constexpr double kMargin = 0.2;
 
 bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
@@ -33,13 +34,13 @@ struct Shape {
   std::shared_ptr<const gaps::NormalCones> cones = nullptr;
 };
 
-class GapsDetector : public Detector, public FindsNearestFirst {
+class GapsDetector : public Detector, public NearestFirstDetector {
  public:
   GapsDetector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees)
       : trees_(std::move(trees)),
         contact_(options),
         nearest_(options.isa),
-        as_it_is_(options.mode == ContactMode::kComplete && options.remover == DuplicateRemover::kHashed) {}
+        default_modes_(options.mode == ContactMode::kComplete && options.remover == DuplicateRemover::kHashed) {}
 
   DetectorAbilities abilities() const override {
     return {.name = "gaps",
@@ -62,7 +63,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
     auto tree = meshed ? trees_->triangles(shape, world) : nullptr;
     Shape s{solid.kind, plane && fixed, convex, Isometry3d::Identity(), {solid, tree}, tree, nullptr};
     if (plane) s.offset = gaps::plate_offset();
-    // Boxes are triangles where they meet some.
+    // A box is also needed as triangles when the world has meshes or heightfields.
     const bool box = convex.core == gaps::Core::kBox && !(world.meshes.empty() && world.heightfields.empty());
     if (meshed || box) {
       s.layers = trees_->layers(shape, world);
@@ -88,7 +89,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
 
   void prepare_nearest_first(int a, int b) override {
     Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
-    if (!as_it_is_ || !has_triangles(sa.kind) || !has_triangles(sb.kind)) return;
+    if (!default_modes_ || !has_triangles(sa.kind) || !has_triangles(sb.kind)) return;
     for (Shape* s : {&sa, &sb}) {
       auto& cones = cones_[s->layers.get()];
       if (!cones) cones = std::make_shared<const gaps::NormalCones>(s->layers->tree);
@@ -137,7 +138,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
     for (std::size_t i = first; i < out.size(); ++i) swap_sides(out[i]);
   }
 
-  // Of a capsule that is askew to what it touches the other end may land within the step too.
+  // The other end of a tilted capsule may land within the same step.
   void ends(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
             std::vector<PointPair>& out) {
     if (a.kind != ShapeKind::kCapsule) return;
@@ -176,7 +177,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
       const Triangle &of_a = a.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_a)],
                      &of_b = b.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_b)];
       if (p.pierced)
-        gaps::part(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), p);
+        gaps::resolve_piercing(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), p);
       else if (!gaps::is_contact({*a.tree, at, of_a}, {*b.tree, pose_b, of_b}, p))
         continue;
       if (box) p.triangle_a = -1;
@@ -187,7 +188,7 @@ class GapsDetector : public Detector, public FindsNearestFirst {
   std::shared_ptr<MeshTrees> trees_;
   MeshContact contact_;
   gaps::MeshNearest nearest_;
-  bool as_it_is_;  // no other way of layers 2 and 3 is wanted, for comparison
+  bool default_modes_;  // no other way of layers 2 and 3 is wanted, for comparison
   std::vector<Shape> shapes_;
   std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one a mesh, as its tree
   std::vector<SurfacePlane> planes_;

@@ -1,4 +1,4 @@
-// The settings of the detector "layers" as its options.
+// Options of the detector "layers", from the settings.
 #pragma once
 
 #include "sim_node/collision/layers/mesh_contact.h"
@@ -6,7 +6,7 @@
 
 namespace tactus::sim {
 
-// Throws std::runtime_error with one sentence when the processor lacks the instructions that are asked for.
+// Throws std::runtime_error with one sentence when the processor lacks the selected instruction set.
 inline MeshContactOptions layer_options(const Settings& s) {
   return {.mode = s.contact_mode == "itouch2005" ? ContactMode::kItouch2005 : ContactMode::kComplete,
           .remover = s.duplicate_remover == "adjacency"     ? DuplicateRemover::kAdjacency

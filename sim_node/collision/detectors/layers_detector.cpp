@@ -2,12 +2,12 @@
 #include <utility>
 
 #include "sim_node/collision/detector.h"
+#include "sim_node/collision/detectors/mesh_trees.h"
 
 namespace tactus::sim {
 namespace {
 
-// Distances within the tolerance that differ by less than this share of it are alike: as I-Touch's example, 2
-// of 10.
+// Share of the tolerance below which two distances count as equal. I-Touch's example uses 2 of 10.
 constexpr double kMargin = 0.2;
 class LayersDetector : public Detector {
  public:

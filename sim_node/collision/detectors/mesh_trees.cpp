@@ -6,7 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-// Samples along one side of a heightfield; finer ones are thinned.
+// Maximum number of samples along one side of a heightfield. Finer fields are thinned.
 constexpr int kMaxSamples = 1025;
 
 TriangleMesh mesh_of_box(const Eigen::Vector3d& half) {
@@ -20,7 +20,7 @@ TriangleMesh mesh_of_box(const Eigen::Vector3d& half) {
 
 bool is_shared(const ShapeDef& s) { return s.kind == ShapeKind::kMesh || s.kind == ShapeKind::kHeightfield; }
 
-// With the mesh of a shape, made when there is none.
+// Calls use(mesh) with the mesh of a shape, or with a mesh made for it.
 template <class Use>
 auto with_mesh(const ShapeDef& shape, const WorldDef& world, Use&& use) {
   const auto at = static_cast<std::size_t>(shape.mesh);

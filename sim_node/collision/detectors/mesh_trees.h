@@ -1,4 +1,4 @@
-// The trees over the triangles of a world's meshes, each made once, however many shapes and whoever use it.
+// Triangle trees of a world's meshes, built once and shared by all shapes and users.
 #pragma once
 
 #include <map>
@@ -11,13 +11,13 @@
 
 namespace tactus::sim {
 
-// Not for two threads at once, and for one world only; what it gave may be used by any number of threads.
+// Not thread-safe, and for one world only. Any number of threads may use the returned trees.
 class MeshTrees {
  public:
-  // Of a mesh or heightfield, or of a box as twelve triangles; a plane is the plate that stands for one that
-  // moves, in the frame of that.
+  // Tree of a mesh or heightfield, or of a box as twelve triangles. A plane becomes the plate that represents a
+  // moving plane, in the frame of the plate.
   std::shared_ptr<const TriangleTree> triangles(const ShapeDef& shape, const WorldDef& world);
-  // The same. Throws std::runtime_error with one sentence when an index or a vertex makes no sense.
+  // The same for the layers. Throws std::runtime_error with one sentence when an index or a vertex is invalid.
   std::shared_ptr<const ContactMesh> layers(const ShapeDef& shape, const WorldDef& world);
 
  private:

@@ -14,11 +14,11 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// A blow is followed through so many bodies, each hit by the one before: design: beyond that each has lost most of
-// it.
-constexpr int kMaxBlows = 8;
-// Friction adds at most as much across: a coefficient of up to 1; what is rougher is found when it has come
-// further than was sought (impulse::Advance).
+// Maximum length of a chain of impacts in which each body is hit by the one before. Design value: beyond it most of
+// the impact is spent.
+constexpr int kMaxImpacts = 8;
+// Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For larger
+// coefficients, impulse::Advance detects that a body moved further than the search assumed.
 constexpr double kWithFriction = 2;
 
 }  // namespace
@@ -43,7 +43,7 @@ NearPairs::NearPairs(const WorldDef& world, double tolerance_m, MeshTrees& trees
     : tolerance_m_(tolerance_m),
       gravity_m_s2_(world.gravity_m_s2.norm()),
       half_space_of_(world.shapes.size(), -1),
-      blow_m_s_(world.bodies.size(), 0.0),
+      impact_speed_m_s_(world.bodies.size(), 0.0),
       shapes_of_(world.bodies.size()) {
   std::vector<Bounds> fixed;
   for (std::size_t i = 0; i < world.shapes.size(); ++i) {
@@ -86,8 +86,8 @@ bool NearPairs::may_touch(int a, int b) const {
   return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
-// How far a point of the shape may get by its body's spin.
-double NearPairs::turning_m(const BodyMotion& m, int shape, double h) const {
+// How far rotation of its body may move a point of the shape.
+double NearPairs::rotation_reach_m(const BodyMotion& m, int shape, double h) const {
   return m.spin_rad_s.norm() * extents_[index(shape)].lever_m * h;
 }
 
@@ -103,17 +103,17 @@ void NearPairs::place(const BodyMotion& m, int body, double h) {
   for (const int shape : shapes_of_[index(body)]) {
     poses_[index(shape)] = about * in_body_[index(shape)];
     Swept& s = swept_.emplace_back(Swept{shape, body, bounds_of_shape(shape)});
-    const Vector3d way = h * m.velocity_m_s;
-    const double any_way = turning_m(m, shape, h) + gravity_m_s2_ * h * h + tolerance_m_ / 2;
-    s.bounds.least_m += (way.array().min(0) - any_way).matrix();
-    s.bounds.most_m += (way.array().max(0) + any_way).matrix();
+    const Vector3d displacement = h * m.velocity_m_s;
+    const double isotropic = rotation_reach_m(m, shape, h) + gravity_m_s2_ * h * h + tolerance_m_ / 2;
+    s.bounds.least_m += (displacement.array().min(0) - isotropic).matrix();
+    s.bounds.most_m += (displacement.array().max(0) + isotropic).matrix();
   }
 }
 
-void NearPairs::with_fixed(std::size_t i, std::span<const BodyMotion> bodies, double h) {
+void NearPairs::pair_with_fixed(std::size_t i, std::span<const BodyMotion> bodies, double h) {
   const Swept& s = swept_[i];
   const BodyMotion& m = bodies[index(s.body)];
-  const double reach = (m.velocity_m_s.norm() + blow_m_s_[index(s.body)]) * h + turning_m(m, s.shape, h) +
+  const double reach = (m.velocity_m_s.norm() + impact_speed_m_s_[index(s.body)]) * h + rotation_reach_m(m, s.shape, h) +
                        gravity_m_s2_ * h * h + tolerance_m_;
   const Vector3d middle = (s.bounds.least_m + s.bounds.most_m) / 2,
                  half = (s.bounds.most_m - s.bounds.least_m) / 2;
@@ -122,14 +122,14 @@ void NearPairs::with_fixed(std::size_t i, std::span<const BodyMotion> bodies, do
         may_touch(s.body, body_of_[index(p.shape)]))
       add(s.shape, p.shape, reach);
   if (fixed_.empty()) return;
-  met_.clear();
+  grid_hits_.clear();
   const Vector3d more = Vector3d::Constant(tolerance_m_ / 2);
-  grid_.find({s.bounds.least_m - more, s.bounds.most_m + more}, met_);
-  for (const int at : met_)
+  grid_.find({s.bounds.least_m - more, s.bounds.most_m + more}, grid_hits_);
+  for (const int at : grid_hits_)
     if (may_touch(s.body, body_of_[index(fixed_[index(at)])])) add(s.shape, fixed_[index(at)], reach);
 }
 
-// On the axis on which they are spread most. Their order hardly changes from step to step.
+// Sorts along the axis of the largest spread. The order hardly changes from step to step.
 void NearPairs::order_swept() {
   Vector3d sum(0, 0, 0), squares(0, 0, 0);
   for (const Swept& s : swept_) {
@@ -155,7 +155,7 @@ void NearPairs::order_swept() {
   if (moves >= 4 * order_.size()) std::sort(order_.begin(), order_.end(), before);
 }
 
-void NearPairs::among_moving(std::span<const BodyMotion> bodies, double h) {
+void NearPairs::pair_moving(std::span<const BodyMotion> bodies, double h) {
   order_swept();
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const Swept& s = swept_[order_[i].swept];
@@ -164,35 +164,35 @@ void NearPairs::among_moving(std::span<const BodyMotion> bodies, double h) {
       if (!s.bounds.meets(t.bounds) || !may_touch(s.body, t.body)) continue;
       const BodyMotion &m = bodies[index(s.body)], &n = bodies[index(t.body)];
       add(s.shape, t.shape,
-          ((m.velocity_m_s - n.velocity_m_s).norm() + blow_m_s_[index(s.body)] + blow_m_s_[index(t.body)]) * h +
-              turning_m(m, s.shape, h) + turning_m(n, t.shape, h) + gravity_m_s2_ * h * h + tolerance_m_);
+          ((m.velocity_m_s - n.velocity_m_s).norm() + impact_speed_m_s_[index(s.body)] + impact_speed_m_s_[index(t.body)]) * h +
+              rotation_reach_m(m, s.shape, h) + rotation_reach_m(n, t.shape, h) + gravity_m_s2_ * h * h + tolerance_m_);
     }
   }
 }
 
-// What the pairs that were found may do to each other's speeds; true when something may get so much further that
-// others come within reach. A blow between two middles, by Newton's law; from what never moves, a bounce.
-bool NearPairs::strike(std::span<const BodyMotion> bodies, std::span<const int> active, double h) {
+// Updates the speed that impacts of the detected pairs may add. Returns true when a bound grows so much that other
+// bodies come within reach. An impact acts between two centres by Newton's law; with a static body it is a bounce.
+bool NearPairs::add_impacts(std::span<const BodyMotion> bodies, std::span<const int> active, double h) {
   double fastest = 0;
   for (const int body : active) fastest = std::max(fastest, bodies[index(body)].velocity_m_s.norm());
   bool more = false;
-  // At which a shape of a body comes at a half space, whose normal is known: the way along it makes no blow.
-  const auto towards = [&](int fixed, const BodyMotion& m, int shape) {
+  // Approach speed of a shape of a body to a half space. The normal is known, so tangential motion causes no impact.
+  const auto approach_speed = [&](int fixed, const BodyMotion& m, int shape) {
     const int half_space = half_space_of_[index(fixed)];
     if (half_space < 0) return std::numeric_limits<double>::infinity();
     return std::max(0.0, -half_spaces_[index(half_space)].normal.dot(m.velocity_m_s)) +
            m.spin_rad_s.norm() * extents_[index(shape)].lever_m;
   };
-  const auto hit = [&](int body, const BodyMotion& of, const BodyMotion& by, double add_m_s, double e,
+  const auto add_impact = [&](int body, const BodyMotion& of, const BodyMotion& by, double add_m_s, double e,
                        double closing_m_s) {
     const double masses = of.inverse_mass_1_kg + by.inverse_mass_1_kg;
     const double share = masses > 0 ? of.inverse_mass_1_kg / masses : 1;
     const double speed = (of.velocity_m_s - by.velocity_m_s).norm() + add_m_s;
-    double& known = blow_m_s_[index(body)];
-    const double blow =
+    double& known = impact_speed_m_s_[index(body)];
+    const double impact =
         std::min({(1 + e) * share * speed, 2 * fastest, kWithFriction * (1 + e) * (closing_m_s + known)});
-    if ((blow - known) * h <= tolerance_m_ / 4) return;
-    known = blow;
+    if ((impact - known) * h <= tolerance_m_ / 4) return;
+    known = impact;
     more = true;
   };
   static const BodyMotion kFixed;
@@ -201,13 +201,13 @@ bool NearPairs::strike(std::span<const BodyMotion> bodies, std::span<const int> 
     const double e = std::min(restitution_[index(p.shape_a)], restitution_[index(p.shape_b)]);
     const bool moves_a = !shapes_of_[index(a)].empty(), moves_b = !shapes_of_[index(b)].empty();
     const BodyMotion &m = moves_a ? bodies[index(a)] : kFixed, &n = moves_b ? bodies[index(b)] : kFixed;
-    const double before_a = blow_m_s_[index(a)], before_b = blow_m_s_[index(b)];
-    if (moves_a) hit(a, m, n, before_b, e, towards(p.shape_b, m, p.shape_a));
-    if (moves_b) hit(b, n, m, before_a, e, towards(p.shape_a, n, p.shape_b));
+    const double before_a = impact_speed_m_s_[index(a)], before_b = impact_speed_m_s_[index(b)];
+    if (moves_a) add_impact(a, m, n, before_b, e, approach_speed(p.shape_b, m, p.shape_a));
+    if (moves_b) add_impact(b, n, m, before_a, e, approach_speed(p.shape_a, n, p.shape_b));
   }
   if (!more) return false;
   for (Swept& s : swept_) {
-    const double grow = blow_m_s_[index(s.body)] * h - s.grown_m;
+    const double grow = impact_speed_m_s_[index(s.body)] * h - s.grown_m;
     s.bounds.least_m.array() -= grow;
     s.bounds.most_m.array() += grow;
     s.grown_m += grow;
@@ -219,14 +219,14 @@ std::span<const NearPair> NearPairs::find(std::span<const BodyMotion> bodies, st
                                           double h) {
   swept_.clear();
   for (const int body : active) {
-    blow_m_s_[index(body)] = 0;
+    impact_speed_m_s_[index(body)] = 0;
     place(bodies[index(body)], body, h);
   }
   for (int round = 0;; ++round) {
     pairs_.clear();
-    for (std::size_t i = 0; i < swept_.size(); ++i) with_fixed(i, bodies, h);
-    among_moving(bodies, h);
-    if (round == kMaxBlows || !strike(bodies, active, h)) break;
+    for (std::size_t i = 0; i < swept_.size(); ++i) pair_with_fixed(i, bodies, h);
+    pair_moving(bodies, h);
+    if (round == kMaxImpacts || !add_impacts(bodies, active, h)) break;
   }
   const auto before = [](const NearPair& x, const NearPair& y) {
     return x.shape_a != y.shape_a ? x.shape_a < y.shape_a : x.shape_b < y.shape_b;

@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-// Two boxes have at most 8 points, meshes many more.
+// Two boxes have at most 8 points. Meshes have many more.
 constexpr int kMaxRaw = 64;
 
 class OdeDetector : public Detector {
@@ -46,11 +46,11 @@ class OdeDetector : public Detector {
     for (int i = 0; i < count; ++i) {
       const dContactGeom& c = raw_[static_cast<std::size_t>(i)];
       PointPair p;
-      p.normal = -ode::to_eigen(c.normal);  // ODE's points into its first geometry
+      p.normal = -ode::to_eigen(c.normal);  // ODE's normal points into its first geometry
       p.gap_m = -c.depth;
       const Eigen::Vector3d at = ode::to_eigen(c.pos);
       if (!p.normal.allFinite() || !at.allFinite() || std::abs(p.normal.norm() - 1) > 1e-3) continue;
-      // A capsule against a mesh also reports the near side of its axis, without depth.
+      // For a capsule against a mesh, ODE also reports the near side of the axis, without depth.
       if (c.depth <= 0 && count > 1) continue;
       p.on_a_m = at - 0.5 * p.gap_m * p.normal;
       p.on_b_m = at + 0.5 * p.gap_m * p.normal;
@@ -61,7 +61,7 @@ class OdeDetector : public Detector {
   }
 
  protected:
-  // What never moves meets only what does.
+  // ODE does not test static geometry against static geometry.
   bool takes(ShapeKind a, ShapeKind b) const override {
     const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
     return !(ground(a) && ground(b));

@@ -5,9 +5,9 @@
 namespace tactus::sim::ode {
 namespace {
 
-// A plane that moves is a plate of this thickness, m: ODE's planes cannot move.
+// Thickness of the plate that represents a moving plane, m. ODE's planes cannot move.
 constexpr double kPlate_m = 0.01;
-// ODE's heightfields are solid down to so far below their lowest sample, m.
+// Depth to which ODE's heightfields are solid below their lowest sample, m.
 constexpr double kGround_m = 1;
 
 }  // namespace
@@ -54,7 +54,7 @@ dGeomID Geoms::make_mesh(const WorldDef& world, int number) {
 }
 
 dGeomID Geoms::make_heightfield(const Heightfield& field) {
-  // ODE's z runs along our -y: the rows in reverse. It copies the heights.
+  // ODE's z axis is our -y axis, so the rows are reversed. ODE copies the heights.
   std::vector<double> heights;
   heights.reserve(field.heights_m.size());
   for (int row = field.rows - 1; row >= 0; --row) {

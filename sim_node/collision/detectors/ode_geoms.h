@@ -1,4 +1,4 @@
-// A shape as ODE's geometry. Only files named ode_*.cpp include this.
+// Shapes as ODE geometries. Only files named ode_*.cpp include this.
 #pragma once
 
 #include <map>
@@ -9,18 +9,17 @@
 
 namespace tactus::sim::ode {
 
-// Makes geometries, all of one world, and keeps what they point to: it must outlive them. Shapes of one mesh share its
-// tree.
+// Creates geometries of one world and owns the data that they refer to, so it must outlive them. Shapes of one mesh
+// share its tree.
 class Geoms {
  public:
-  // is_static: a plane is infinite then, at `pose` in the world; else it is a plate.
+  // is_static: a plane is infinite, at `pose` in the world. Otherwise a plane is a plate.
   dGeomID make(const WorldDef& world, const ShapeDef& shape, bool is_static, const Eigen::Isometry3d& pose);
-  // Where ODE wants a geometry for a shape that is at `pose`: its heightfields have y up, and a plate lies below
-  // its plane.
+  // Pose of ODE's geometry for a shape at `pose`. ODE's heightfields have y up, and a plate lies below its plane.
   static Eigen::Isometry3d placed(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);
 
  private:
-  struct Triangles {  // ODE keeps pointers to them
+  struct Triangles {  // ODE keeps pointers to these arrays
     std::vector<double> vertices;
     std::vector<dTriIndex> indices;
     Owned<dTriMeshDataID> data;
@@ -28,7 +27,7 @@ class Geoms {
   dGeomID make_mesh(const WorldDef& world, int mesh);
   dGeomID make_heightfield(const Heightfield& field);
 
-  std::map<int, Triangles> triangles_;  // by the number of the mesh
+  std::map<int, Triangles> triangles_;  // by mesh index
   std::vector<Owned<dHeightfieldDataID>> heightfields_;
 };
 

@@ -1,4 +1,4 @@
-// What ODE hands out, owned. Only files named ode_*.cpp include this.
+// Owning handles of ODE objects. Only files named ode_*.cpp include this.
 #pragma once
 
 #include <ode/ode.h>
@@ -19,8 +19,8 @@ struct Destroy {
 template <class Id>
 using Owned = std::unique_ptr<std::remove_pointer_t<Id>, Destroy>;
 
-// ODE's global state: counted, so that several worlds may come and go in one process. One thread only: ODE's random
-// numbers and its message handler are global.
+// ODE's global state, reference-counted, so that several worlds can exist in one process. One thread only: ODE's
+// random numbers and message handler are global.
 class Library {
  public:
   Library();
@@ -29,7 +29,8 @@ class Library {
   Library& operator=(const Library&) = delete;
 };
 
-// Messages of the solver since the process began: its LCP says when it gives up on a redundant contact.
+// Number of messages of the solver since the process started. ODE's LCP solver prints a message when it fails on a
+// redundant contact.
 long long message_count();
 
 inline Eigen::Vector3d to_eigen(const dReal* v) { return {v[0], v[1], v[2]}; }

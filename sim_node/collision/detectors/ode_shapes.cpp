@@ -5,17 +5,17 @@
 namespace tactus::sim::ode {
 namespace {
 
-// Two boxes have at most 8 points, meshes many more.
+// Two boxes have at most 8 points. Meshes have many more.
 constexpr int kMaxRaw = 64;
-// What never moves is not tested against what never moves.
+// Static shapes are not tested against static shapes.
 constexpr unsigned long kStatic = 1, kMoving = 2;
 
-// The pose of a shape about its body's centre of mass.
+// The pose of a shape relative to its body's centre of mass.
 Eigen::Isometry3d about_centre(const BodyDef& body, const Eigen::Isometry3d& in_body) {
   return Eigen::Translation3d(-body.centre_of_mass_m) * in_body;
 }
 
-// Of a geometry in the world. That of a box or mesh is that of its shape.
+// World pose of a geometry. For a box or mesh it is also the pose of the shape.
 Eigen::Isometry3d pose(dGeomID geom) {
   dQuaternion q;
   dGeomGetQuaternion(geom, q);
@@ -71,10 +71,10 @@ void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb
     const dContactGeom& c = raw_[static_cast<std::size_t>(i)];
     ManifoldPoint p;
     p.point_m = to_eigen(c.pos);
-    p.normal = -to_eigen(c.normal);  // ODE's points into its first geometry
+    p.normal = -to_eigen(c.normal);  // ODE's normal points into its first geometry
     p.depth_m = c.depth;
     if (!p.normal.allFinite() || !p.point_m.allFinite() || std::abs(p.normal.norm() - 1) > 1e-3) continue;
-    // A capsule against a mesh also reports the near side of its axis, without depth.
+    // For a capsule against a mesh, ODE also reports the near side of the axis, without depth.
     if (p.depth_m <= 0 && count > 1) continue;
     p.triangle_a = is_mesh_[a] ? c.side1 : -1;
     p.triangle_b = is_mesh_[b] ? c.side2 : -1;
@@ -102,7 +102,8 @@ void Shapes::near(void* self, dGeomID ga, dGeomID gb) {
   reduce_points(s.found_, m);
 }
 
-// All pairs whose boxes are within the reach of each other: sorted along x, then swept. ODE's spaces see overlap only.
+// Visits all pairs whose bounding boxes are within the reach of each other, by sort and sweep along x. ODE's spaces
+// report overlaps only.
 void Shapes::sweep(double reach_m) {
   boxes_.clear();
   const int count = dSpaceGetNumGeoms(space_.get());

@@ -1,4 +1,4 @@
-// The shapes of a world as ODE's geometries, and the contacts between them as manifolds.
+// The shapes of a world as ODE geometries, and the contacts between them as manifolds.
 #pragma once
 
 #include <utility>
@@ -14,18 +14,18 @@ namespace tactus::sim::ode {
 
 class Shapes {
  public:
-  // bodies: ODE's body of each of the world's, null for those that never move. Tools get no shape: they are ghosts.
-  // Throws std::runtime_error with one sentence when the detector that the settings choose cannot take a shape.
+  // bodies: ODE's body for each body of the world, null for static ones. Tools have no geometry. Throws
+  // std::runtime_error with one sentence when the detector that the settings select does not support a shape.
   Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const Settings& settings);
 
-  // All contacts of the present poses, ordered by (shape_a, shape_b), so that the same world gives the same order.
-  // Realtime-safe once the lists have grown.
+  // Writes all contacts of the current poses, ordered by (shape_a, shape_b), so that equal worlds give equal order.
+  // Real-time safe once the lists have grown.
   void collide(std::vector<Manifold>& out);
 
  private:
   struct Box {
     dGeomID geom;
-    dReal side[6];  // low and high, of x, y, z
+    dReal side[6];  // minimum and maximum of x, y, z
   };
   static void near(void* self, dGeomID a, dGeomID b);
   bool may_collide(int body_a, int body_b) const;

@@ -6,11 +6,11 @@
 namespace tactus::sim::gaps {
 namespace {
 
-// A gap counts so many times its length: a point to which a body must turn by 27 degrees is none of this step;
-// design.
+// Weight of a gap against a distance. The value 2 excludes a point that the body reaches only by rotating 27 degrees,
+// more than in any step. Design value.
 constexpr double kGapWeight = 2;
-// Of the extent of the contact, for normals that differ by one: less than half, so that a floor keeps three points
-// beside one of a wall; design.
+// Weight of a difference of normals, as a share of the contact's extent. Less than half, so that a floor keeps three
+// points beside one point of a wall. Design value.
 constexpr double kTurnWeight = 0.4;
 constexpr double kSamePlace_m = 1e-6;
 

@@ -1,4 +1,4 @@
-// Which four of a contact's points a step needs when some of them are still apart. Pure.
+// Reduces a contact to four points when some points still have a gap. Pure.
 #pragma once
 
 #include <span>
@@ -7,9 +7,10 @@
 
 namespace tactus::sim::gaps {
 
-// The nearest, then each time the one that is furthest from those chosen, less what its surfaces are further
-// apart: far off and far to the side is what a body must turn a lot for. Directions that differ count as places
-// that do, so that floor and wall of one mesh are both there. Fills out.points and out.count; of equals the first.
+// Selects the point with the least gap, then repeatedly the point furthest from those selected, with a penalty for
+// its additional gap: a body must rotate far to close a large gap. A difference of normals counts as a distance, so
+// that floor and wall of one mesh are both represented. Fills out.points and out.count. The first of equal points
+// wins.
 void choose_points(std::span<const ManifoldPoint> found, Manifold& out);
 
 }  // namespace tactus::sim::gaps

@@ -6,7 +6,7 @@
 namespace tactus::sim::gaps {
 namespace {
 
-// A plane that moves is a plate of this thickness, m; the same as in ode_geoms.cpp.
+// Thickness of the plate that represents a moving plane, m. The same as in ode_geoms.cpp.
 constexpr double kPlate_m = 0.01;
 
 }  // namespace

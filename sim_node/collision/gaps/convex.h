@@ -1,4 +1,4 @@
-// A convex body as a core that is grown by a radius: what the search for the nearest points works on. Pure.
+// A convex shape as a core with a rounding radius, for the search for the nearest points. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,20 +10,22 @@ namespace tactus::sim::gaps {
 
 enum class Core { kPoint, kSegment, kBox, kCylinder, kTriangle };
 
-// In its own frame; segments and cylinders along z. A sphere is a point with a radius, a capsule a segment.
+// In its own frame. Segments and cylinders lie along z. A sphere is a point with a radius, a capsule is a segment
+// with a radius.
 struct Convex {
   Core core = Core::kPoint;
-  Eigen::Vector3d half_m{0, 0, 0};  // of a box; (0, 0, half) of a segment; (radius, radius, half) of a cylinder
+  Eigen::Vector3d half_m{0, 0, 0};  // box: half extents; segment: (0, 0, half); cylinder: (radius, radius, half)
   double round_m = 0;
   std::array<Eigen::Vector3d, 3> corners_m;  // of a triangle
 };
 
-// A plane becomes the plate that stands for one that moves; see plate_offset(). Meshes and heightfields are none.
+// A plane becomes the plate that represents a moving plane; see plate_offset(). Meshes and heightfields are not
+// supported.
 Convex convex_of(const ShapeDef& shape);
-// From the frame of a plane to that of its plate, of the thickness that ODE's geometries give it.
+// Transform from the frame of a plane to that of its plate, with the thickness of ODE's geometry.
 Eigen::Isometry3d plate_offset();
 
-// Point of the core furthest along d.
+// Support point of the core: the furthest along d.
 inline Eigen::Vector3d support(const Convex& c, const Eigen::Vector3d& d) {
   const auto side = [](double x, double half) { return x < 0 ? -half : half; };
   switch (c.core) {
@@ -41,9 +43,9 @@ inline Eigen::Vector3d support(const Convex& c, const Eigen::Vector3d& d) {
   return x >= y && x >= z ? c.corners_m[0] : y >= z ? c.corners_m[1] : c.corners_m[2];
 }
 
-// A smaller core of the same kind; what has no inside stays as it is.
+// Returns a smaller core of the same kind. Cores without volume are returned unchanged.
 Convex shrunk(const Convex& c, double by_m);
-// Of a sphere around the middle of the core, with its radius.
+// Radius of the bounding sphere around the centre of the core, rounding included.
 double bound_m(const Convex& c);
 
 }  // namespace tactus::sim::gaps

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A corner stands for the least gap when it is as near to it, m.
+// A corner represents the least gap when its gap is equal within this, m.
 constexpr double kSame_m = 1e-9;
 
 ContactKind kind_of(const FacingList& found) {
@@ -27,7 +27,7 @@ double least(const FacingList& found) {
   return gap;
 }
 
-// From cores in the frame of a to surfaces in the world.
+// Converts points on cores, frame of a, to points on surfaces, world frame.
 void append(const FacingList& found, const Vector3d& n, const Isometry3d& pose_a, double round_a, double round_b,
             std::vector<PointPair>& out) {
   PointPair p;
@@ -52,26 +52,26 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
   const auto corners = [&](const Vector3d& n) {
     facing(feature_along(a, Isometry3d::Identity(), n), feature_along(b, a_from_b, -n), n, reach, found);
   };
-  // Most contacts are those of a face with what lies over it: then a corner over the face is as near as anything.
-  const Parting face = over_faces(a, b, a_from_b);
+  // Most contacts are a face against a feature above it. A corner over the face then has the least gap.
+  const SeparatingAxis face = best_face_axis(a, b, a_from_b);
   if (face.gap_m > reach) return;
   if (face.gap_m > -kTouching_m) {
     corners(face.along);
     if (least(found) <= face.gap_m + kSame_m) return append(found, face.along, pose_a, a.round_m, b.round_m, out);
   }
   NearestPoints near;
-  const Apart apart = nearest_points(a, b, a_from_b, reach, near);
-  if (apart == Apart::kFar) return;
+  const Proximity apart = nearest_points(a, b, a_from_b, reach, near);
+  if (apart == Proximity::kFar) return;
   Vector3d n;
   Facing nearest;
-  if (apart == Apart::kNear) {
+  if (apart == Proximity::kNear) {
     n = (near.on_b - near.on_a) / near.distance_m;
     nearest = {near.on_a, near.on_b, near.distance_m};
   } else {
-    const Parting way = out_of_overlap(a, b, a_from_b);
+    const SeparatingAxis way = overlap_axis(a, b, a_from_b);
     n = way.along;
     const Vector3d on_a = support(a, n), on_b = a_from_b * support(b, a_from_b.linear().transpose() * -n);
-    // Of edges that cross, the ends are not where they do; half way between is at the right height at least.
+    // The support points of crossing edges are not at the crossing. Their midpoint is at least at the right height.
     Vector3d flat = (on_a + on_b) / 2;
     flat -= flat.dot(n) * n;
     nearest = {flat + on_a.dot(n) * n, flat + on_b.dot(n) * n, way.gap_m};
@@ -93,7 +93,7 @@ void over_face(const Convex& a, const Isometry3d& pose_a, const Convex& triangle
   FacingList found;
   facing(feature_along(a, Isometry3d::Identity(), n), feature_along(triangle, a_from_b, -n), n,
          reach_m + a.round_m, found);
-  // What passes beside the triangle may be below its plane there; that is no overlap.
+  // Points beside the triangle may be below its plane. That is not an overlap.
   FacingList above;
   for (int i = 0; i < found.count; ++i)
     if (found.at[static_cast<std::size_t>(i)].gap_m >= 0) above.add(found.at[static_cast<std::size_t>(i)]);

@@ -1,5 +1,4 @@
-// The contact of two convex bodies, apart or in each other: its direction, and the corners of what they turn
-// towards each other. Pure.
+// Contact of two convex shapes, separated or overlapping: its normal and the corners of the contact area. Pure.
 #pragma once
 
 #include <vector>
@@ -9,18 +8,18 @@
 
 namespace tactus::sim::gaps {
 
-// Appends the pairs with a gap of at most the reach, which is positive. The least gap is exact where the bodies
-// are apart, and where faces or edges of boxes overlap; where round ones overlap the way out is near the shortest.
-// Realtime-safe once the list has grown; for any number of threads.
+// Appends the pairs with a gap of at most reach_m, which is positive. The least gap is exact for separated shapes and
+// for overlapping faces or edges of boxes. For overlapping round shapes it is near the minimum translation. Real-time
+// safe once the list has grown. Thread-safe.
 void convex_pair(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& b,
                  const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
 
-// The corners of a that lie over the face of a triangle or under it, whatever is nearest: of what is tilted, the
-// other end.
+// Appends the corners of a over or under the face of a triangle, whatever feature is nearest: for example the far end
+// of a tilted shape.
 void over_face(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& triangle,
                const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
 
-// b over the half space that plane_pose's z leads out of.
+// b against the half space whose outward normal is the z axis of plane_pose.
 void plane_pair(const Eigen::Isometry3d& plane_pose, const Convex& b, const Eigen::Isometry3d& pose_b,
                 double reach_m, std::vector<PointPair>& out);
 

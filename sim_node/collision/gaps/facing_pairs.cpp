@@ -10,7 +10,7 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-// As of LeafPairs: rounding of a test in float per metre of the coordinates.
+// Rounding of a test in float per metre of the coordinates, as in LeafPairs.
 constexpr double kRounding = 4e-6;
 
 struct Motion {  // from one tree's frame to the other's
@@ -20,11 +20,11 @@ struct Motion {  // from one tree's frame to the other's
       : rotation(to_from.linear().cast<float>()), shift((to_from * from.origin() - to.origin()).cast<float>()) {}
 };
 
-// A ball around a box of a tree, with what is known of its normals.
+// Bounding sphere of a box of a tree, with its cone of normals.
 struct Ball {
   Vector3f centre;
   float radius;
-  Vector3f axis, face;  // of its cone; of a triangle, its normal
+  Vector3f axis, face;  // of the cone; normal of the triangle in a leaf
   float cosine, sine;
   bool leaf;
 };
@@ -41,7 +41,7 @@ Ball ball_of(const ObbTree& tree, const NormalCones& cones, int node, int lane) 
           n.child[lane] < 0};
 }
 
-// The box itself, in the other tree's frame.
+// Transforms the box into the other tree's frame.
 void move(const Motion& m, const WideNode& n, int lane, BoxQuery& q) {
   for (int k = 0; k < 3; ++k) {
     q.centre[k] = m.shift[k];
@@ -60,8 +60,9 @@ void move(const Motion& m, Ball& b) {
   b.face = m.rotation * b.face;
 }
 
-// Whether a way that begins in one ball and ends in the other, `way` between their middles and off by no more than
-// r, may lead within the cone. Of a triangle whose face it is to leave straight, the cone is none but its normal.
+// Whether a connection from one ball to the other may lie within the cone. `way` connects the centres, and the
+// connection deviates from it by at most r. straight() is the same for a connection along the normal of a leaf's
+// triangle.
 bool within(const Ball& b, const Vector3f& way, float squared, float r) {
   const float high = std::abs(way.dot(b.axis)), wide2 = squared - high * high, most = r + high * b.sine;
   return wide2 * b.cosine * b.cosine <= most * most;
@@ -71,7 +72,7 @@ bool straight(const Ball& b, const Vector3f& way, float squared, float r) {
   return squared - high * high <= r * r;
 }
 
-// A pair is over a's face, over b's, or nearest of all around it on both.
+// A pair lies over a's face or over b's face, or is a local minimum of the distance on both.
 bool may_meet(const Ball& a, const Ball& b, float reach, float slack) {
   const Vector3f way = b.centre - a.centre;
   const float squared = way.squaredNorm(), r = a.radius + b.radius + slack, far = reach + r;

@@ -1,5 +1,5 @@
-// Which triangles of two meshes may hold a pair of points that is a contact: within reach of each other, and such
-// that the way from one to the other leads out of one of them as its normals do.
+// Pairs of triangles of two meshes that may hold a contact: within reach of each other, and with a connection that
+// leaves one of them within its cone of normals.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,8 +19,8 @@ class FacingPairs {
     const Eigen::Isometry3d& pose;
   };
   explicit FacingPairs(Isa isa);
-  // (triangle of a, triangle of b) into `out`, cleared first. Deterministic. Realtime-safe once the lists have
-  // grown.
+  // Writes (triangle of a, triangle of b) into `out`, after clearing it. Deterministic. Real-time safe once the lists
+  // have grown.
   void find(const Mesh& a, const Mesh& b, double reach_m, std::vector<std::pair<int, int>>& out);
 
  private:

@@ -8,10 +8,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A cylinder turns its cap where that is the nearer direction, else the line of its side; a triangle its face as
-// long as it is seen under more than this angle from the side, else an edge. Cosines.
+// Thresholds of the facing feature, cosines. A cylinder shows its cap when the direction is nearer to the axis, else
+// the line on its side. A triangle shows its face when seen at more than this angle from the side, else an edge.
 constexpr double kCap = 0.70711, kFace = 0.2;
-// Seen so nearly from its end, within 2.6 degrees, a line is a point. Cosine.
+// A line seen along its axis within 2.6 degrees is a point. Cosine.
 constexpr double kUpright = 0.999;
 
 Feature box_face(const Vector3d& h, const Vector3d& d) {

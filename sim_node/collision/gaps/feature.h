@@ -1,5 +1,5 @@
-// What a convex core turns towards a direction, as a flat figure, and where two such figures face each other: the
-// corners of a contact. The same figures have the same points in the same order, from step to step. Pure.
+// The feature of a convex core that faces a direction, as a flat figure, and the overlap of two such figures: the
+// corners of a contact. Equal figures give equal points in equal order, from step to step. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,17 +12,17 @@ namespace tactus::sim::gaps {
 struct Feature {
   enum class Kind { kPoint, kSegment, kPolygon, kDisc };
   Kind kind = Kind::kPoint;
-  int count = 0;                           // of corners; of a disc: four points of its rim
-  std::array<Eigen::Vector3d, 4> corners;  // in order around
-  Eigen::Vector3d normal{0, 0, 1};         // unit, of its plane, out of the body
+  int count = 0;                           // number of corners; a disc has four points of its rim
+  std::array<Eigen::Vector3d, 4> corners;  // in order around the outline
+  Eigen::Vector3d normal{0, 0, 1};         // unit, of its plane, outward
   Eigen::Vector3d centre{0, 0, 0};         // of a disc
   double radius_m = 0;
 };
 
-// In the frame that `to` maps to; `along` is unit and of that frame.
+// In the frame that `to` maps to. `along` is a unit vector in that frame.
 Feature feature_along(const Convex& c, const Eigen::Isometry3d& to, const Eigen::Vector3d& along);
 
-// A place where two figures face each other along n, with its height on either.
+// A point where two figures face each other along n, with its position on either.
 struct Facing {
   Eigen::Vector3d on_a, on_b;
   double gap_m;  // along n
@@ -36,11 +36,10 @@ struct FacingList {
   }
 };
 
-// The corners of what both cover, seen along n (unit, from a to b), as far as their gap is within the reach. `a`
-// turns towards n, `b` towards -n.
+// Corners of the overlap, seen along n (unit, from a to b), with a gap of at most reach_m. `a` faces n, `b` faces -n.
 void facing(const Feature& a, const Feature& b, const Eigen::Vector3d& n, double reach_m, FacingList& out);
 
-// Of a figure over the half space n x <= offset: its own corners, and of a disc the lowest point of its rim.
+// Corners of a figure against the half space n . x <= offset_m. For a disc also the lowest point of its rim.
 void facing_plane(const Feature& of, const Eigen::Vector3d& n, double offset_m, double reach_m, FacingList& out);
 
 }  // namespace tactus::sim::gaps

@@ -15,10 +15,10 @@ using layer2::Sides;
 
 namespace {
 
-// The gap of a pair that is none of a contact, but stands for the others at its place.
-constexpr double kNone_m = std::numeric_limits<double>::infinity();
+// Gap of a pair that is no contact but removes the duplicates at its position.
+constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 
-// A way that leads straight out of a face, by leads_out(), is beside it by less than that share of its length.
+// leads_out() accepts connections whose lateral share of their length is below this.
 constexpr double kStraight = 1e-4;
 
 bool nearer_on(const Triangle& t, const Vector3d& from, double least_m) {
@@ -41,7 +41,7 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   const Heights over_a = layer2::heights(b, a);
   if (layer2::out_of_reach(over_a, tol)) return;
   const Sides in_b = layer2::sides(a, b), in_a = layer2::sides(b, a);
-  // A pair is nearest of all around it on both, or leads straight out of the face of one.
+  // A pair is a local minimum on both triangles, or leaves the face of one along its normal.
   const auto off = [](const Sides& s, double by_m) { return layer2::out_of_reach(s, by_m); };
   if ((off(in_b, lean_b * tol) || off(in_a, lean_a * tol)) && off(in_b, kStraight * tol) &&
       off(in_a, kStraight * tol))
@@ -49,10 +49,10 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   const auto add = [&](const PointPair& p) {
     out.push_back(p);
     const bool out_of_a = leads_out(a.normal, p.normal), out_of_b = leads_out(b.normal, p.normal);
-    const double least = least_around((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
+    const double least = nearer_limit_m((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
     if (least > 0 &&
         ((!out_of_a && nearer_on(a, p.on_b_m, least)) || (!out_of_b && nearer_on(b, p.on_a_m, least))))
-      out.back().gap_m = kNone_m;
+      out.back().gap_m = kNoContact_m;
   };
   layer2::vertices_and_edges(a, over_b, in_b, b, over_a, in_a, tol, add);
   const auto always = [&](const PointPair& p) { out.push_back(p); };
@@ -81,23 +81,23 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirs
     return std::pair<const Triangle&, const Triangle&>(of_a[static_cast<std::size_t>(p.triangle_a)],
                                                        of_b[static_cast<std::size_t>(p.triangle_b)]);
   };
-  turns_.clear();
+  candidates_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     PointPair& p = pairs[k];
-    if (p.gap_m == kNone_m) continue;
+    if (p.gap_m == kNoContact_m) continue;
     p.on_a_m = b.pose * p.on_a_m;
     p.on_b_m = b.pose * p.on_b_m;
     p.normal = b.pose.linear() * p.normal;
-    const bool parted = p.pierced;
-    if (parted) part(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), p);
-    turns_.push_back({p.gap_m, static_cast<std::uint32_t>(k), parted});
+    const bool separated = p.pierced;
+    if (separated) resolve_piercing(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), p);
+    candidates_.push_back({p.gap_m, static_cast<std::uint32_t>(k), separated});
   }
-  std::sort(turns_.begin(), turns_.end(),
-            [](const Turn& x, const Turn& y) { return x.gap_m != y.gap_m ? x.gap_m < y.gap_m : x.pair < y.pair; });
-  for (const Turn& t : turns_) {
+  std::sort(candidates_.begin(), candidates_.end(),
+            [](const Candidate& x, const Candidate& y) { return x.gap_m != y.gap_m ? x.gap_m < y.gap_m : x.pair < y.pair; });
+  for (const Candidate& t : candidates_) {
     const PointPair& p = pairs[t.pair];
     if (to.known(p)) continue;
-    if (!t.parted && !is_contact({a.tree, a.pose, triangles(p).first}, {b.tree, b.pose, triangles(p).second}, p))
+    if (!t.separated && !is_contact({a.tree, a.pose, triangles(p).first}, {b.tree, b.pose, triangles(p).second}, p))
       continue;
     if (!to.take(p)) return;
   }

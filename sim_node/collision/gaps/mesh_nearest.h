@@ -1,5 +1,5 @@
-// Contacts of two meshes, nearest first and one at a time: for who needs the nearest of each place and direction
-// only, as a tool does, which is far less than all of them.
+// Contacts of two meshes in order of increasing gap. For users that need only the nearest contact of each place and
+// direction, such as a tool, which is much cheaper than all contacts.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ class MeshNearest {
     const Eigen::Isometry3d& pose;
   };
   explicit MeshNearest(Isa isa) : facing_(isa) {}
-  // The same contacts as all pairs of the three layers of which is_contact() says yes, to within rounding, but it
-  // is asked only of those that `to` does not know by then. `room` is used. Deterministic. Realtime-safe once the
+  // Reports the pairs of the three layers that satisfy is_contact(), to within rounding. Calls is_contact() only for
+  // pairs that `to` does not report as redundant. `room` is scratch memory. Deterministic. Real-time safe once the
   // lists have grown.
   void find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to, std::vector<PointPair>& room);
 
@@ -31,17 +31,17 @@ class MeshNearest {
   FacingPairs facing_;
   Duplicates layer3_;
   std::vector<std::pair<int, int>> leaves_;
-  struct Turn {
+  struct Candidate {
     double gap_m;
     std::uint32_t pair;
-    bool parted;
+    bool separated;
   };
-  std::vector<Turn> turns_;
+  std::vector<Candidate> candidates_;
 };
 
-// What complete_contact() finds, without the types; a pair that leads from where one of these two triangles is
-// nearer itself, which is none of a contact, has an infinite gap. Nothing when the two cannot hold a contact by
-// how far ways to what is nearest may lean (NormalCones). Both in one frame. Appends.
+// Appends the result of complete_contact(), without types. A pair whose connection has a nearer point on one of the
+// two triangles is no contact; its gap is infinite. Appends nothing when the lean of the connections (NormalCones)
+// rules out a contact. Both triangles are in one frame.
 void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tolerance_m,
                   std::vector<PointPair>& out);
 

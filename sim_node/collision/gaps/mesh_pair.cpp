@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A point so near to a triangle lies on it; a place is nearer when it is so by more, m: rounding of a metre, a
-// million times.
+// A point closer than this to a triangle lies on it. A point is nearer than another by more than this, m: a million
+// times the rounding of a metre.
 constexpr double kOn_m = 1e-9;
 
 AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
@@ -28,7 +28,7 @@ AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
 
 }  // namespace
 
-double least_around(double distance_m, double share) {
+double nearer_limit_m(double distance_m, double share) {
   return share * distance_m - std::max(kOn_m, 1e-6 * distance_m);
 }
 
@@ -38,7 +38,7 @@ bool leads_out(const Vector3d& face_normal, const Vector3d& pair_normal) {
 }
 
 bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh, double share) {
-  const double least = least_around((from - on_mesh).norm(), share);
+  const double least = nearer_limit_m((from - on_mesh).norm(), share);
   const Vector3d on(kOn_m, kOn_m, kOn_m);
   bool nearest = true;
   mesh.each_within({on_mesh - on, on_mesh + on},
@@ -106,7 +106,7 @@ Triangle moved(const Triangle& t, const Isometry3d& pose) {
   return m;
 }
 
-void part(const Triangle& a, const Triangle& b, PointPair& pair) {
+void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair) {
   const auto below = [](const Triangle& of, const Triangle& face) {
     double height = 0;
     for (const Vector3d& v : of.v) height = std::min(height, face.normal.dot(v - face.v[0]));

@@ -1,4 +1,5 @@
-// Contacts of meshes with what has no triangles, and which of the point pairs of a mesh are contacts at all. Pure.
+// Contacts of meshes with convex shapes and planes, and the test that rejects point pairs of a mesh that are no
+// contacts. Pure.
 #pragma once
 
 #include <vector>
@@ -10,41 +11,41 @@
 
 namespace tactus::sim::gaps {
 
-// All append pairs with a gap of at most the reach, with their triangles. a: the convex body or the plane, b: the
-// mesh, any polygon soup. Realtime-safe once the list has grown; for any number of threads.
+// All functions append pairs with a gap of at most reach_m, with their triangles. a: the convex shape or the plane,
+// b: the mesh, any polygon soup. Real-time safe once the list has grown. Thread-safe.
 void convex_mesh(const Convex& convex, const Eigen::Isometry3d& pose, const TriangleTree& mesh,
                  const Eigen::Isometry3d& mesh_pose, double reach_m, std::vector<PointPair>& out);
 void plane_mesh(const Eigen::Isometry3d& plane_pose, const TriangleTree& mesh, const Eigen::Isometry3d& mesh_pose,
                 double reach_m, std::vector<PointPair>& out);
 
-// Whether no place of the mesh around `on_mesh`, which lies on it, is nearer to `from` than that share of its
-// distance; both in its frame. A pair for which one is, is none of a contact: it leads from a surface to the next
-// triangle of a plain that it already stands on, and would hold back whatever slides over that.
-double least_around(double distance_m, double share);  // what is nearer than that, is nearer
+// Returns whether no point of the mesh around `on_mesh`, which lies on the mesh, is nearer to `from` than `share` of
+// the distance. Both points are in the frame of the mesh. A pair that fails is no contact (an internal edge
+// collision): it leads from a resting surface to a neighbouring triangle and would stop sliding bodies.
+double nearer_limit_m(double distance_m, double share);  // upper limit of the distance of a nearer point
 bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& on_mesh,
                     double share = 1);
 
-// A pair that leads straight out of a triangle's face is one of something over it.
+// Whether a pair leaves a triangle's face along its normal, that is, lies over the face.
 bool leads_out(const Eigen::Vector3d& face_normal, const Eigen::Vector3d& pair_normal);
-// The share for a pair of which one end, or neither, is over a face: what lies over a face is a contact unless it leads
-// away from what is much nearer; what lies between edges, when nothing around is nearer at all.
+// Share for nearest_around(), by whether one end of the pair lies over a face. A pair over a face is a contact unless
+// a point nearby is much nearer. A pair between edges is a contact only when no point nearby is nearer.
 inline double share_of(bool over_a, bool over_b) {
-  constexpr double kMuchNearer = 0.9;  // something tilted by 26 degrees, as far as a step may turn it; design
+  constexpr double kMuchNearer = 0.9;  // a tilt of 26 degrees, the most that a step may rotate; design value
   return over_a || over_b ? kMuchNearer : 1;
 }
 
-// One side of a pair: a mesh, its pose in the world, and the triangle of the pair in its frame.
+// One side of a pair: a mesh, its pose in the world, and the triangle of the pair in the mesh frame.
 struct MeshSide {
   const TriangleTree& mesh;
   const Eigen::Isometry3d& pose;
   const Triangle& triangle;
 };
-// Whether a pair of triangles that are apart, world, is one of a contact.
+// Whether a pair of separated triangles, world frame, is a contact.
 bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p);
 
-Triangle moved(const Triangle& t, const Eigen::Isometry3d& pose);  // without the directions of its edges
-// Gives a pair of triangles that go through each other, in the world, the shorter of the two ways out over their
-// faces.
-void part(const Triangle& a, const Triangle& b, PointPair& pair);
+Triangle moved(const Triangle& t, const Eigen::Isometry3d& pose);  // leaves the edge directions unchanged
+// Sets normal and gap of a pair of intersecting triangles, world frame, to the shorter of the two translations along
+// their face normals.
+void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair);
 
 }  // namespace tactus::sim::gaps

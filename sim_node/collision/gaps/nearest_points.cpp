@@ -9,10 +9,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Curved cores come nearer by a share in each round; polytopes end within ten.
+// Iteration limit. Curved cores converge by a share per iteration; polytopes end within ten.
 constexpr int kMaxRounds = 100;
-// What a further round could still bring, as a share of the squared distance: 1e-12 of it is 5e-13 of the
-// distance.
+// Convergence: the improvement that a further iteration could bring, as a share of the squared distance. 1e-12 of it
+// is 5e-13 of the distance.
 constexpr double kSettled = 1e-12;
 
 struct Corner {
@@ -40,20 +40,20 @@ struct Simplex {
 
 struct Shares {
   double u, v, w;
-  double squared;  // distance of the origin from that point, squared
+  double squared;  // squared distance of the origin from that point
 };
 
-// Of the point of b's line to a that is nearest to the origin: b's share.
+// Weight of b for the point on the line from a to b that is nearest to the origin.
 double along_edge(const Vector3d& a, const Vector3d& b) {
   const Vector3d ab = b - a;
   const double length2 = ab.squaredNorm();
   return length2 > 0 ? std::clamp(-a.dot(ab) / length2, 0.0, 1.0) : 0.0;
 }
 
-// Of the point of a triangle nearest to the origin.
+// Weights of the point of a triangle nearest to the origin.
 Shares of_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  // Areas from cross products with an edge: on a rim the corners come so near to each other that products of
-  // lengths (Ericson 2005, Real-Time Collision Detection, 5.1.5) would be all rounding.
+  // Areas come from cross products with an edge. On a rim the corners come so near to each other that products of
+  // lengths (Ericson 2005, Real-Time Collision Detection, 5.1.5) would be lost in rounding.
   const Vector3d ab = b - a, bc = c - b, ca = a - c, n = ab.cross(-ca);
   const double va = n.dot(b.cross(bc)), vb = n.dot(c.cross(ca)), vc = n.dot(a.cross(ab));
   if (va > 0 && vb > 0 && vc > 0) {
@@ -86,7 +86,8 @@ void take(Simplex& s, int i, int j, int k, const Shares& shares) {
   s.count = n;
 }
 
-// False: the origin is inside. outside: it is known not to be, which a flat one cannot tell.
+// Returns false when the origin is inside. outside: the origin is known to be outside, which a flat tetrahedron
+// cannot decide.
 bool reduce_tetrahedron(Simplex& s, bool outside) {
   static constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
   Shares best{0, 0, 0, std::numeric_limits<double>::max()};
@@ -116,10 +117,10 @@ bool reduce(Simplex& s, bool outside) {
 
 }  // namespace
 
-Apart nearest_points(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b, double reach_m,
+Proximity nearest_points(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b, double reach_m,
                      NearestPoints& out) {
   const Eigen::Matrix3d turn = a_from_b.linear();
-  const auto furthest = [&](const Vector3d& d) {  // of b - a
+  const auto furthest = [&](const Vector3d& d) {  // support point of b - a
     Corner c;
     c.on_a = support(a, -d);
     c.on_b = a_from_b * support(b, turn.transpose() * d);
@@ -134,19 +135,19 @@ Apart nearest_points(const Convex& a, const Convex& b, const Eigen::Isometry3d& 
   for (int round = 0; round < kMaxRounds; ++round) {
     const Corner next = furthest(-v);
     const double along = v.dot(next.at), v2 = v.squaredNorm();
-    if (along > 0 && along * along > reach_m * reach_m * v2) return Apart::kFar;
+    if (along > 0 && along * along > reach_m * reach_m * v2) return Proximity::kFar;
     if (simplex.count > 0 && v2 - along <= kSettled * v2) break;
     bool known = false;
     for (int i = 0; i < simplex.count; ++i) known |= simplex.corner[i].at == next.at;
     if (known) break;
     const Simplex before = simplex;
     simplex.corner[simplex.count++] = next;
-    // A plane across v parts the cores when even their furthest points along it do not meet.
-    if (!reduce(simplex, along > 0)) return Apart::kTouching;
+    // When even the support points along v do not meet, a plane normal to v separates the cores.
+    if (!reduce(simplex, along > 0)) return Proximity::kTouching;
     v = simplex.point();
     const double now = v.squaredNorm();
-    if (now <= kTouching_m * kTouching_m) return Apart::kTouching;
-    if (now >= squared) {  // rounding: it does not come nearer any more
+    if (now <= kTouching_m * kTouching_m) return Proximity::kTouching;
+    if (now >= squared) {  // rounding: no further progress
       if (before.count > 0 && now > squared) simplex = before;
       break;
     }
@@ -158,8 +159,8 @@ Apart nearest_points(const Convex& a, const Convex& b, const Eigen::Isometry3d& 
     out.on_b += simplex.corner[i].share * simplex.corner[i].on_b;
   }
   out.distance_m = (out.on_b - out.on_a).norm();
-  if (out.distance_m <= kTouching_m) return Apart::kTouching;
-  return out.distance_m > reach_m ? Apart::kFar : Apart::kNear;
+  if (out.distance_m <= kTouching_m) return Proximity::kTouching;
+  return out.distance_m > reach_m ? Proximity::kFar : Proximity::kNear;
 }
 
 }  // namespace tactus::sim::gaps

@@ -12,35 +12,35 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// What is nearest to within a millionth of its distance is so off its normal; and what rounding to float adds,
-// rad.
+// Slack of a cone, rad. Covers the deviation from the normal of a point that is nearest only to within a millionth of
+// its distance, and the rounding to float.
 constexpr double kSlack_rad = 0.02;
-// Wider cones tell nothing, rad.
+// Wider cones exclude nothing, rad.
 constexpr double kWidest_rad = 1.4;
-// A triangle less high than this bends its surface as it likes within that millionth, m: a hundredth of a reach of
-// 10 mm has to fit.
+// The normal of a triangle with less height than this is unreliable within that millionth, m. Derived for a reach of
+// 10 mm.
 constexpr double kLeastHeight_m = 1e-5;
 
-struct Wide {  // axis and half angle
+struct AngleCone {  // axis and half angle
   Vector3d axis{0, 0, 1};
   double rad = 4;
-  double lean = 1;  // of a triangle
+  double lean = 1;  // see NormalCones::lean(); leaves only
 };
 
 double angle(const Vector3d& x, const Vector3d& y) { return std::atan2(x.cross(y).norm(), x.dot(y)); }
 
-NormalCone cone_of(const Wide& w) {
+NormalCone cone_of(const AngleCone& w) {
   if (w.rad > kWidest_rad) return {};
   return {w.axis.cast<float>(), static_cast<float>(std::cos(w.rad)), static_cast<float>(std::sin(w.rad))};
 }
 
-Wide around(const std::vector<Wide>& parts) {
-  Wide w{Vector3d::Zero(), 0};
-  for (const Wide& p : parts) w.axis += p.axis;
+AngleCone around(const std::vector<AngleCone>& parts) {
+  AngleCone w{Vector3d::Zero(), 0};
+  for (const AngleCone& p : parts) w.axis += p.axis;
   if (!(w.axis.norm() > 1e-6)) return {};
   w.axis.normalize();
-  for (const Wide& p : parts) w.rad = std::max(w.rad, p.rad + angle(w.axis, p.axis));
-  return w.rad > kWidest_rad ? Wide{} : w;
+  for (const AngleCone& p : parts) w.rad = std::max(w.rad, p.rad + angle(w.axis, p.axis));
+  return w.rad > kWidest_rad ? AngleCone{} : w;
 }
 
 double least_height_m(const Triangle& t) {
@@ -49,8 +49,8 @@ double least_height_m(const Triangle& t) {
   return longest > 0 ? (t.v[1] - t.v[0]).cross(t.v[2] - t.v[0]).norm() / longest : 0;
 }
 
-// Of each triangle; of one at a border, or where more than two meet at an edge, nothing is known.
-std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
+// Cones of the triangles. Triangles at a border, or at an edge with more than two triangles, get an open cone.
+std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
   std::map<std::array<double, 3>, int> numbers;
   std::vector<std::array<int, 3>> corners;
   std::map<std::pair<int, int>, int> edges;
@@ -70,8 +70,8 @@ std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
       const bool whole = c != next && edges[std::minmax(c, next)] == 2;
       if (!whole) open[static_cast<std::size_t>(c)] = open[static_cast<std::size_t>(next)] = true;
     }
-  std::vector<Wide> cones;
-  std::vector<Wide> parts;
+  std::vector<AngleCone> cones;
+  std::vector<AngleCone> parts;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     parts.clear();
     bool known = true;
@@ -83,10 +83,10 @@ std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
         parts.push_back({near.normal, kSlack_rad});
       }
     }
-    Wide& cone = cones.emplace_back(known ? around(parts) : Wide{});
+    AngleCone& cone = cones.emplace_back(known ? around(parts) : AngleCone{});
     if (!known) continue;
     double most = 0;
-    for (const Wide& p : parts) most = std::max(most, angle(p.axis, triangles[t].normal) + kSlack_rad);
+    for (const AngleCone& p : parts) most = std::max(most, angle(p.axis, triangles[t].normal) + kSlack_rad);
     if (most < M_PI / 2) cone.lean = std::sin(most);
   }
   return cones;
@@ -95,10 +95,10 @@ std::vector<Wide> of_triangles(const std::vector<Triangle>& triangles) {
 }  // namespace
 
 NormalCones::NormalCones(const ObbTree& tree) : cones_(tree.nodes().size() * kLanes) {
-  const std::vector<Wide> leaves = of_triangles(tree.triangles());
-  for (const Wide& w : leaves) leans_.push_back(w.lean);
-  std::vector<Wide> of_node(tree.nodes().size());
-  std::vector<Wide> parts;
+  const std::vector<AngleCone> leaves = of_triangles(tree.triangles());
+  for (const AngleCone& w : leaves) leans_.push_back(w.lean);
+  std::vector<AngleCone> of_node(tree.nodes().size());
+  std::vector<AngleCone> parts;
   // Children come after their parents.
   for (std::size_t n = tree.nodes().size(); n-- > 0;) {
     parts.clear();
@@ -109,8 +109,8 @@ NormalCones::NormalCones(const ObbTree& tree) : cones_(tree.nodes().size() * kLa
                                 : of_node[static_cast<std::size_t>(child)]);
       cones_[n * kLanes + static_cast<std::size_t>(lane)] = cone_of(parts.back());
     }
-    const bool known = std::all_of(parts.begin(), parts.end(), [](const Wide& p) { return p.rad <= kWidest_rad; });
-    of_node[n] = known ? around(parts) : Wide{};
+    const bool known = std::all_of(parts.begin(), parts.end(), [](const AngleCone& p) { return p.rad <= kWidest_rad; });
+    of_node[n] = known ? around(parts) : AngleCone{};
   }
 }
 

@@ -1,5 +1,6 @@
-// Into which directions a mesh can be nearest to something: for each box of its tree a cone that holds the normals
-// of its faces and of those around them (Johnson and Cohen 2001, Spatialized normal cone hierarchies).
+// Spatialized normal cones: for each box of a mesh's tree, a cone that contains the normals of its faces and of their
+// neighbours (Johnson and Cohen 2001, Spatialized normal cone hierarchies). They limit the directions in which the
+// mesh can be nearest to another surface.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +10,7 @@
 
 namespace tactus::sim::gaps {
 
-// Both ways along the axis: a surface may be met from behind. Open, where nothing is known: cosine 0, sine 1.
+// Double-sided, since a surface may be approached from behind. An open cone has cosine 0 and sine 1.
 struct NormalCone {
   Eigen::Vector3f axis{0, 0, 1};
   float cosine = 0, sine = 1;
@@ -22,8 +23,8 @@ class NormalCones {
     return cones_[static_cast<std::size_t>(node) * kLanes + static_cast<std::size_t>(lane)];
   }
 
-  // Sine of the angle by which a way to what is nearest may lean from the triangle's own normal; 1 where nothing
-  // is known.
+  // Sine of the largest angle between the triangle's normal and a connection to the nearest point; 1 where it is
+  // unknown.
   double lean(int triangle) const { return leans_[static_cast<std::size_t>(triangle)]; }
 
  private:

@@ -11,18 +11,19 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A direction is taken instead of one before it when it parts by more than this, m: so that of two that are
-// equally good, as of cubes on each other, it is always the same.
+// A later direction replaces an earlier one when its gap is larger by more than this, m. Between equal directions, as
+// of aligned cubes, the choice is then stable.
 constexpr double kBetter_m = 1e-9;
 
-// Into a triangle, m; design: a hundred times the overlap that a solver may leave.
+// Depth up to which an overlap with a triangle is shallow, m. Design value: a hundred times the overlap that a solver
+// may leave.
 constexpr double kShallow_m = 1e-3;
 
 struct Search {
   const Convex& a;
   const Convex& b;
   const Eigen::Isometry3d& a_from_b;
-  Parting best;
+  SeparatingAxis best;
 
   double gap_along(const Vector3d& n) const {
     const Vector3d of_b = a_from_b * support(b, a_from_b.linear().transpose() * -n);
@@ -38,7 +39,7 @@ struct Search {
   }
 };
 
-// Directions of the faces of a core, in its frame.
+// Face normals of a core, in its frame.
 template <class Visit>
 void each_face(const Convex& c, Visit&& visit) {
   if (c.core == Core::kBox)
@@ -49,7 +50,7 @@ void each_face(const Convex& c, Visit&& visit) {
   if (n.norm() > 0) visit(Vector3d(n.normalized()));
 }
 
-// Directions of straight edges, or of the lines along a side.
+// Directions of straight edges, or of the lines on a round side.
 template <class Visit>
 void each_edge(const Convex& c, Visit&& visit) {
   if (c.core == Core::kBox)
@@ -61,33 +62,32 @@ void each_edge(const Convex& c, Visit&& visit) {
   }
 }
 
-// One that depends on nothing but the poses, for bodies whose middles are in one place.
-Vector3d between_middles(const Eigen::Isometry3d& a_from_b) {
+// Direction between centres. Depends on the poses only, also for coincident centres.
+Vector3d between_centres(const Eigen::Isometry3d& a_from_b) {
   const Vector3d way = a_from_b.translation();
   return way.norm() > 0 ? Vector3d(way.normalized()) : Vector3d(Vector3d::UnitZ());
 }
 
-// Cores shrunk by more and more, until they are apart.
+// Shrinks the cores step by step until they are separated.
 void offer_shrunk(Search& s) {
   const double most = std::max(s.a.half_m.maxCoeff(), s.b.half_m.maxCoeff());
   double by = std::max(1e-5, -s.best.gap_m / 2);
   for (;; by *= 2) {
     NearestPoints found;
     const Convex a = shrunk(s.a, std::min(by, most)), b = shrunk(s.b, std::min(by, most));
-    if (nearest_points(a, b, s.a_from_b, 1e30, found) == Apart::kNear)
+    if (nearest_points(a, b, s.a_from_b, 1e30, found) == Proximity::kNear)
       return s.offer((found.on_b - found.on_a) / found.distance_m);
     if (by >= most) return;
   }
 }
 
-// The same as with any cores, in a quarter of the time (Gottschalk, Lin and Manocha 1996: the first six of the
-// axes).
-Parting over_faces_of_boxes(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
+// The same as the general search, in a quarter of the time (Gottschalk, Lin and Manocha 1996: the first six axes).
+SeparatingAxis best_face_axis_of_boxes(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   const Eigen::Matrix3d turn = a_from_b.linear(), size = turn.cwiseAbs();
   const Vector3d way = a_from_b.translation(), way_b = turn.transpose() * way;
   const Vector3d of_a = way.cwiseAbs() - a.half_m - size * b.half_m,
                  of_b = way_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
-  Parting best;
+  SeparatingAxis best;
   for (int i = 0; i < 3; ++i)
     if (of_a[i] > best.gap_m + kBetter_m) best = {(way[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
   for (int i = 0; i < 3; ++i)
@@ -102,17 +102,17 @@ void search_faces(Search& s) {
 
 }  // namespace
 
-Parting over_faces(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
-  if (a.core == Core::kBox && b.core == Core::kBox) return over_faces_of_boxes(a, b, a_from_b);
+SeparatingAxis best_face_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
+  if (a.core == Core::kBox && b.core == Core::kBox) return best_face_axis_of_boxes(a, b, a_from_b);
   Search s{a, b, a_from_b, {}};
   search_faces(s);
   return s.best;
 }
 
-Parting out_of_overlap(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
+SeparatingAxis overlap_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   Search s{a, b, a_from_b, {}};
-  // A triangle is part of a surface: the way out of a shallow overlap is over its face, or it would lead into the
-  // next triangle.
+  // A triangle is part of a surface. A shallow overlap is resolved along its face normal, since other directions lead
+  // into the neighbouring triangle.
   if (b.core == Core::kTriangle) {
     each_face(b, [&](const Vector3d& n) { s.offer_both(a_from_b.linear() * n); });
     if (s.best.gap_m > -kShallow_m) return s.best;
@@ -126,7 +126,7 @@ Parting out_of_overlap(const Convex& a, const Convex& b, const Eigen::Isometry3d
   });
   const bool round = a.core == Core::kCylinder || b.core == Core::kCylinder;
   if (round || s.best.along.isZero()) offer_shrunk(s);
-  if (s.best.along.isZero()) s.offer(between_middles(a_from_b));
+  if (s.best.along.isZero()) s.offer(between_centres(a_from_b));
   return s.best;
 }
 

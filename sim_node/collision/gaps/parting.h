@@ -1,20 +1,20 @@
-// Directions along which two convex cores part: those of their faces and edges, and where none of these is the
-// best, that of slightly smaller cores. Pure.
+// Separating axes of two convex cores: face normals, edge pairs, and the direction between slightly shrunk cores
+// where none of these is best. Pure.
 #pragma once
 
 #include "sim_node/collision/gaps/convex.h"
 
 namespace tactus::sim::gaps {
 
-struct Parting {
-  Eigen::Vector3d along{0, 0, 0};  // unit, from a to b, in the frame of a; zero: none found yet
-  double gap_m = -1e300;           // of the cores along it; never more than their distance
+struct SeparatingAxis {
+  Eigen::Vector3d along{0, 0, 0};  // unit, from a to b, in the frame of a; zero: none found
+  double gap_m = -1e300;           // of the cores along it; at most their distance
 };
 
-// The best of the directions of faces, that is of boxes, caps and triangles.
-Parting over_faces(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b);
-// For cores that overlap or touch: faces, pairs of edges, and the direction between cores that are shrunk until
-// they are apart. Never none.
-Parting out_of_overlap(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b);
+// Best separating axis among the face normals of boxes, caps and triangles.
+SeparatingAxis best_face_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b);
+// For cores that overlap or touch: the best of face normals, edge pairs and the direction between shrunk cores.
+// Always finds an axis.
+SeparatingAxis overlap_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b);
 
 }  // namespace tactus::sim::gaps

@@ -7,8 +7,8 @@
 namespace tactus::sim {
 namespace {
 
-// Much larger than kSamePlace_m, so that nearly every pair has to look into its own cell only; much smaller than
-// what a manifold spans, so that few share one.
+// Cell size of the hash grid. Much larger than kSamePlace_m, so that nearly every pair searches its own cell only.
+// Much smaller than a manifold, so that few pairs share a cell.
 constexpr double kCell_m = 128 * kSamePlace_m;
 
 std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -67,7 +67,7 @@ void Duplicates::remove_brute_force(std::vector<PointPair>& pairs) {
 }
 
 void Duplicates::remove_adjacent(const MeshCheck& a, const MeshCheck& b, std::vector<PointPair>& pairs) {
-  // The results of each triangle of a, as chains.
+  // Linked lists of the results of each triangle of a.
   const std::size_t triangles = a.first.size() - 1;
   if (table_.size() < triangles) table_.resize(triangles);
   std::fill_n(table_.begin(), triangles, 0u);

@@ -1,4 +1,4 @@
-// Which instructions the collision layers may use. All paths give the same results to the bit.
+// Instruction sets of the collision layers. All code paths give bit-identical results.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@ namespace tactus::sim {
 
 enum class Isa { kBaseline, kAvx2, kAvx512 };
 
-// The best that this processor has. Reads the processor once.
+// The best instruction set of this processor.
 Isa best_isa();
 
 // "auto", "baseline", "avx2", "avx512". Throws std::runtime_error with one sentence when the name is unknown or

@@ -38,7 +38,7 @@ Active active_vertices(const std::array<double, 3>& distances_m, const Reach& re
 }
 
 void itouch2005_contact(const Triangle& a, const Triangle& b, const Reach& reach, std::vector<PointPair>& out) {
-  // Without a plane there is nothing to measure from.
+  // A degenerate triangle has no plane.
   if (a.normal.isZero() || b.normal.isZero()) return;
   const double tol = reach.tolerance_m;
   const Heights over_b = layer2::heights(a, b), over_a = layer2::heights(b, a);
@@ -58,7 +58,7 @@ void itouch2005_contact(const Triangle& a, const Triangle& b, const Reach& reach
   } else {
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) layer2::between_edges(a, i, b, j, tol, add);
-    // Edges that cross meet in a point, edges alongside each other in two.
+    // Crossing edges meet in one point, parallel edges in two.
     if (out.size() > first) kind = kind_by_extent(out.data() + first, out.data() + out.size(), reach);
   }
   for (std::size_t i = first; i < out.size(); ++i) out[i].kind = kind;

@@ -6,8 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-// Rounding of a test in float per metre of the coordinates: 24 bits, about ten operations on a value, some
-// reserve.
+// Rounding of a test in float per metre of the coordinates: 24 bits, about ten operations on a value, and a reserve.
 constexpr double kRounding = 4e-6;
 
 struct Motion {  // from one tree's frame to the other's
@@ -68,7 +67,7 @@ void LeafPairs::descend(const ObbTree& a, const Eigen::Isometry3d& pose_a, const
       if constexpr (kNearFirst) query.grow = static_cast<float>(left / 2) + query.slack;
       continue;
     }
-    // The larger box is opened: the smaller one then tells most.
+    // Descends into the larger box, which makes the next test more selective.
     const bool open_a = child_b < 0 || (child_a >= 0 && na.size[s.a.lane] > nb.size[s.b.lane]);
     ++tests_;
     const WideNode& opened = open_a ? nodes_a[child_a] : nodes_b[child_b];

@@ -1,4 +1,4 @@
-// Layer 1 of I-Touch: which triangles of two meshes may be within the tolerance of each other.
+// Layer 1 of I-Touch: pairs of triangles of two meshes that may be within the tolerance.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,17 +14,17 @@ namespace tactus::sim {
 class LeafPairs {
  public:
   explicit LeafPairs(Isa isa = best_isa());
-  // (triangle of a, triangle of b) into `out`, cleared first: all that are within the tolerance and some that are
-  // not, since every box is enlarged by half the tolerance along its own axes. The order depends on the trees and
-  // poses alone. Realtime-safe once the lists have grown.
+  // Writes (triangle of a, triangle of b) into `out`, after clearing it: all pairs within the tolerance and some
+  // others, since every box is enlarged by half the tolerance along its own axes. The order depends only on the trees
+  // and poses. Real-time safe once the lists have grown.
   void find(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b, const Eigen::Isometry3d& pose_b,
             double tolerance_m, std::vector<std::pair<int, int>>& out);
-  // The same for a tolerance that shrinks: near triangles come first, and `leaf` gets each pair that may still be
-  // within and returns the tolerance from then on.
+  // The same with a decreasing tolerance. Near triangles come first. `leaf` receives each pair that may still be
+  // within the tolerance and returns the new tolerance.
   using Leaf = std::function<double(int, int)>;
   void narrow(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b, const Eigen::Isometry3d& pose_b,
               double tolerance_m, const Leaf& leaf);
-  // Box tests of the last search, eight boxes each.
+  // Number of box tests of the last search, eight boxes each.
   long long tests() const { return tests_; }
 
  private:

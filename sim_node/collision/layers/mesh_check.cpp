@@ -23,7 +23,7 @@ std::string fault_of(std::span<const Eigen::Vector3d> vertices, std::span<const 
     return "the edge from vertex " + std::to_string(e.first) + " to " + std::to_string(e.second);
   };
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (i > 0 && edges[i] == edges[i - 1]) return name(edges[i]) + " is run twice in the same direction";
+    if (i > 0 && edges[i] == edges[i - 1]) return name(edges[i]) + " occurs twice in the same direction";
     if (!std::binary_search(edges.begin(), edges.end(), std::pair(edges[i].second, edges[i].first)))
       return name(edges[i]) + " has a triangle on one side only";
   }

@@ -1,4 +1,4 @@
-// Is a mesh well constructed? What may rely on the neighbourhood of its triangles asks here first.
+// Checks whether a mesh is well-constructed, for algorithms that use the adjacency of its triangles.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 namespace tactus::sim {
 
 struct MeshCheck {
-  std::string fault;  // one sentence; empty: closed, every edge shared by two triangles that run it opposite ways
-  // Of each triangle, itself and those that share a vertex with it, ascending: neighbours[first[i]] up to first[i
-  // + 1]. Only of a well constructed mesh.
+  std::string fault;  // one sentence; empty: closed, and every edge is shared by two triangles in opposite directions
+  // For each triangle, itself and the triangles that share a vertex with it, ascending: neighbours[first[i]] up to
+  // first[i + 1]. Only for a well-constructed mesh.
   std::vector<int> first, neighbours;
 
   bool well_constructed() const { return fault.empty(); }
@@ -22,7 +22,7 @@ struct MeshCheck {
   }
 };
 
-// Vertices count by their index: a soup with doubled vertices is not well constructed.
+// Vertices are compared by index: a soup with duplicate vertices is not well-constructed.
 MeshCheck check_mesh(std::span<const Eigen::Vector3d> vertices, std::span<const int> indices);
 
 }  // namespace tactus::sim

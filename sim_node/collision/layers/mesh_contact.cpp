@@ -35,7 +35,7 @@ void MeshContact::accept(const ContactMesh& a, const ContactMesh& b) const {
   for (const ContactMesh* m : {&a, &b})
     if (!m->check.well_constructed())
       throw std::runtime_error(
-          "sim_node: the duplicate remover by adjacency needs closed meshes with right neighbours, and in one " +
+          "sim_node: the duplicate remover by adjacency needs closed meshes with correct adjacency, but in one mesh " +
           m->check.fault + "; choose the hashed remover or repair the mesh");
 }
 
@@ -45,7 +45,7 @@ void MeshContact::query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, c
   out.pierced = false;
   layer1_.find(a.tree, pose_a, b.tree, pose_b, reach.tolerance_m, leaves_);
   out.leaf_pairs = leaves_.size();
-  // In the frame of b: one of each two triangles need not be moved.
+  // In the frame of b, so that only the triangles of a need a transform.
   const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
   Triangle ta;
   int last = -1;
@@ -91,7 +91,7 @@ bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a,
     }
     return least;
   };
-  // By reference: a copy in a std::function would be allocated.
+  // Passed by reference: a copy into a std::function would allocate.
   layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, std::ref(leaf));
   if (found) to_world(pose_b, out);
   return found;

@@ -15,10 +15,10 @@ namespace tactus::sim {
 
 enum class ContactMode { kComplete, kItouch2005 };
 
-// A mesh, ready for queries.
+// A mesh, prepared for queries.
 struct ContactMesh {
   ContactMesh() = default;
-  // Throws std::runtime_error with one sentence when an index or a vertex makes no sense.
+  // Throws std::runtime_error with one sentence when an index or a vertex is invalid.
   ContactMesh(std::span<const Eigen::Vector3d> vertices, std::span<const int> indices);
   ObbTree tree;
   MeshCheck check;
@@ -31,27 +31,27 @@ struct MeshContactOptions {
 };
 
 struct MeshContactResult {
-  std::vector<PointPair> pairs;  // world; gaps are >= 0; of triangles, not of the meshes as a whole
-  bool pierced = false;          // an edge of one goes through a face of the other: they overlap there
+  std::vector<PointPair> pairs;  // world frame; gaps are >= 0; of triangles, not of the meshes as a whole
+  bool pierced = false;          // an edge of one mesh passes through a face of the other: the meshes overlap there
   std::size_t leaf_pairs = 0, raw_pairs = 0;  // after layer 1, after layer 2
 };
 
 class MeshContact {
  public:
   explicit MeshContact(const MeshContactOptions& options = {});
-  // Throws std::runtime_error with one sentence when these meshes cannot be queried as the options want it: the
-  // adjacency remover needs well constructed ones. Ask before anything starts.
+  // Throws std::runtime_error with one sentence when the options do not support these meshes: the adjacency remover
+  // needs well-constructed ones. Call it at start-up.
   void accept(const ContactMesh& a, const ContactMesh& b) const;
-  // All point pairs within the tolerance, into `out`, cleared first. Deterministic, and the same to the bit with
-  // every instruction set. Realtime-safe once the lists have grown. Not for two threads at once.
+  // Writes all point pairs within the tolerance into `out`, after clearing it. Deterministic, and bit-identical with
+  // every instruction set. Real-time safe once the lists have grown. Not thread-safe.
   void query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
              const Eigen::Isometry3d& pose_b, const Reach& reach, MeshContactResult& out);
-  // Least distance between the meshes, m; 0 where they overlap; `beyond_m` when it is more than that: the smaller
-  // that is, the faster.
+  // Minimum distance between the meshes, m; 0 in overlap; `beyond_m` when the distance is larger. A smaller
+  // `beyond_m` is faster.
   double distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
                     const Eigen::Isometry3d& pose_b, double beyond_m);
-  // The same with where it is, world; false when there is nothing within `beyond_m`. Costs as much as a few
-  // contacts do, whatever `beyond_m` is, while a query() with a wide tolerance lists all that is within.
+  // The same with the location, world frame. Returns false when the distance is larger than `beyond_m`. Costs as much
+  // as a few contacts for any `beyond_m`, while a query() with a wide tolerance lists all pairs.
   bool nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
                const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out);
 

@@ -14,10 +14,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// A split that leaves less than this share on one side is replaced by halves, so that no soup makes a deep tree.
+// A split with less than this share on one side is replaced by a split in halves, so that no soup makes a deep tree.
 constexpr int kLeastShare = 8;
-// Below this sine of its smallest height over its longest edge a triangle has no direction: ten times what
-// rounding of the vertices to double leaves.
+// Ratio of the smallest height to the longest edge below which a triangle has no normal: ten times the rounding of
+// the vertices to double.
 constexpr double kFlat = 1e-14;
 
 struct Box {
@@ -30,7 +30,7 @@ struct Box {
 Triangle triangle_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   Triangle t{{a, b, c}, Vector3d::Zero(), {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}};
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  // From the corner between the two shorter edges the cross product loses least.
+  // The cross product at the corner between the two shorter edges is the most accurate.
   const Vector3d n = longest == (b - a).squaredNorm()   ? (a - c).cross(b - c)
                      : longest == (c - b).squaredNorm() ? (b - a).cross(c - a)
                                                         : (c - b).cross(a - b);
@@ -40,16 +40,16 @@ Triangle triangle_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return t;
 }
 
-// Covariance of a surface of triangles, each point of it counted alike (Gottschalk 1996, equation 2).
+// Covariance of the surface of the triangles, with uniform weight per area (Gottschalk 1996, equation 2).
 Matrix3d covariance(const std::vector<Triangle>& triangles, std::span<const int> part) {
   Matrix3d sum = Matrix3d::Zero();
   Vector3d mean = Vector3d::Zero();
   double area = 0;
-  const Vector3d near = triangles[static_cast<std::size_t>(part[0])].v[0];  // far from zero, differences drown
+  const Vector3d near = triangles[static_cast<std::size_t>(part[0])].v[0];  // relative coordinates, to avoid cancellation far from the origin
   for (const int i : part) {
     const auto& at = triangles[static_cast<std::size_t>(i)].v;
     const Vector3d v[3] = {at[0] - near, at[1] - near, at[2] - near};
-    // Without area it still counts a little: a soup of needles has a direction too.
+    // Degenerate triangles get a small weight, so that a soup of needles also has a direction.
     const Vector3d e = v[1] - v[0], f = v[2] - v[0];
     const double w = e.cross(f).norm() + 1e-12 * (e.squaredNorm() + f.squaredNorm());
     const Vector3d m = (v[0] + v[1] + v[2]) / 3;
@@ -92,7 +92,7 @@ class Builder {
   std::vector<Box> boxes;
 
  private:
-  // Axes are rounded first, so that the extents belong to the axes that the test will use.
+  // Rounds the axes first, so that the extents belong to the axes of the test.
   void fit(Box& box, std::span<const int> part) {
     box.axes = axes_of(triangles_, part).cast<float>().cast<double>();
     const Vector3d near = triangles_[static_cast<std::size_t>(part[0])].v[0];
@@ -142,7 +142,7 @@ class Builder {
   std::vector<int> order_;
 };
 
-// Gathers the binary tree: of a node's boxes the largest is opened until there are eight.
+// Collapses the binary tree: opens the largest of a node's boxes until there are eight.
 class Gatherer {
  public:
   Gatherer(const std::vector<Box>& boxes, const Vector3d& origin, std::vector<WideNode>& nodes)
@@ -198,7 +198,7 @@ class Gatherer {
 ObbTree::ObbTree(std::span<const Vector3d> vertices, std::span<const int> indices) {
   if (indices.size() % 3 != 0)
     throw std::runtime_error("sim_node: a mesh has " + std::to_string(indices.size()) +
-                             " indices, which are no triangles; give three for each");
+                             " indices, not a multiple of three; give three per triangle");
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     const Vector3d* v[3];
     for (std::size_t k = 0; k < 3; ++k) {

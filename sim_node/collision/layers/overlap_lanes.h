@@ -1,6 +1,6 @@
-// The test of one box against eight, for whatever instruction set the including file is compiled for. GCC's
-// vectors: where the machine's are narrower they are split, with the same results to the bit, since nothing is
-// contracted.
+// Overlap test of one box against eight, for the instruction set that the including file is compiled for. Uses GCC's
+// vector extensions. On machines with narrower vectors they are split, with bit-identical results, since no
+// operations are fused.
 #pragma once
 
 #if defined(__SSE2__)
@@ -12,7 +12,7 @@
 namespace tactus::sim {
 namespace {
 
-// As many lanes at once as a register holds.
+// Number of lanes that a register holds.
 #if defined(__AVX__)
 constexpr int kStep = 8;
 #else
@@ -77,7 +77,7 @@ inline __attribute__((always_inline)) unsigned overlap_from(const WideNode& n, c
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      // These axes are shorter than one, so a bound in metres holds for them too.
+      // These axes are shorter than one, so a bound in metres is also valid for them.
       x = t[i2] * c[i1][j] - t[i1] * c[i2][j];
       magnitude(x, at);
       apart |=

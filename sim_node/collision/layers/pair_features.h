@@ -1,5 +1,5 @@
-// Which features of two triangles may face each other within a tolerance, and what is quickly told of them:
-// vertices over faces, and edges that go through faces.
+// Features of two triangles that may face each other within a tolerance, with fast rejection tests: vertices over
+// faces, and edges that pass through faces.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace tactus::sim::layer2 {
 
-// Of each vertex of one triangle [i] inside each edge [j] of the other, in the plane of that; zero where it has
-// none.
+// Signed distance of each vertex of one triangle [i] from each edge [j] of the other, in the plane of the other,
+// positive inside; zero for degenerate triangles.
 using Sides = std::array<Heights, 3>;
 
 inline Sides sides(const Triangle& of, const Triangle& over) {
@@ -19,21 +19,20 @@ inline Sides sides(const Triangle& of, const Triangle& over) {
   return s;
 }
 
-// A triangle whose vertices are all on one side of a plane and further away than the tolerance touches nothing in
-// it.
+// Rejects a triangle whose vertices are all on one side of a plane and further away than the tolerance.
 inline bool out_of_reach(const Heights& h, double tolerance_m) {
   const auto [low, high] = std::minmax({h[0], h[1], h[2]});
   return low > tolerance_m || high < -tolerance_m;
 }
 
-// The same for the planes that stand on the other's edges, with all of that on their inner side.
+// The same for the planes through the other's edges, with the other triangle on their inner side.
 inline bool out_of_reach(const Sides& s, double tolerance_m) {
   for (std::size_t j = 0; j < 3; ++j)
     if (std::max({s[0][j], s[1][j], s[2][j]}) < -tolerance_m) return true;
   return false;
 }
 
-// Both ends on one side and further away than the tolerance.
+// Both ends are on one side and further away than the tolerance.
 inline bool beyond(double from, double to, double tolerance_m) {
   return std::min(from, to) > tolerance_m || std::max(from, to) < -tolerance_m;
 }
@@ -48,8 +47,8 @@ void vertices_over(const Triangle& of, const Heights& h, const Sides& s, const T
       add(over_face(of.v[i], face, h[i], of_a));
 }
 
-// Calls add(pair) for the vertices of each over the face of the other, and for edges that face each other. over_b:
-// of a's vertices over b; in_b: within b's edges.
+// Calls add(pair) for the vertices of each triangle over the face of the other, and for edges that face each other.
+// over_b: heights of a's vertices over b. in_b: their distances from b's edges.
 template <class Add>
 void vertices_and_edges(const Triangle& a, const Heights& over_b, const Sides& in_b, const Triangle& b,
                         const Heights& over_a, const Sides& in_a, double tolerance_m, Add&& add) {
@@ -68,7 +67,7 @@ void vertices_and_edges(const Triangle& a, const Heights& over_b, const Sides& i
   }
 }
 
-// Calls add(pair) for the edges of `of` that pass from one side of the face to the other through it.
+// Calls add(pair) for the edges of `of` that pass through the face.
 template <class Add>
 void piercings(const Triangle& of, const Heights& h, const Triangle& face, bool of_a, Add&& add) {
   if (face.normal.isZero()) return;

@@ -16,7 +16,7 @@ constexpr double kFlat_m = 1e-6;
 
 Vector3d middle(const PointPair& p) { return (p.on_a_m + p.on_b_m) / 2; }
 
-// By depth, then by place, so that the order in which the pairs were found does not matter.
+// Orders by depth, then by position, so that the order of the input does not matter.
 bool before(const PointPair* x, const PointPair* y) {
   if (x->gap_m != y->gap_m) return x->gap_m < y->gap_m;
   for (int k = 0; k < 3; ++k)
@@ -30,7 +30,7 @@ double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a - o).x() * (b - o).y() - (a - o).y() * (b - o).x();
 }
 
-// Andrew 1979: monotone chain. Returns the area.
+// Convex hull by the monotone chain algorithm (Andrew 1979). Returns the area.
 double hull_of(std::vector<Vector2d>& points, std::vector<Vector2d>& hull) {
   hull.clear();
   if (points.size() < 3) return 0;
@@ -48,7 +48,7 @@ double hull_of(std::vector<Vector2d>& points, std::vector<Vector2d>& hull) {
   return area;
 }
 
-// Extent along and across the direction in which it is longest.
+// Extent along and across the longest direction.
 std::pair<double, double> extent(const std::vector<Vector2d>& points) {
   double length = 0, low = 0, high = 0;
   Vector2d from = points.front(), to = from;
@@ -68,7 +68,8 @@ std::pair<double, double> extent(const std::vector<Vector2d>& points) {
 
 }  // namespace
 
-// The pairs of the patch that begins with pair `first`, into patch_ and, seen along its normal, into flat_.
+// Collects the pairs of the patch that begins with pair `first` in patch_, and their projections along its normal in
+// flat_.
 void Patches::gather(std::size_t first, const ContactPatch& patch, double alike) {
   patch_.clear();
   flat_.clear();
@@ -85,9 +86,9 @@ void Patches::gather(std::size_t first, const ContactPatch& patch, double alike)
   }
 }
 
-// Around a patch, pairs lie askew: from a point of one surface to a place of the other that is not opposite. Where
-// the surfaces are no nearer there along the patch's normal than at its deepest, the patch speaks for them.
-void Patches::drop_askew(std::size_t first, const ContactPatch& patch, double tolerance_m) {
+// Around a patch there are oblique pairs, which connect a point to a position that is not opposite. They are dropped
+// where their gap along the patch's normal is not smaller than at the deepest pair.
+void Patches::drop_oblique(std::size_t first, const ContactPatch& patch, double tolerance_m) {
   const PointPair& deepest = *order_[first];
   const Vector3d x = patch.normal.unitOrthogonal(), y = patch.normal.cross(x);
   for (std::size_t i = first; i < order_.size(); ++i) {
@@ -97,7 +98,7 @@ void Patches::drop_askew(std::size_t first, const ContactPatch& patch, double to
   }
 }
 
-// The deepest, the furthest from it, and the furthest on either side of the line between these.
+// Selects the deepest pair, the furthest from it, and the furthest on either side of the line between them.
 void Patches::choose(double tolerance_m, ContactPatch& patch) const {
   const auto [length, width] = extent(flat_);
   patch.kind = length < tolerance_m  ? ContactKind::kPoint
@@ -111,7 +112,7 @@ void Patches::choose(double tolerance_m, ContactPatch& patch) const {
       if (score(i) > most) most = score(i), at = i;
     return std::pair(at, most);
   };
-  // Of several that are equally deep, as when faces lie on each other, a corner.
+  // Among equally deep pairs, as of parallel faces, a corner is selected.
   Vector2d centre(0, 0);
   for (const Vector2d& p : flat_) centre += p / static_cast<double>(flat_.size());
   const double deep = patch_.front()->gap_m + kFlat_m;
@@ -143,7 +144,7 @@ void Patches::make(std::span<const PointPair> pairs, double tolerance_m, std::ve
     ContactPatch& patch = out.emplace_back();
     patch.normal = order_[i]->normal;
     gather(i, patch, std::cos(angle_rad));
-    drop_askew(i, patch, tolerance_m);
+    drop_oblique(i, patch, tolerance_m);
     choose(tolerance_m, patch);
     patch.area_m2 = hull_of(flat_, hull_);
   }

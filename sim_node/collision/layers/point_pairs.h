@@ -1,4 +1,4 @@
-// How both modes of layer 2 make a point pair of a vertex over a face and of two edges.
+// Layer 2, both modes: point pairs of a vertex over a face and of two edges.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace tactus::sim::layer2 {
 
-// Nearer than this, the difference of two points has no direction: a million times the rounding of a metre.
+// Below this distance the difference of two points has no direction, m: a million times the rounding of a metre.
 inline constexpr double kTouching_m = 1e-10;
 
 using Heights = std::array<double, 3>;
 
-// Of each vertex over the plane of the other; zero where that has none.
+// Heights of the vertices of `of` over the plane of `over`; zero for a degenerate triangle.
 inline Heights heights(const Triangle& of, const Triangle& over) {
   Heights h;
   for (std::size_t i = 0; i < 3; ++i) h[i] = (of.v[i] - over.v[0]).dot(over.normal);
@@ -26,19 +26,19 @@ inline bool in_prism(const Eigen::Vector3d& p, const Triangle& t) {
          (p - t.v[2]).dot(t.inward[2]) >= 0;
 }
 
-// A vertex at `height` over a face; the vertex is of a, or of b.
+// A vertex at `height` over a face. of_a: the vertex belongs to a, else to b.
 inline PointPair over_face(const Eigen::Vector3d& vertex, const Triangle& face, double height, bool of_a) {
   PointPair p;
   const Eigen::Vector3d foot = vertex - height * face.normal;
   p.on_a_m = of_a ? vertex : foot;
   p.on_b_m = of_a ? foot : vertex;
-  // In the face itself the vertex is held to be outside.
+  // A vertex in the face itself counts as outside.
   p.normal = of_a == (height >= 0) ? Eigen::Vector3d(-face.normal) : face.normal;
   p.gap_m = std::abs(height);
   return p;
 }
 
-// Where two surfaces meet with nothing between them, the direction in which they face each other, from a to b.
+// Contact normal, from a to b, where two surfaces touch without a gap.
 inline Eigen::Vector3d facing(const Triangle& a, const Triangle& b, const Eigen::Vector3d& across) {
   const Eigen::Vector3d way = a.normal - b.normal;
   const Eigen::Vector3d n = across.norm() > kTouching_m ? across.normalized()

@@ -1,4 +1,4 @@
-// Where two segments are nearest to each other.
+// Nearest points of two line segments.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,15 +6,15 @@
 
 namespace tactus::sim {
 
-// Squared sine of the angle below which two segments count as parallel: what rounding leaves of parallel edges
-// after a turn is 1e-32, and at 1e-20 the distance differs by 1e-10 of a length at most.
+// Squared sine of the angle below which two segments count as parallel. The rounding of parallel edges after a
+// rotation is 1e-32, and at 1e-20 the distance changes by at most 1e-10 of a length.
 inline constexpr double kParallel = 1e-20;
-// Below this one (1 mrad) the ends of their overlap delimit a contact better than the nearest points alone.
+// Squared sine (1 mrad) below which the ends of the overlap delimit a contact better than the nearest points alone.
 inline constexpr double kNearlyParallel = 1e-6;
 
-// Calls emit(point on p q, point on u v) for the nearest points, when their lines pass within the tolerance. Of
-// segments that run alongside each other also, or only, for both ends of the stretch where they do. At most three
-// calls; what is emitted may be further apart than the tolerance.
+// Calls emit(point on p q, point on u v) for the nearest points, when the lines pass within the tolerance. For nearly
+// parallel segments it also emits both ends of their overlap; for parallel segments only these. Emits at most three
+// times. Emitted points may be further apart than the tolerance.
 template <class Emit>
 void nearest_on_segments(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& u,
                          const Eigen::Vector3d& v, double tolerance_m, Emit&& emit) {
@@ -26,8 +26,8 @@ void nearest_on_segments(const Eigen::Vector3d& p, const Eigen::Vector3d& q, con
   if (nn > kParallel * dd * ee) {
     const double apart = r.dot(n);
     if (apart * apart > tolerance_m * tolerance_m * nn) return;
-    // Of the infinite lines by determinants, which lose less than the usual dot products; then clamped one after
-    // the other (Ericson 2005, section 5.1.9).
+    // Determinants for the infinite lines lose less precision than the usual dot products. Then the parameters are
+    // clamped one after the other (Ericson 2005, section 5.1.9).
     double s = std::clamp(r.cross(e).dot(n) / nn, 0.0, 1.0);
     const double t = e.dot(p + s * d - u) / ee;
     Vector3d on_uv = u + t * e;
@@ -42,7 +42,7 @@ void nearest_on_segments(const Eigen::Vector3d& p, const Eigen::Vector3d& q, con
   if (dd > 0) {
     low = d.dot(u - p) / dd, high = d.dot(v - p) / dd;
     if (low > high) std::swap(low, high);
-    if (low >= 1 || high <= 0)  // beside each other: the two nearest ends
+    if (low >= 1 || high <= 0)  // no overlap: the two nearest ends
       low = high = low >= 1 ? 1 : 0;
     else
       low = std::max(low, 0.0), high = std::min(high, 1.0);

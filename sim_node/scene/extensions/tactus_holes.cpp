@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kMaxHoles = 16;  // of a game_state_t
 constexpr std::size_t kLongestName = 64;
 
-// The body of that name, or the only link of the model of that name; -1: there is none.
+// The body of that name, or the only link of the model of that name; -1: not found.
 int body_named(const LoadContext& context, const std::string& name) {
   if (const auto exact = context.body_of.find(name); exact != context.body_of.end()) return exact->second;
   int found = -1, links = 0;

@@ -5,7 +5,7 @@
 
 namespace tactus::sim {
 
-// Call when the bodies are known.
+// Call after the bodies have been read.
 void read_holes(LoadContext& context, const sdf::ElementPtr& world);
 
 }  // namespace tactus::sim

@@ -4,6 +4,11 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/shader_t.hpp>
+#include <tactus/uniform_t.hpp>
 
 #include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/materials/pictures.h"
@@ -15,12 +20,12 @@
 namespace tactus::sim {
 namespace {
 
-// What comes with visual_node (visual_node/README.md): for surfaces, and for passes.
+// Built-in shaders of visual_node (visual_node/README.md): for surfaces, and for passes.
 const std::vector<std::string> kSurfaceShaders{"gouraud", "phong", "normal_mapped", "reflecting", "textured"};
 const std::vector<std::string> kPassShaders{"greyscale", "blur", "edges"};
 
-// Design: a thousand lines; more uniforms than shaders that people write have; as many passes as 60 Hz can hope
-// for.
+// Design: a shader of a thousand lines; more uniforms than usual shaders have; the number of passes that 60 Hz
+// allows.
 constexpr std::uintmax_t kMaxShaderBytes = 64 << 10;
 constexpr std::size_t kMaxUniforms = 32, kMaxShaders = 64, kMaxPasses = 16;
 constexpr std::size_t kMaxName = 64;  // as in uniform_t.lcm
@@ -38,20 +43,20 @@ bool is_identifier(const std::string& name) {
 }
 
 void check_shader(const LoadContext& context, const sdf::Element& element, const std::string& name,
-                  const std::vector<std::string>& ours) {
+                  const std::vector<std::string>& known) {
   const auto& own = context.world.shaders;
   if (!is_identifier(name))
     context.refuse(element,
                    "names shader \"" + name + "\": it must be letters, digits and _, 64 at most, no digit first");
-  if (contains(ours, name) ||
+  if (contains(known, name) ||
       std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; }))
     return;
   std::string names;
-  for (const std::string& each : ours) names += (names.empty() ? "" : ", ") + each;
+  for (const std::string& each : known) names += (names.empty() ? "" : ", ") + each;
   for (const shader_t& each : own) names += ", " + each.name;
   context.warn(element, "names shader \"" + name +
                             "\", which is neither the scene's nor visual_node's: there are " + names +
-                            "; a renderer of one's own may have it");
+                            "; another renderer may have it");
 }
 
 // "scale 2; tint 1 0.5 0"
@@ -67,7 +72,7 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       context.refuse(element,
                      "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
     };
-    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is no name of a uniform");
+    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is not a valid uniform name");
     for (std::string word; words >> word; ++uniform.count) {
       if (uniform.count == 4) refuse(uniform.name + " has more than 4 numbers");
       try {
@@ -75,20 +80,20 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       } catch (const std::invalid_argument& e) {
         refuse(uniform.name + ": " + e.what());
       }
-      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " is beyond 1e6");
+      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " exceeds 1e6");
     }
     if (uniform.count == 0) refuse(uniform.name + " has no number");
     for (const uniform_t& other : uniforms)
-      if (other.name == uniform.name) refuse(uniform.name + " stands there twice");
+      if (other.name == uniform.name) refuse(uniform.name + " is given twice");
     if (uniforms.size() == kMaxUniforms) refuse("more than " + std::to_string(kMaxUniforms) + " are given");
     uniforms.push_back(uniform);
   }
   return uniforms;
 }
 
-// All but the name.
-LookWords read_words(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
-  LookWords words;
+// Reads all attributes except the name.
+LookAttributes read_look_attributes(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
+  LookAttributes words;
   words.shader = attributes.text("shader");
   if (words.shader && !words.shader->empty()) check_shader(context, element, *words.shader, kSurfaceShaders);
   const auto picture = [&](const char* what, PictureUse use) -> std::optional<std::int64_t> {
@@ -104,7 +109,7 @@ LookWords read_words(LoadContext& context, const sdf::Element& element, Attribut
   return words;
 }
 
-const LookWords& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+const LookAttributes& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
   const auto known = context.look_of.find(name);
   if (known != context.look_of.end()) return *known->second;
   std::string names;
@@ -118,9 +123,9 @@ void read_look(LoadContext& context, const sdf::Element& element) {
   const std::string name = attributes.required_text("name");
   const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
   if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
-    context.refuse(element, "has a name that is longer than 64 letters, or no printable ASCII");
+    context.refuse(element, "has a name that is longer than 64 characters or not printable ASCII");
   const auto base = attributes.text("base");
-  auto words = std::make_shared<LookWords>(read_words(context, element, attributes));
+  auto words = std::make_shared<LookAttributes>(read_look_attributes(context, element, attributes));
   attributes.done();
   if (base) words->add(known_look(context, element, *base));
   words->name = name;
@@ -136,9 +141,9 @@ std::int64_t read_text(LoadContext& context, const sdf::Element& element, const 
     if (text.bytes.empty()) throw std::runtime_error("it is empty");
     int line = 1;
     for (const std::uint8_t c : text.bytes) {
-      // The characters of GLSL 3.30, 3.1, and all that is printable in ASCII for comments.
+      // The characters of GLSL 3.30, 3.1, and printable ASCII for comments.
       if ((c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c > 0x7e)
-        throw std::runtime_error("line " + std::to_string(line) + " holds a character that is no printable ASCII");
+        throw std::runtime_error("line " + std::to_string(line) + " holds a character that is not printable ASCII");
       line += c == '\n';
     }
     const std::int64_t hash = sync::fnv1a_64(text.bytes.data(), text.bytes.size());
@@ -191,13 +196,13 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
   const std::string uri = attributes.required_text("picture");
   attributes.done();
   if (context.world.environment_asset != 0)
-    context.refuse(element, "stands there twice: one picture lies around a scene");
+    context.refuse(element, "appears twice: a scene has one environment");
   context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
 }
 
 }  // namespace
 
-void LookWords::add(const LookWords& others) {
+void LookAttributes::add(const LookAttributes& others) {
   if (name.empty()) name = others.name;
   if (!shader) shader = others.shader;
   if (!colour_map) colour_map = others.colour_map;
@@ -211,29 +216,29 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
     for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
       if (element->GetName() == name) read(context, *element);
   };
-  each("tactus:shader", read_shader);  // before those who name them
+  each("tactus:shader", read_shader);  // before the elements that name shaders
   each("tactus:look", read_look);
   each("tactus:pass", read_pass);
   each("tactus:environment", read_environment);
 }
 
-LookWords read_look_words(LoadContext& context, const sdf::Element& element) {
+LookAttributes read_look(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const auto name = attributes.text("name");
-  LookWords words = read_words(context, element, attributes);
+  LookAttributes words = read_look_attributes(context, element, attributes);
   attributes.done();
   if (name) words.add(known_look(context, element, *name));
   return words;
 }
 
-int look_index(WorldDef& world, const LookWords& words) {
+int look_index(WorldDef& world, const LookAttributes& words) {
   if (words.empty()) return -1;
   look_t look{};
   look.colour_map = words.colour_map.value_or(0), look.normal_map = words.normal_map.value_or(0);
   look.reflectance = static_cast<float>(words.reflectance.value_or(0));
   look.uniforms = words.uniforms.value_or(std::vector<uniform_t>{});
   look.uniform_count = static_cast<std::int32_t>(look.uniforms.size());
-  // Nobody named a shader: the one that shows all that was said.
+  // Without a shader name, use the one that shows all given attributes.
   look.shader = words.shader.value_or(look.reflectance > 0 ? "reflecting"
                                       : look.normal_map    ? "normal_mapped"
                                       : look.colour_map    ? "textured"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <tactus/map_def_t.hpp>
 
 #include "sim_node/all_settings.gen.h"
 #include "sim_node/scene/sdf/attributes.h"
@@ -25,7 +26,7 @@ Name split(const LoadContext& context, const sdf::Element& element, const std::s
   return {text.substr(0, dot), text.substr(dot + 1)};
 }
 
-// Processes of one folder have its settings: "haptic_node_lamp" those of haptic_node.
+// A process has the settings of its node folder: "haptic_node_lamp" those of haptic_node.
 const sync::SettingRow& row_of(const LoadContext& context, const sdf::Element& element, const Name& to) {
   std::string numbers;
   bool known = false;
@@ -40,7 +41,7 @@ const sync::SettingRow& row_of(const LoadContext& context, const sdf::Element& e
   }
   const std::string what = "drives \"" + to.node + "." + to.rest + "\", ";
   if (!known) context.refuse(element, what + "and there is no such node");
-  context.refuse(element, what + "which is no number that can be changed while " + to.node + " runs" +
+  context.refuse(element, what + "which is not a number that can be changed while " + to.node + " runs" +
                               (numbers.empty() ? "" : "; such are " + numbers));
 }
 
@@ -55,7 +56,7 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
   const std::string unit = std::string_view(row.unit) == "count" ? "1" : row.unit;
   const double initial = sync::parse_quantity(row.initial, unit);
   const std::string_view safety = row.safety;
-  // A limit that protects a person is not driven beyond its default.
+  // A map must not drive a safety limit beyond its default.
   const double low = safety == "min" ? initial : row.min, high = safety == "max" ? initial : row.max;
   map.offset = attributes.quantity("offset", unit, -kMax, kMax).value_or(0);
   map.low = attributes.quantity("low", unit, low, high).value_or(low);

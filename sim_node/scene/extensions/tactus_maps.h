@@ -5,8 +5,8 @@
 
 namespace tactus::sim {
 
-// Refuses a setting that its node does not have, that is no number or that cannot be changed while the node runs. Of a
-// variable only the form is checked: which there are is known when its process runs.
+// Rejects a setting that the node does not have, that is not a number or that cannot be changed at run time. Checks
+// only the form of the variable, because its process defines the variables at run time.
 void read_maps(LoadContext& context, const sdf::ElementPtr& world);
 
 }  // namespace tactus::sim

@@ -1,6 +1,8 @@
 #include "sim_node/scene/extensions/tactus_materials.h"
 
 #include <algorithm>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/height_map.h"
@@ -14,7 +16,7 @@
 namespace tactus::sim {
 namespace {
 
-// Hash of the height map in a file, which becomes one of the world's images unless its bytes are among them already.
+// Adds the height map in a file to the images of the world unless it is among them; returns its hash.
 std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const std::string& what, const std::string& uri) {
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
@@ -26,11 +28,11 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
   }
 }
 
-// A picture, the extent of one repetition of it and its height: all three or none.
+// Height map: picture, size of one repetition, and height; all three or none.
 void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("bump")) {
-    for (const char* lonely : {"bump_size", "bump_height"})
-      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without bump: name the picture too");
+    for (const char* key : {"bump_size", "bump_height"})
+      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without bump: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("bump");
@@ -40,11 +42,11 @@ void read_bump(LoadContext& context, const sdf::Element& element, Attributes& at
   material.bump_asset = image_hash(context, element, "bump", uri);
 }
 
-// A picture, the extent of one repetition of it and the factors of black and white: all three or none.
+// Friction map: picture, size of one repetition, and the factors of black and white; all three or none.
 void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("friction_map")) {
-    for (const char* lonely : {"friction_size", "friction_factors"})
-      if (attributes.text(lonely)) context.refuse(element, std::string("has ") + lonely + " without friction_map: name the picture too");
+    for (const char* key : {"friction_size", "friction_factors"})
+      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without friction_map: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("friction_map");
@@ -55,7 +57,7 @@ void read_friction_map(LoadContext& context, const sdf::Element& element, Attrib
   material.friction_asset = image_hash(context, element, "friction_map", uri);
 }
 
-// The table of the modes that an object of this material was measured to have.
+// Table of the measured modes of an object of this material.
 void read_modes(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("modes")) return;
   const std::string uri = attributes.required_text("modes");

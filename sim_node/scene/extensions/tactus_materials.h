@@ -1,4 +1,5 @@
-// The materials of a scene: the built-in table, what <tactus:material> adds to it or changes, and who wears which.
+// Materials of a scene: the built-in table, additions and changes by <tactus:material>, and their assignment to
+// surfaces.
 #pragma once
 
 #include "sim_node/scene/sdf/load_context.h"
@@ -6,11 +7,11 @@
 
 namespace tactus::sim {
 
-// Fills world.materials. Refuses a new material that lacks a figure and names no base to take it from.
+// Fills world.materials. Rejects a new material that lacks a value and names no base.
 void read_materials(LoadContext& context, const sdf::ElementPtr& world);
 
-// Index of the material that a mesh file says it is made of: one that there is, by its name as `base` alone, or that one with
-// what is said besides.
+// Index of the material that a mesh file names: an existing one if only `base` is given, else a new one with the
+// given changes.
 int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file);
 
 // Index of the material that <tactus:surface material="..."/> in `element` names, else `inherited`.

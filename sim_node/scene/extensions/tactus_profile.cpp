@@ -23,7 +23,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// The start of the tag as a profile has it.
+// The start tag in the syntax of a profile.
 std::string tag(const std::string& name, const sdf::Element& element) {
   std::string text = "<" + name;
   for (const auto& attribute : element.GetAttributes())
@@ -32,45 +32,44 @@ std::string tag(const std::string& name, const sdf::Element& element) {
   return text;
 }
 
-// A hint for who named a model and left its link away; "": there is no such model.
-std::string body_meant(const WorldDef& world, const std::string& name) {
+// A hint when a model is named without its link; "": no such model.
+std::string suggest_body(const WorldDef& world, const std::string& name) {
   for (const BodyDef& body : world.bodies)
     if (body.name.starts_with(name + "::")) return "; is \"" + body.name + "\" meant?";
   return "";
 }
 
-// What a profile names must be in the scene that brings it. file: where its rules stand; "": in the element
-// itself.
+// Checks that everything a profile names is in this scene. file: file of its rules; "": in the element itself.
 void check_names(const LoadContext& context, const sdf::Element& element, const sync::Profile& profile,
                  const std::string& file) {
   const WorldDef& world = context.world;
   for (const sync::Rule& rule : profile.rules) {
     const std::string at = file.empty() ? "" : file + ":" + std::to_string(rule.line) + ": ";
     if (!sync::is_known_sense(rule.modality))
-      context.warn(element, at + "nobody here is called \"" + rule.modality + "\"; a sense of one's own may be");
+      context.warn(element, at + "there is no modality \"" + rule.modality + "\"; another program may have it");
     if (!rule.material.empty() && !context.material_of.contains(rule.material))
-      context.refuse(element, "does not hold: " + at + "material=\"" + rule.material +
+      context.refuse(element, "is invalid: " + at + "material=\"" + rule.material +
                                   "\": there is no such material in this scene");
     for (const std::string& name : {rule.body_a, rule.body_b})
       if (!name.empty() && std::none_of(world.bodies.begin(), world.bodies.end(),
                                         [&](const BodyDef& body) { return body.name == name; }))
-        context.refuse(element, "does not hold: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
+        context.refuse(element, "is invalid: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
                                     "\": there is no body \"" + name + "\" in this scene" +
-                                    body_meant(world, name));
+                                    suggest_body(world, name));
   }
 }
 
 void refuse_text(const LoadContext& context, const sdf::Element& element) {
   if (element.GetValue() && !element.GetValue()->GetAsString().empty())
-    context.refuse(element, "has text in it, which means nothing here: leave it away");
+    context.refuse(element, "has text in it, which has no meaning here: remove it");
 }
 
-sync::Profile checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
+sync::Profile parse_checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
   try {
     return sync::parse_profile(xml, "");
   } catch (const std::invalid_argument& e) {
     const std::string what = e.what();  // ":1: reason"
-    context.refuse(element, "does not hold: " + what.substr(what.find(": ") + 2));
+    context.refuse(element, "is invalid: " + what.substr(what.find(": ") + 2));
   }
 }
 
@@ -85,7 +84,7 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
     check_names(context, *element, *profile.parsed, file.filename().string());
     return profile.text;
   } catch (const std::invalid_argument& e) {
-    context.refuse(*element, std::string("does not hold: ") + e.what());
+    context.refuse(*element, std::string("is invalid: ") + e.what());
   }
 }
 
@@ -102,7 +101,7 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     return;
   }
   refuse_text(context, *element);
-  checked(context, *element, tag("profile", *element) + "/>");
+  parse_checked(context, *element, tag("profile", *element) + "/>");
   std::string rules;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (child->GetName() != "tactus:degrade")
@@ -111,11 +110,11 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     refuse_text(context, *child);
     if (child->GetFirstElement())
       context.refuse(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
-    check_names(context, *child, checked(context, *child, "<profile>" + rule + "</profile>"), "");
+    check_names(context, *child, parse_checked(context, *child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
-  checked(context, *element, context.world.profile);
+  parse_checked(context, *element, context.world.profile);
   if (context.world.profile.size() > sync::kMaxProfileBytes)
     context.refuse(*element, "is longer than 64 kB: leave out what it does not need");
 }

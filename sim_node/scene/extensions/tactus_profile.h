@@ -1,11 +1,11 @@
-// The degradation profile that a scene brings: <tactus:profile> with its <tactus:degrade>, or the name of a file.
+// The degradation profile of a scene: <tactus:profile> with its <tactus:degrade> rules, or the name of a file.
 #pragma once
 
 #include "sim_node/scene/sdf/load_context.h"
 
 namespace tactus::sim {
 
-// Fills WorldDef::profile with its XML, as sync/degradation reads it. Refuses what is wrong, with its line.
+// Fills WorldDef::profile with its XML in the syntax of sync/degradation. Errors name the line.
 void read_profile(LoadContext& context, const sdf::ElementPtr& world);
 
 }  // namespace tactus::sim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tactus/setting_t.hpp>
 
 #include "sim_node/all_settings.gen.h"
 
@@ -19,7 +20,7 @@ void check(const LoadContext& context, const sdf::Element& element, const settin
   try {
     sync::check_scene_setting(row->row, setting.value);
   } catch (const std::invalid_argument& e) {
-    context.refuse(element, std::string("does not hold: ") + e.what());
+    context.refuse(element, std::string("is invalid: ") + e.what());
   }
 }
 
@@ -33,7 +34,7 @@ void read_settings(LoadContext& context, const sdf::ElementPtr& world) {
     const std::string node = element->GetName().substr(kPrefix.size());
     const bool known = std::any_of(kAllSettings.begin(), kAllSettings.end(),
                                    [&](const NodeSettingRow& row) { return node == row.node; });
-    if (!known) context.warn(*element, "is of a node that is not built here: passed on unchecked");
+    if (!known) context.warn(*element, "is of a node that is not in this build: passed on unchecked");
     for (const auto& attribute : element->GetAttributes()) {
       if (attribute->GetKey().starts_with("xmlns")) continue;
       setting_t setting{};

@@ -1,4 +1,4 @@
-// Reads a grey PNG of 8 or 16 bits as heights.
+// Reads a grey PNG of 8 or 16 bits as a height map.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,11 @@
 
 namespace tactus::sim {
 
-// The bytes of a picture that may travel as an asset. Throws std::runtime_error with one clause.
+// Reads a picture file that fits into an asset. Throws std::runtime_error with one clause.
 sync::Bytes read_image_file(const std::filesystem::path& file);
 
-// White is size_m.z high, black 0; the top row of the picture lies at +y. Throws std::runtime_error with one clause.
+// White is at height size_m.z, black at 0; the top row of the picture is at +y. Throws std::runtime_error with one
+// clause.
 Heightfield read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size_m,
                               const Eigen::Vector3d& centre_m);
 

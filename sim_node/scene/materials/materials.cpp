@@ -14,7 +14,7 @@ namespace {
 
 using M = material_def_t;
 
-// Bounds: from aerogel to diamond, with room; they catch slips of a power of ten and wrong units.
+// Bounds from aerogel to diamond, with a margin; they detect wrong powers of ten and wrong units.
 constexpr std::array<MaterialFigure, 11> kFigures{{
     {"youngs_modulus_Pa", "youngs_modulus", "Pa", 1e3, 2e12, &M::youngs_modulus_Pa},
     {"poissons_ratio", "poissons_ratio", "1", -0.99, 0.4999, &M::poissons_ratio},

@@ -1,4 +1,4 @@
-// The table of physical materials, sim_node/scenes/materials.csv, which is compiled in.
+// The built-in table of physical materials, sim_node/scenes/materials.csv.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace tactus::sim {
 
-// One figure of a material: its column in the table, its attribute in <tactus:material>, and what it may be.
+// One property of a material: its column in the table, its attribute in <tactus:material>, and its range.
 struct MaterialFigure {
   const char* column;
   const char* attribute;
@@ -18,10 +18,10 @@ struct MaterialFigure {
 };
 std::span<const MaterialFigure> material_figures();
 
-// Throws std::runtime_error, with the row, when a figure is missing, no number, out of range, or without a source.
+// Throws std::runtime_error with the row when a value is missing, not a number, out of range, or without a source.
 std::vector<material_def_t> parse_materials(std::string_view csv);
 
-// The table that is compiled in.
+// The table compiled into the program.
 std::vector<material_def_t> builtin_materials();
 
 }  // namespace tactus::sim

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
 
 #include "sim_node/scene/materials/height_image.h"
 #include "sync/bus/identity.h"
@@ -28,13 +29,13 @@ void check_sides(std::size_t columns, std::size_t rows) {
     throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels a side");
 }
 
-// Chunk by chunk to the last (ISO/IEC 15948, 5.3).
+// Walks all chunks (ISO/IEC 15948, 5.3).
 void check_png(Bytes bytes) {
   for (std::size_t at = 8; at + 12 <= bytes.size();) {
     const std::size_t size = big_endian(bytes, at, 4), kind = big_endian(bytes, at + 4, 4);
     if (size > bytes.size() - at - 12) break;
     if (at == 8) {
-      if (kind != 0x49484452 || size != 13) throw std::runtime_error("its first chunk is no header");  // IHDR
+      if (kind != 0x49484452 || size != 13) throw std::runtime_error("its first chunk is not a header");  // IHDR
       check_sides(big_endian(bytes, at + 8, 4), big_endian(bytes, at + 12, 4));
     }
     if (kind == 0x49454e44) return;  // IEND
@@ -43,7 +44,7 @@ void check_png(Bytes bytes) {
   throw std::runtime_error("it ends in the middle");
 }
 
-// Marker by marker to the start of frame (ITU-T T.81, B.1.1.3 and B.2.2).
+// Walks the markers up to the start of frame (ITU-T T.81, B.1.1.3 and B.2.2).
 void check_jpeg(Bytes bytes) {
   for (std::size_t at = 2; at + 9 <= bytes.size();) {
     const std::uint8_t marker = bytes[at + 1];
@@ -65,7 +66,7 @@ void check_picture(Bytes bytes, PictureUse use) {
   if (bytes.size() >= 8 && std::equal(kPng.begin(), kPng.end(), bytes.begin())) return check_png(bytes);
   const bool jpeg = bytes.size() >= 4 && bytes[0] == 0xff && bytes[1] == 0xd8;
   if (jpeg && use == PictureUse::kColour) return check_jpeg(bytes);
-  // JPEG rounds what lies side by side, and directions with it.
+  // JPEG compression distorts directions.
   throw std::runtime_error(use == PictureUse::kColour ? "it is neither PNG nor JPEG" : "it is no PNG file");
 }
 

@@ -1,4 +1,4 @@
-// Pictures that a scene or a mesh names: colours, directions of normals, what lies around.
+// Pictures of a scene or mesh: colour maps, normal maps and environments.
 #pragma once
 
 #include <span>
@@ -9,17 +9,17 @@ namespace tactus::sim {
 
 enum class PictureUse { kColour, kDirections };
 
-// Of each side, as visual_node takes them: 64 MiB there (design).
+// Per side, the limit of visual_node: 64 MiB there (design).
 constexpr int kMaxPictureSide = 4096;
 
-// Throws std::runtime_error with one clause when the bytes are no whole PNG, or where colour is meant JPEG, of 1
-// to kMaxPictureSide pixels a side. The pixels themselves are for the renderer to read.
+// Throws std::runtime_error with one clause unless the bytes are a complete PNG, or for colour a JPEG, of 1 to
+// kMaxPictureSide pixels per side. Does not decode the pixels.
 void check_picture(std::span<const std::uint8_t> bytes, PictureUse use);
 
-// The hash of a picture, which becomes one of the world's images unless its bytes are among them already.
+// Adds the picture to the images of the world unless it is among them; returns its hash.
 std::int64_t add_image(WorldDef& world, sync::Asset image);
 
-// As that, of the file that an element names; refused when it is not there or is no such picture.
+// The same for a file that an element names; rejects a missing file and an invalid picture.
 std::int64_t picture_of(LoadContext& context, const sdf::Element& element, const std::string& what,
                         const std::string& uri, PictureUse use);
 

@@ -17,7 +17,7 @@
 namespace tactus::sim {
 namespace {
 
-// A material library may be named "/dev/zero".
+// Opens regular files of bounded size only, because a material library may be named "/dev/zero".
 class BoundedFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override { return may_open(file) && DefaultIOSystem::Exists(file); }
@@ -39,7 +39,7 @@ void refuse_above_limit(std::size_t triangles) {
     throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
 }
 
-// Assimp makes room for as many vertices as the head of a PLY file promises, which may be thousands of millions.
+// Assimp allocates the number of vertices in the header of a PLY file, which may be billions.
 void check_counts(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string line(256, 0);
@@ -51,7 +51,7 @@ void check_counts(const std::filesystem::path& file) {
     words >> word;
     if (word == "end_header") return;
     if (word == "element" && words >> name >> count && !(count <= static_cast<double>(3 * kMaxTriangles)))
-      throw std::runtime_error("its head promises more than " + std::to_string(3 * kMaxTriangles) + " of " + name);
+      throw std::runtime_error("its header declares more than " + std::to_string(3 * kMaxTriangles) + " of " + name);
   }
 }
 
@@ -101,7 +101,7 @@ MeshPicture picture(const aiScene& scene, const aiMaterial& material, std::initi
     aiString path;
     if (material.GetTexture(type, 0, &path) != aiReturn_SUCCESS || path.length == 0) continue;
     if (const aiTexture* inside = scene.GetEmbeddedTexture(path.C_Str())) {
-      // Of height 0 it is a file of mWidth bytes; else raw pixels, which no format that we document has.
+      // Height 0 marks a compressed file of mWidth bytes; otherwise raw pixels, which no documented format contains.
       if (inside->mHeight != 0) continue;
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
       return {"", {bytes, bytes + inside->mWidth}};
@@ -140,8 +140,8 @@ MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
   return m;
 }
 
-// What assimp makes up for a file without materials is none.
-bool made_up(const MeshMaterial& m) {
+// Assimp adds a default material to a file without materials; ignore it.
+bool is_default_material(const MeshMaterial& m) {
   return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
 }
 
@@ -149,14 +149,14 @@ bool made_up(const MeshMaterial& m) {
 
 MeshParts read_with_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new BoundedFiles);  // the importer deletes it
+  importer.SetIOHandler(new BoundedFiles);  // owned by the importer
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION,
-                           true);  // z is up in SDF, as the numbers stand
+                           true);  // keeps the coordinates: z is up in SDF
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCrease_deg);
   check_counts(file);
   const aiScene* scene = importer.ReadFile(file.string(), 0);
-  std::size_t faces = 0;  // before anything is done with them: normals of millions of triangles take minutes
+  std::size_t faces = 0;  // counted before processing: normals of millions of triangles take minutes
   for (unsigned m = 0; scene && m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
   refuse_above_limit(faces);
   if (scene)
@@ -169,7 +169,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file) {
   std::vector<int> renamed;
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
     MeshMaterial material = read(*scene, *scene->mMaterials[m]);
-    renamed.push_back(made_up(material) ? -1 : static_cast<int>(mesh.materials.size()));
+    renamed.push_back(is_default_material(material) ? -1 : static_cast<int>(mesh.materials.size()));
     if (renamed.back() >= 0) mesh.materials.push_back(std::move(material));
   }
   for (MeshPart& part : mesh.parts)

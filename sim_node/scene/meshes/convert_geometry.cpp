@@ -90,20 +90,20 @@ void check_properties(const MeshParts& mesh, const fs::path& out) {
 void write_and_verify(const MeshParts& mesh, const fs::path& out) {
   if (mesh.parts.empty()) throw std::runtime_error("there is no triangle to write");
   const sync::Bytes bytes = write_gltf(mesh, out.extension() == ".glb");
-  // Of the same extension: it is read as what it will be. Nobody else has this name.
-  const fs::path fresh = out.parent_path() / ("." + std::to_string(getpid()) + out.filename().string());
+  // Keep the extension, which selects the reader; the process id makes the name unique.
+  const fs::path temporary = out.parent_path() / ("." + std::to_string(getpid()) + out.filename().string());
   std::error_code error;
   try {
-    std::ofstream file(fresh, std::ios::binary);
+    std::ofstream file(temporary, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (!file) throw std::runtime_error("it cannot be written");
-    if (!same_to_the_bit(read_mesh_parts(fresh), mesh))
-      throw std::runtime_error("it reads back differently: it is not written");
-    fs::rename(fresh, out, error);
+    if (!same_to_the_bit(read_mesh_parts(temporary), mesh))
+      throw std::runtime_error("it reads back differently, so it is not written");
+    fs::rename(temporary, out, error);
     if (error) throw std::runtime_error("it cannot be written: " + error.message());
   } catch (...) {
-    fs::remove(fresh, error);
+    fs::remove(temporary, error);
     throw;
   }
 }

@@ -1,5 +1,4 @@
-// Makes a glTF 2.0 file of a geometry file, with what else is known of the object. Used by
-// convert_geometry_main.cpp.
+// Converts a geometry file to glTF 2.0 with additional properties of the object. Used by convert_geometry_main.cpp.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +7,17 @@
 
 namespace tactus::sim {
 
-// Its parts with tangents where they have texture coordinates, its pictures and properties named from where `out`
-// lies instead of from where `in` lies.
+// The parts with tangents where they have texture coordinates; picture and property paths are made relative to the
+// folder of `out` instead of that of `in`.
 MeshParts for_place(MeshParts mesh, const std::filesystem::path& in, const std::filesystem::path& out);
 
-// The same to the bit, names aside that are no UTF-8.
+// Equality to the bit, except for names that are not UTF-8.
 bool same_to_the_bit(const MeshParts& a, const MeshParts& b);
 
-// Throws std::runtime_error with one clause when a file that a property names is not there, or not what it must
-// be.
+// Throws std::runtime_error with one clause when a file that a property names is missing or invalid.
 void check_properties(const MeshParts& mesh, const std::filesystem::path& out);
 
-// Writes `out`, .glb or .gltf, whole or not at all, and reads it back. Throws std::runtime_error with one clause.
+// Writes `out`, .glb or .gltf, atomically, and reads it back. Throws std::runtime_error with one clause.
 void write_and_verify(const MeshParts& mesh, const std::filesystem::path& out);
 
 }  // namespace tactus::sim

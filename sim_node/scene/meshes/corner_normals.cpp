@@ -11,8 +11,8 @@ namespace {
 
 using Index = std::size_t;
 
-// More triangles around one point than any surface has: such a fan costs the square of their number, and gets its
-// plain mean.
+// More triangles around one point than usual surfaces have. The cost of such a fan is quadratic, so it gets its plain
+// mean.
 constexpr Index kMaxAround = 256;
 
 }  // namespace
@@ -20,7 +20,7 @@ constexpr Index kMaxAround = 256;
 void make_corner_normals(MeshPart& part, float crease_deg) {
   const auto at = [&](Index corner) { return static_cast<Index>(part.indices[corner]); };
   const double cosine = std::cos(crease_deg * std::numbers::pi / 180);
-  std::vector<Eigen::Vector3d> areas, directions;  // of each triangle
+  std::vector<Eigen::Vector3d> areas, directions;  // per triangle
   std::map<std::array<float, 3>, std::vector<Index>> around;
   for (Index t = 0; t + 2 < part.indices.size(); t += 3) {
     const Eigen::Vector3d a = part.positions_m[at(t)].cast<double>();

@@ -1,4 +1,4 @@
-// What a mesh file says with our words, as the element of a scene that would say the same.
+// Properties in a mesh file, converted to an equivalent scene element.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,7 @@
 
 namespace tactus::sim {
 
-// An element of that name with these attributes; files that they name are looked for beside `file`, and what is
-// wrong with them is said with its name.
+// An element of that name with these attributes. File names are relative to `file`, and errors name it.
 sdf::ElementPtr element_of(const std::string& name, const Properties& properties,
                            const std::filesystem::path& file);
 

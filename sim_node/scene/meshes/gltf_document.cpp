@@ -17,14 +17,14 @@ using nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and is read as it lies");
 
-// More vertices than triangles of a mesh can use (mesh_parts.h).
+// More vertices than the triangles of a mesh can use (mesh_parts.h).
 constexpr std::size_t kMaxElements = 3 * kMaxTriangles;
 
-// Of the JSON: a value costs some 50 bytes of memory, however short it is in the file (design).
+// Limits for the JSON: each value uses about 50 bytes of memory, even a short one (design).
 constexpr int kMaxDepth = 64;
 constexpr std::size_t kMaxValues = 4'000'000;
 
-// The component types of glTF 2.0, 3.6.2.2, and how many bytes each has.
+// Component types of glTF 2.0, 3.6.2.2, and their sizes in bytes.
 enum : int {
   kByte = 5120,
   kUnsignedByte = 5121,
@@ -69,19 +69,19 @@ double component(const std::uint8_t* at, int type, bool normalised) {
   }
 }
 
-// A count or an offset: anything below 2^32, which no file that is read reaches.
+// A count or an offset: any value below 2^32, which no accepted file reaches.
 std::size_t size_of(const json& object, const char* member) {
   const double value = number_of(object, member, 0);
   if (!(value >= 0 && value < 4294967296.0) || value != std::floor(value))
-    throw std::runtime_error(std::string("a ") + member + " is no count of bytes or elements");
+    throw std::runtime_error(std::string("a ") + member + " is not a count of bytes or elements");
   return static_cast<std::size_t>(value);
 }
 
-// Of a .glb (glTF 2.0, 4.4): the text of its first chunk, and its second as `binary`.
+// Splits a .glb (glTF 2.0, 4.4): returns the text of its first chunk; `binary` gets the second.
 std::string unpack(const sync::Bytes& bytes, sync::Bytes& binary) {
   constexpr std::uint32_t kJson = 0x4e4f534a, kBin = 0x004e4942;
   if (bytes.size() < 20 || load<std::uint32_t>(bytes.data() + 4) != 2)
-    throw std::runtime_error("it is no glTF of version 2.0");
+    throw std::runtime_error("it is not glTF 2.0");
   const std::size_t length = load<std::uint32_t>(bytes.data() + 8);
   if (length > bytes.size()) throw std::runtime_error("it ends in the middle");
   std::string text;
@@ -90,7 +90,7 @@ std::string unpack(const sync::Bytes& bytes, sync::Bytes& binary) {
     const auto kind = load<std::uint32_t>(bytes.data() + at + 4);
     if (size > length - at - 8) throw std::runtime_error("it ends in the middle of a chunk");
     const auto* begin = bytes.data() + at + 8;
-    if (at == 12 && kind != kJson) throw std::runtime_error("its first chunk is no JSON");
+    if (at == 12 && kind != kJson) throw std::runtime_error("its first chunk is not JSON");
     if (at == 12)
       text.assign(begin, begin + size);
     else if (kind == kBin && binary.empty())
@@ -127,7 +127,7 @@ const json& member_of(const json& object, const char* member) {
 }
 
 struct GltfDocument::Elements {
-  const std::uint8_t* data = nullptr;  // null: all are 0
+  const std::uint8_t* data = nullptr;  // null: all values are 0
   std::size_t count = 0, stride = 0;
   int type = kFloat;
   bool normalised = false;
@@ -144,9 +144,9 @@ GltfDocument::GltfDocument(const std::filesystem::path& file) {
     return true;
   };
   json_ = json::parse(text, bounded, false);
-  if (!json_.is_object()) throw std::runtime_error("it is no well-formed JSON");
+  if (!json_.is_object()) throw std::runtime_error("it is not well-formed JSON");
   if (!text_of(member_of(json_, "asset"), "version").starts_with("2."))
-    throw std::runtime_error("it is no glTF of version 2.0");
+    throw std::runtime_error("it is not glTF 2.0");
   for (const json& needed : member_of(json_, "extensionsRequired"))
     throw std::runtime_error("it requires the extension " +
                              (needed.is_string() ? needed.get<std::string>().substr(0, 64) : "?") +
@@ -162,7 +162,7 @@ void GltfDocument::load_buffers(const std::filesystem::path& folder) {
     if (uri.empty()) {
       if (buffers_.empty()) bytes = binary_;
     } else if (!decode_data_uri(uri, bytes)) {
-      if (uri.starts_with("data:")) throw std::runtime_error("a buffer in it is no base64");
+      if (uri.starts_with("data:")) throw std::runtime_error("a buffer in it is not base64");
       const std::string path = decode_path(uri);
       try {
         bytes = read_regular_file(folder / path, kMaxMeshFileBytes);
@@ -170,7 +170,7 @@ void GltfDocument::load_buffers(const std::filesystem::path& folder) {
         throw std::runtime_error("its buffer \"" + path.substr(0, 200) + "\" cannot be read: " + e.what());
       }
     }
-    if (bytes.size() < size_of(buffer, "byteLength")) throw std::runtime_error("a buffer is shorter than it says");
+    if (bytes.size() < size_of(buffer, "byteLength")) throw std::runtime_error("a buffer is shorter than its byteLength");
     total += bytes.size();
     if (total > 2 * kMaxMeshFileBytes) throw std::runtime_error("its buffers are too large");
     buffers_.push_back(std::move(bytes));
@@ -180,7 +180,7 @@ void GltfDocument::load_buffers(const std::filesystem::path& folder) {
 const json& GltfDocument::entry(const char* list, int index) const {
   const json& all = member_of(json_, list);
   if (!all.is_array() || index < 0 || static_cast<std::size_t>(index) >= all.size())
-    throw std::runtime_error(std::string("it names one of its ") + list + " that is not there");
+    throw std::runtime_error(std::string("it refers to one of its ") + list + " that does not exist");
   return all[static_cast<std::size_t>(index)];
 }
 
@@ -246,7 +246,7 @@ std::vector<int> GltfDocument::indices(int accessor) const {
   for (std::size_t i = 0; i < e.count; ++i) {
     const double index = component(e.data + i * e.stride, e.type, false);
     if (index > static_cast<double>(kMaxElements))
-      throw std::runtime_error("an index names a vertex that is not there");
+      throw std::runtime_error("an index refers to a vertex that does not exist");
     values[i] = static_cast<int>(index);
   }
   return values;

@@ -1,5 +1,4 @@
-// A glTF 2.0 document (Khronos 2021): its JSON, its buffers, and what its accessors say. Nothing in it is believed
-// unchecked.
+// A glTF 2.0 document (Khronos 2021): its JSON, buffers and accessors. All content is validated.
 #pragma once
 
 #include <filesystem>
@@ -13,14 +12,14 @@ namespace tactus::sim {
 
 class GltfDocument {
  public:
-  // .gltf or .glb by its content. Throws std::runtime_error with one clause.
+  // Detects .gltf or .glb by the content. Throws std::runtime_error with one clause.
   explicit GltfDocument(const std::filesystem::path& file);
 
   const nlohmann::json& root() const { return json_; }
-  // The entry of a list of the document ("nodes", "meshes", ...).
+  // An entry of a list of the document ("nodes", "meshes", ...).
   const nlohmann::json& entry(const char* list, int index) const;
 
-  // `components` numbers for each element, as the accessor scales them.
+  // `components` numbers per element, scaled as the accessor defines.
   std::vector<float> floats(int accessor, int components) const;
   std::vector<int> indices(int accessor) const;
   // The bytes of a buffer view.
@@ -36,17 +35,17 @@ class GltfDocument {
   std::vector<sync::Bytes> buffers_;
 };
 
-// The number of a member, or what is said for one that is not there or no number.
+// The number of a member, or `missing` when it does not exist or is not a number.
 double number_of(const nlohmann::json& object, const char* member, double missing);
-int as_index(const nlohmann::json& value);                       // -1: it is none
+int as_index(const nlohmann::json& value);                       // -1: not an index
 int index_of(const nlohmann::json& object, const char* member);  // -1: none
 std::string text_of(const nlohmann::json& object, const char* member);
 const nlohmann::json& member_of(const nlohmann::json& object, const char* member);  // null: none
 
-// What "data:...;base64,..." holds; false: it is no such uri.
+// Decodes "data:...;base64,..."; false: not such a URI.
 bool decode_data_uri(const std::string& uri, sync::Bytes& bytes);
 std::string encode_base64(const sync::Bytes& bytes);
-// Paths as uris have them (RFC 3986), and back.
+// Percent encoding of paths (RFC 3986), and its inverse.
 std::string decode_path(const std::string& uri);
 std::string encode_path(const std::string& path);
 

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// Longer than any value of ours: a path, or a handful of numbers.
+// Longer than any property value: a path, or a few numbers.
 constexpr std::size_t kMaxPropertyBytes = 4096, kMaxProperties = 64;
 
 Eigen::Vector3f colour(const json& object, const char* member, const Eigen::Vector3f& missing) {
@@ -49,23 +49,22 @@ MeshMaterial read_material(const GltfDocument& document, const json& from) {
     if (factor.is_array() && factor.size() == 4 && factor[3].is_number())
       m.alpha = std::clamp(factor[3].get<float>(), 0.0f, 1.0f);
   }
-  // Phong has an exponent where glTF has a roughness r: of a distribution as wide, 2 / r^4 - 2 (Walter et al.
-  // 2007, eq. 30, with glTF's alpha = r^2). What mirrors at normal incidence: 0.04 of a dielectric (glTF 2.0,
-  // B.2.1).
+  // Converts the roughness r of glTF to a Phong exponent of equal width: 2 / r^4 - 2 (Walter et al. 2007, eq. 30,
+  // with glTF's alpha = r^2). Reflectance at normal incidence: 0.04 for a dielectric (glTF 2.0, B.2.1).
   const double roughness = std::clamp(number_of(pbr, "roughnessFactor", 1), 0.1, 1.0);
   m.shininess = static_cast<float>(std::clamp(2 / std::pow(roughness, 4) - 2, 1.0, 1e4));
   m.specular.setConstant(0.04f);
-  const json& ours = member_of(member_of(from, "extras"), "tactus");
-  m.specular = colour(ours, "specular", m.specular);
-  m.shininess = std::clamp(static_cast<float>(number_of(ours, "shininess", m.shininess)), 1.0f, 1e4f);
+  const json& extras = member_of(member_of(from, "extras"), "tactus");
+  m.specular = colour(extras, "specular", m.specular);
+  m.shininess = std::clamp(static_cast<float>(number_of(extras, "shininess", m.shininess)), 1.0f, 1e4f);
   m.colour_map = picture(document, member_of(pbr, "baseColorTexture"));
   m.normal_map = picture(document, member_of(from, "normalTexture"));
   return m;
 }
 
-Properties read_properties(const json& ours, const char* member) {
+Properties read_properties(const json& extras, const char* member) {
   Properties properties;
-  const json& from = member_of(ours, member);
+  const json& from = member_of(extras, member);
   if (!from.is_object()) return properties;
   for (const auto& [name, value] : from.items())
     if (value.is_string() && value.get_ref<const std::string&>().size() <= kMaxPropertyBytes &&
@@ -74,7 +73,7 @@ Properties read_properties(const json& ours, const char* member) {
   return properties;
 }
 
-// Three corners for each triangle, of lists, strips and fans (glTF 2.0, 3.7.2.1).
+// Three corners per triangle, from lists, strips and fans (glTF 2.0, 3.7.2.1).
 std::vector<int> triangles_of(int mode, const std::vector<int>& corners) {
   if (mode == 4) return {corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(corners.size() / 3 * 3)};
   std::vector<int> triangles;
@@ -108,7 +107,7 @@ void read_texcoords(const GltfDocument& document, const json& attributes, int se
 }
 
 void place(MeshPart& part, const Eigen::Affine3d& pose) {
-  if (pose.matrix() == Eigen::Matrix4d::Identity()) return;  // to the bit
+  if (pose.matrix() == Eigen::Matrix4d::Identity()) return;  // keeps identical bits
   const Eigen::Matrix3d along = pose.linear(), turn = along.inverse().transpose();
   const bool mirrored = along.determinant() < 0;
   for (auto& p : part.positions_m) p = (pose * p.cast<double>()).cast<float>();
@@ -124,7 +123,7 @@ void place(MeshPart& part, const Eigen::Affine3d& pose) {
 struct Reader {
   const GltfDocument& document;
   MeshParts mesh;
-  std::set<int> met;  // nodes: each stands in one place, whatever a file says
+  std::set<int> visited;  // nodes visited: each node is used once
   std::size_t corners = 0;
 
   MeshPart read_part(const json& primitive) {
@@ -142,7 +141,7 @@ struct Reader {
     }
     for (const int i : part.indices)
       if (static_cast<std::size_t>(i) >= count)
-        throw std::runtime_error("an index names a vertex that is not there");
+        throw std::runtime_error("an index refers to a vertex that does not exist");
     part.indices = triangles_of(static_cast<int>(number_of(primitive, "mode", 4)), part.indices);
     corners += part.indices.size();
     if (corners / 3 > kMaxTriangles)
@@ -158,21 +157,21 @@ struct Reader {
     read_texcoords(document, attributes, set, part);
     const auto fits = [&](const auto& list) { return list.empty() || list.size() == count; };
     if (!fits(part.normals) || !fits(part.texcoords) || !fits(part.tangents))
-      throw std::runtime_error("its vertices have not all as many normals, texture coordinates or tangents");
+      throw std::runtime_error("its vertices have different numbers of normals, texture coordinates or tangents");
     if (part.texcoords.empty() || part.normals.empty()) part.tangents.clear();
     if (part.normals.empty()) make_corner_normals(part, kCrease_deg);
     return part;
   }
 
   void add(int index, const Eigen::Affine3d& parent, int depth) {
-    if (depth > 256 || !met.insert(index).second)
-      throw std::runtime_error("its nodes are no tree, or a very deep one");
+    if (depth > 256 || !visited.insert(index).second)
+      throw std::runtime_error("its nodes are not a tree, or the tree is too deep");
     const json& node = document.entry("nodes", index);
     const Eigen::Affine3d pose = parent * pose_of(node);
-    read_ours(node);
+    read_tactus_extras(node);
     if (const int number = index_of(node, "mesh"); number >= 0) {
       const json& from = document.entry("meshes", number);
-      read_ours(from);
+      read_tactus_extras(from);
       for (const json& primitive : member_of(from, "primitives")) {
         const double mode = number_of(primitive, "mode", 4);
         if (mode != 4 && mode != 5 && mode != 6) continue;  // points and lines
@@ -185,11 +184,11 @@ struct Reader {
     for (const json& child : member_of(node, "children")) add(as_index(child), pose, depth + 1);
   }
 
-  // Of a file with several, the first holds for all: it is one object.
-  void read_ours(const json& of) {
-    const json& ours = member_of(member_of(of, "extras"), "tactus");
-    if (mesh.material.empty()) mesh.material = read_properties(ours, "material");
-    if (mesh.look.empty()) mesh.look = read_properties(ours, "look");
+  // Of several entries, the first applies to the whole file, because it is one object.
+  void read_tactus_extras(const json& of) {
+    const json& extras = member_of(member_of(of, "extras"), "tactus");
+    if (mesh.material.empty()) mesh.material = read_properties(extras, "material");
+    if (mesh.look.empty()) mesh.look = read_properties(extras, "look");
   }
 
   static Eigen::Affine3d pose_of(const json& node) {
@@ -200,12 +199,12 @@ struct Reader {
       return true;
     };
     Eigen::Affine3d pose = Eigen::Affine3d::Identity();
-    if (list("matrix", 16, pose.matrix().data())) return pose;  // by columns, as Eigen's
+    if (list("matrix", 16, pose.matrix().data())) return pose;  // column by column, as in Eigen
     Eigen::Vector3d translation(0, 0, 0), scale(1, 1, 1);
     Eigen::Quaterniond rotation(1, 0, 0, 0);
     list("translation", 3, translation.data());
     list("scale", 3, scale.data());
-    const bool turned = list("rotation", 4, rotation.coeffs().data());  // x y z w, as Eigen's
+    const bool turned = list("rotation", 4, rotation.coeffs().data());  // x y z w, as in Eigen
     return Eigen::Translation3d(translation) * (turned ? rotation.normalized() : rotation) * Eigen::Scaling(scale);
   }
 };

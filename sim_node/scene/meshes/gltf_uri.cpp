@@ -1,4 +1,4 @@
-// Paths and bytes in uris.
+// Paths and bytes in URIs.
 #include <array>
 #include <cctype>
 #include <string_view>

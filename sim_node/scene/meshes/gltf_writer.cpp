@@ -72,7 +72,7 @@ struct Writer {
     return attributes;
   }
 
-  // Each picture once; index of its texture, -1 for none.
+  // Adds each picture once; returns the index of its texture, -1 for none.
   int add_picture(const MeshPicture& picture) {
     if (picture.none()) return -1;
     const auto known = std::find(pictures.begin(), pictures.end(), picture);
@@ -95,7 +95,7 @@ struct Writer {
     json pbr = {{"metallicFactor", 0.0}};
     pbr["baseColorFactor"] = colour(m.diffuse);
     pbr["baseColorFactor"].push_back(m.alpha);
-    // As wide a highlight in another reader's terms; ours takes the exponent itself from the extras.
+    // Roughness of a highlight of equal width for other readers; our reader uses the exponent in the extras.
     pbr["roughnessFactor"] = std::pow(2.0 / (static_cast<double>(m.shininess) + 2), 0.25);
     if (const int texture = add_picture(m.colour_map); texture >= 0)
       pbr["baseColorTexture"] = {{"index", texture}};
@@ -108,7 +108,7 @@ struct Writer {
     document["materials"].push_back(material);
   }
 
-  void add_part(const MeshPart& part, const json& ours) {
+  void add_part(const MeshPart& part, const json& extras) {
     const std::vector<std::uint32_t> corners(part.indices.begin(), part.indices.end());
     json primitive;
     primitive["attributes"] = add_attributes(part);
@@ -119,7 +119,7 @@ struct Writer {
     if (!part.mesh.empty()) mesh["name"] = part.mesh;
     if (!part.node.empty()) node["name"] = part.node;
     node["mesh"] = document["meshes"].size();
-    if (!ours.is_null()) node["extras"]["tactus"] = ours;
+    if (!extras.is_null()) node["extras"]["tactus"] = extras;
     document["scenes"][0]["nodes"].push_back(document["nodes"].size());
     document["meshes"].push_back(mesh);
     document["nodes"].push_back(node);
@@ -143,20 +143,20 @@ void append_chunk(sync::Bytes& out, std::uint32_t kind, const std::uint8_t* data
 sync::Bytes write_gltf(const MeshParts& mesh, bool packed) {
   Writer writer;
   for (const MeshMaterial& material : mesh.materials) writer.add_material(material);
-  json ours;
-  if (!mesh.material.empty()) ours["material"] = mesh.material;
-  if (!mesh.look.empty()) ours["look"] = mesh.look;
+  json extras;
+  if (!mesh.material.empty()) extras["material"] = mesh.material;
+  if (!mesh.look.empty()) extras["look"] = mesh.look;
   for (const MeshPart& part : mesh.parts)
-    if (!part.positions_m.empty()) writer.add_part(part, ours);
+    if (!part.positions_m.empty()) writer.add_part(part, extras);
   json buffer = {{"byteLength", writer.buffer.size()}};
   if (!packed) buffer["uri"] = "data:application/octet-stream;base64," + encode_base64(writer.buffer);
   writer.document["buffers"].push_back(buffer);
-  // A name that is no UTF-8 is written with a mark in place of what is none.
+  // Bytes that are not UTF-8 are replaced by a marker in names.
   const std::string text = writer.document.dump(packed ? -1 : 1, ' ', false, json::error_handler_t::replace);
   if (!packed) return {text.begin(), text.end()};
   sync::Bytes out{'g', 'l', 'T', 'F'};
   append(out, 2);
-  append(out, 0);  // the length, when it is known
+  append(out, 0);  // the length, set below
   append_chunk(out, 0x4e4f534a, reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), ' ');
   append_chunk(out, 0x004e4942, writer.buffer.data(), writer.buffer.size(), 0);
   const auto length = static_cast<std::uint32_t>(out.size());

@@ -24,7 +24,7 @@ void scale_by(const Eigen::Vector3d& scale, TriangleMesh& mesh) {
     for (Eigen::Vector4f& t : mesh.tangents)
       t.head<3>() = t.head<3>().cast<double>().cwiseProduct(scale).stableNormalized().cast<float>();
   if (scale.prod() > 0) return;
-  // A mirror turns the triangles inside out.
+  // A reflection reverses the orientation of the triangles.
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
   for (Eigen::Vector4f& t : mesh.tangents) t.w() = -t.w();
 }
@@ -37,21 +37,21 @@ bool is_chosen(const MeshPart& part, const MeshChoice& choice) {
 
 TriangleMesh join_parts(const MeshParts& parts, const MeshChoice& choice, const std::set<int>* only) {
   TriangleMesh mesh;
-  Eigen::AlignedBox3d around;
+  Eigen::AlignedBox3d bounding_box;
   for (const MeshPart& part : parts.parts) {
     if (!is_chosen(part, choice)) continue;
-    for (const auto& p : part.positions_m) around.extend(p.cast<double>());
+    for (const auto& p : part.positions_m) bounding_box.extend(p.cast<double>());
     if (!only || only->contains(part.material)) append(part, mesh);
   }
   if (mesh.indices.empty())
-    throw std::runtime_error(choice.submesh.empty() ? "it holds no triangle" : "it has no submesh \"" + choice.submesh + "\"");
+    throw std::runtime_error(choice.submesh.empty() ? "it has no triangle" : "it has no submesh \"" + choice.submesh + "\"");
   if (mesh.texcoords.size() != mesh.vertices.size()) mesh.texcoords.clear();
   if (mesh.tangents.size() != mesh.vertices.size()) mesh.tangents.clear();
   if (choice.centre)
-    for (Eigen::Vector3d& v : mesh.vertices) v -= around.center();
+    for (Eigen::Vector3d& v : mesh.vertices) v -= bounding_box.center();
   scale_by(choice.scale, mesh);
   remove_degenerate(mesh);
-  if (mesh.indices.empty()) throw std::runtime_error("all its triangles are without area");
+  if (mesh.indices.empty()) throw std::runtime_error("all its triangles have zero area");
   complete_normals(mesh);
   return mesh;
 }

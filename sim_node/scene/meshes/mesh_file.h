@@ -1,4 +1,4 @@
-// Triangles of a world from a geometry file.
+// The triangles of a geometry file as a mesh of the world.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace tactus::sim {
 
-// Which of the parts of a file, and how they stand: only the submesh of that name (of a mesh or of its node), empty: all;
-// `centre` moves the centre of the bounding box of these to the origin, before the scale.
+// Selection and placement of the parts of a file: only the submesh of that name (of a mesh or its node), empty: all.
+// `centre` moves the centre of their bounding box to the origin, before scaling.
 struct MeshChoice {
   std::string submesh;
   bool centre = false;
@@ -20,11 +20,12 @@ struct MeshChoice {
 
 bool is_chosen(const MeshPart& part, const MeshChoice& choice);
 
-// The chosen parts as one mesh. Of the parts with a material of `only` when that is given; the centre is still that of all chosen.
-// Texture coordinates and tangents, when each has them. Throws std::runtime_error with one clause when there is no triangle.
+// The selected parts as one mesh; with `only`, the parts with these materials, but centred as the whole selection.
+// Texture coordinates and tangents are kept if every part has them. Throws std::runtime_error with one clause when no
+// triangle is left.
 TriangleMesh join_parts(const MeshParts& mesh, const MeshChoice& choice, const std::set<int>* only = nullptr);
 
-// Throws std::runtime_error with one clause that says what is wrong with the file.
+// Throws std::runtime_error with one clause when the file is invalid.
 TriangleMesh read_mesh(const std::filesystem::path& file, const std::string& submesh, bool centre,
                        const Eigen::Vector3d& scale);
 

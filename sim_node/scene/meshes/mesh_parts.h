@@ -1,5 +1,4 @@
-// What a geometry file holds, as it stands there: parts of one material each, and the pictures that their
-// materials name.
+// Content of a geometry file: parts of one material each, and the pictures of their materials.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +10,7 @@
 
 namespace tactus::sim {
 
-// A picture beside the mesh file, by its path from there, or the bytes of one inside it; neither: none.
+// A picture beside the mesh file, by its relative path, or the bytes of one inside it; neither: none.
 struct MeshPicture {
   std::string file;
   sync::Bytes bytes;
@@ -28,8 +27,8 @@ struct MeshMaterial {
   bool operator==(const MeshMaterial&) const = default;
 };
 
-// Per vertex as in mesh_t.lcm, in the frame of the file, single precision as files have it. Texture coordinates
-// and tangents are as many as positions, or none; a normal that the file lacks is 0.
+// Per vertex as in mesh_t.lcm, in the frame of the file, in single precision. Texture coordinates and tangents: one
+// per position, or none. A missing normal is 0.
 struct MeshPart {
   std::string mesh, node;
   int material = -1;  // index in MeshParts::materials; -1: none
@@ -39,20 +38,20 @@ struct MeshPart {
   std::vector<int> indices;
 };
 
-// Attributes of an element of ours, by their names in docs/scene_format.md.
+// Attributes of a Tactus element, by their names in docs/scene_format.md.
 using Properties = std::map<std::string, std::string>;
 
 struct MeshParts {
   std::vector<MeshPart> parts;
   std::vector<MeshMaterial> materials;
-  // What the file says of the object beyond its geometry, in glTF only: of tactus:material and of tactus:look.
+  // Properties of the object besides its geometry, in glTF only: of tactus:material and of tactus:look.
   Properties material, look;
 };
 
-// Beyond this neither an asset nor a collision query of a millisecond holds it.
+// Limit for an asset, and for a collision query of a millisecond.
 constexpr std::size_t kMaxTriangles = 1'000'000;
 
-// A change of direction above this angle is an edge, not a curve; degrees (design). Assimp's own choice is 175.
+// Degrees; a larger change of direction is an edge, not a curve (design). Assimp's default is 175.
 constexpr float kCrease_deg = 50;
 
 }  // namespace tactus::sim

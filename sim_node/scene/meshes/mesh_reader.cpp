@@ -19,7 +19,7 @@ bool is_gltf(const std::filesystem::path& file) {
   return extension == ".gltf" || extension == ".glb";
 }
 
-// What neither a position in a world nor a direction can be.
+// Rejects values that are not possible for a position in a world or for a direction.
 void check(MeshPart& part) {
   for (const Eigen::Vector3f& v : part.positions_m)
     if (!v.allFinite() || v.cwiseAbs().maxCoeff() > 1e6f) throw std::runtime_error("a vertex is not finite");
@@ -29,14 +29,14 @@ void check(MeshPart& part) {
   for (Eigen::Vector3f& n : part.normals) {
     const float square = n.squaredNorm();
     if (!(square > 0) || !std::isfinite(square)) n.setZero();
-    // Files with few digits; a normal that differs from 1 by rounding alone stays as it stands, so that it is
-    // written so.
+    // Renormalizes normals of files with few digits. A normal that differs from unit length by rounding only is kept,
+    // so that it is written unchanged.
     else if (std::abs(square - 1) > 1e-3f)
       n = n.cast<double>().stableNormalized().cast<float>();
   }
   for (Eigen::Vector4f& t : part.tangents) {
     if (!t.allFinite() || std::abs(t.head<3>().squaredNorm() - 1) > 1e-3f) {
-      part.tangents.clear();  // all are made anew from the texture coordinates
+      part.tangents.clear();  // all tangents are recomputed from the texture coordinates
       break;
     }
     t.w() = t.w() < 0 ? -1.0f : 1.0f;
@@ -57,7 +57,7 @@ MeshParts read_mesh_parts(const std::filesystem::path& file) try {
     throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
   return mesh;
 } catch (const std::bad_alloc&) {
-  throw std::runtime_error("it asks for more memory than there is");
+  throw std::runtime_error("it needs more memory than is available");
 }
 
 }  // namespace tactus::sim

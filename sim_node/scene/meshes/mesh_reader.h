@@ -7,12 +7,11 @@
 
 namespace tactus::sim {
 
-// A mesh of a million triangles is some 100 MB as OBJ; of what is larger, reading alone would take minutes
-// (design).
+// A mesh of a million triangles is about 100 MB as OBJ; reading a larger file would take minutes (design).
 constexpr std::uintmax_t kMaxMeshFileBytes = 128 << 20;
 
-// Numbers are metres and z is up, whatever the format's own convention. Throws std::runtime_error with one clause
-// that says what is wrong with the file. What a format holds beyond MeshParts is ignored.
+// Units are metres and z is up, for all formats. Throws std::runtime_error with one clause when the file is invalid.
+// Ignores content that MeshParts cannot hold.
 MeshParts read_mesh_parts(const std::filesystem::path& file);
 
 }  // namespace tactus::sim

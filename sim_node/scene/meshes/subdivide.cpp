@@ -18,16 +18,16 @@ using Edge = std::pair<int, int>;  // of points, the smaller first
 Edge edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 struct Sides {
-  std::vector<Index> corners;  // those that stand opposite, one of each triangle at the edge
+  std::vector<Index> corners;  // opposite corners, one per triangle at the edge
   bool sharp = false;
   int middle = -1;
 };
 
-// Triangles of welded points, with what belongs to corners beside them.
+// Triangles of welded points, with attributes of their corners.
 struct Surface {
   std::vector<Eigen::Vector3d> points;
-  std::vector<int> corners;                // a point each, three per triangle
-  std::vector<Eigen::Vector2f> texcoords;  // of each corner, or none
+  std::vector<int> corners;                // point indices, three per triangle
+  std::vector<Eigen::Vector2f> texcoords;  // per corner, or empty
   std::map<Edge, Sides> edges;
 
   Index next(Index c) const { return c % 3 == 2 ? c - 2 : c + 1; }
@@ -60,7 +60,7 @@ Surface weld(const TriangleMesh& mesh) {
     }
   }
   s.find_edges();
-  // Sharp where the two sides have normals of their own.
+  // An edge is sharp where its two sides have different normals.
   std::map<std::pair<int, Index>, Eigen::Vector3d> normal;  // of a point in a triangle
   Index kept = 0;
   for (Index t = 0; t + 2 < mesh.indices.size(); t += 3) {
@@ -69,7 +69,7 @@ Surface weld(const TriangleMesh& mesh) {
     for (Index k = 0; k < 3; ++k) normal[{p[k], kept}] = mesh.normals[vertex(t + k)];
     ++kept;
   }
-  constexpr double kSame = 1e-4;  // files round normals; a crease is far more
+  constexpr double kSame = 1e-4;  // normals in files are rounded; a crease differs far more
   for (auto& [e, sides] : s.edges)
     for (const int p : {e.first, e.second})
       if (sides.corners.size() == 2)
@@ -78,7 +78,7 @@ Surface weld(const TriangleMesh& mesh) {
   return s;
 }
 
-// Loop's weight of each of n neighbours.
+// Loop's weight for each of n neighbours.
 double beta(int n) {
   const double c = 3.0 / 8 + std::cos(2 * std::numbers::pi / n) / 4;
   return (5.0 / 8 - c * c) / n;
@@ -122,7 +122,7 @@ Surface refined(Surface s) {
   }
   const auto middle = [&](Index c) {
     return s.edges.at(edge(s.point(c), s.point(s.next(c)))).middle;
-  };  // from c to the next
+  };  // from c to the next corner
   for (Index t = 0; t < s.corners.size(); t += 3) {
     const int p[3] = {s.point(t), s.point(t + 1), s.point(t + 2)},
               m[3] = {middle(t), middle(t + 1), middle(t + 2)};
@@ -141,8 +141,8 @@ Surface refined(Surface s) {
   return out;
 }
 
-// A vertex for each point, each side of its sharp edges and each place in the picture.
-TriangleMesh finished(const Surface& s) {
+// One vertex for each point, each side of its sharp edges and each texture coordinate.
+TriangleMesh to_mesh(const Surface& s) {
   std::vector<Index> leader(s.corners.size());
   std::iota(leader.begin(), leader.end(), Index{0});
   const auto find = [&](Index c) {
@@ -183,7 +183,7 @@ TriangleMesh subdivide(const TriangleMesh& mesh, int times) {
                              " triangles: subdivide it less often");
   Surface surface = weld(mesh);
   for (int i = 0; i < times; ++i) surface = refined(std::move(surface));
-  return finished(surface);
+  return to_mesh(surface);
 }
 
 }  // namespace tactus::sim

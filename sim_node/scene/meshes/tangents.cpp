@@ -8,8 +8,8 @@ namespace {
 
 using Index = std::size_t;
 
-// Any direction in the plane of the surface, where the picture gives none.
-Eigen::Vector3d beside(const Eigen::Vector3d& n) {
+// Any direction in the plane of the surface, where the texture coordinates give none.
+Eigen::Vector3d perpendicular(const Eigen::Vector3d& n) {
   const Eigen::Vector3d axis = std::abs(n.x()) < 0.8 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   return (axis - n * n.dot(axis)).stableNormalized();
 }
@@ -24,7 +24,7 @@ void make_tangents(MeshPart& part) {
   const Index count = part.positions_m.size();
   if (!part.tangents.empty() || part.texcoords.size() != count || part.normals.size() != count) return;
   const auto at = [&](Index corner) { return static_cast<Index>(part.indices[corner]); };
-  // Of each vertex the sum of directions over triangles where the picture lies as it is, and where it is mirrored.
+  // For each vertex, sums of directions over triangles with unmirrored and with mirrored texture coordinates.
   std::vector<Eigen::Vector3d> sums[2] = {{count, Eigen::Vector3d::Zero()}, {count, Eigen::Vector3d::Zero()}};
   std::vector<char> mirrored;
   for (Index t = 0; t + 2 < part.indices.size(); t += 3) {
@@ -45,12 +45,12 @@ void make_tangents(MeshPart& part) {
       sums[area < 0][at(t + k)] += weight * (direction - n * n.dot(direction)).stableNormalized();
     }
   }
-  // A vertex of which all triangles lie one way stays; of both, it becomes two.
+  // A vertex with triangles of both orientations is split in two.
   std::vector<char> used[2] = {std::vector<char>(count), std::vector<char>(count)};
   for (Index c = 0; c < mirrored.size() * 3; ++c) used[static_cast<Index>(mirrored[c / 3])][at(c)] = 1;
   const auto tangent = [&](Index v, int side) {
     const Eigen::Vector3d n = part.normals[v].cast<double>(), sum = sums[side][v];
-    const Eigen::Vector3f t = (sum.norm() > 1e-9 ? sum.normalized() : beside(n)).cast<float>();
+    const Eigen::Vector3f t = (sum.norm() > 1e-9 ? sum.normalized() : perpendicular(n)).cast<float>();
     return Eigen::Vector4f(t.x(), t.y(), t.z(), side ? -1.0f : 1.0f);
   };
   std::vector<int> twin(count, -1);

@@ -5,10 +5,10 @@
 
 namespace tactus::sim {
 
-// Fills part.tangents (mesh_t.lcm) where there are texture coordinates and normals and none yet: the mean over the
-// triangles around, weighted by their angle at the vertex, at right angles to the normal (Lengyel 2001, "Computing
-// tangent space basis vectors for an arbitrary mesh"). A vertex at which the picture is mirrored on one side
-// becomes two, the second at the end.
+// Fills part.tangents (mesh_t.lcm) where there are texture coordinates and normals but no tangents: the mean over the
+// adjacent triangles, weighted by their angle at the vertex, orthogonal to the normal (Lengyel 2001, "Computing
+// tangent space basis vectors for an arbitrary mesh"). A vertex with mirrored texture coordinates on one side is
+// split; the second copy is appended.
 void make_tangents(MeshPart& part);
 
 }  // namespace tactus::sim

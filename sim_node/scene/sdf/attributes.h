@@ -1,4 +1,4 @@
-// Reads the attributes of one <tactus:...> element, with units, and refuses what is wrong with its line.
+// Reads the attributes of a <tactus:...> element with their units; errors name the line.
 #pragma once
 
 #include <optional>
@@ -14,18 +14,18 @@ class Attributes {
 
   std::optional<std::string> text(const std::string& name);
   std::string required_text(const std::string& name);
-  // In the base unit given ("m", "kg", "s", "1", ...), between the limits.
+  // In the given base unit ("m", "kg", "s", "1", ...), within the limits.
   std::optional<double> quantity(const std::string& name, const std::string& unit, double min, double max);
   double required_quantity(const std::string& name, const std::string& unit, double min, double max);
-  // "0.5m 0.2m": as many quantities, one after the other.
+  // "0.5m 0.2m": `count` quantities in sequence.
   std::vector<double> required_quantities(const std::string& name, std::size_t count, const std::string& unit, double min,
                                           double max);
   std::optional<bool> flag(const std::string& name);
   // "x y z" in metres.
   std::optional<Eigen::Vector3d> position(const std::string& name);
-  // "x y z roll pitch yaw" in metres and radians, as SDF writes poses.
+  // "x y z roll pitch yaw" in metres and radians, as in SDF.
   std::optional<Eigen::Isometry3d> pose(const std::string& name);
-  // Refuses attributes that nobody asked for: a misspelt one would be lost in silence.
+  // Rejects attributes that were not read, so that a misspelt one is not ignored silently.
   void done() const;
 
  private:

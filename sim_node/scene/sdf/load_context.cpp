@@ -18,7 +18,7 @@ std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf:
   const std::filesystem::path file = files.find(uri, element.FilePath());
   if (file.empty()) refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
   if (!std::filesystem::is_regular_file(file))
-    refuse(element, "names \"" + uri + "\", which is no regular file: give it one");
+    refuse(element, "names \"" + uri + "\", which is not a regular file: name a regular file");
   return file;
 }
 

@@ -1,4 +1,4 @@
-// What the parts of the scene loader share: the world that grows, and the two ways to speak of an element.
+// Context of the scene loader: the world under construction, and error and warning messages for an element.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@
 namespace tactus::sim {
 
 struct MeshParts;
-struct LookWords;
+struct LookAttributes;
 
 struct LoadContext {
   const SdfFiles& files;
@@ -24,28 +24,28 @@ struct LoadContext {
   std::map<std::string, int> body_of;      // scoped name -> index
   std::map<std::string, int> mesh_of;      // file, submesh and scale -> index
   std::map<std::string, int> material_of;  // name -> index
-  sdf::ElementPtr camera_sensor;           // the first one met: the camera when the scene names none
+  sdf::ElementPtr camera_sensor;           // the first one found: used when the scene names no camera
   Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
   std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
   std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
-  std::map<std::string, std::shared_ptr<const LookWords>> look_of = {};     // name -> what <world> says of it
+  std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
 
   // "FILE:LINE: sentence"
   [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;
   void warn(const sdf::Element& element, const std::string& sentence) const;
 
-  // The file of a mesh or a picture that an element names; refused when it is not there.
+  // The file of a mesh or picture that an element names; rejects a missing file.
   std::filesystem::path asset_file(const std::string& uri, const sdf::Element& element) const;
 
-  // The pose as libsdformat's frame graph resolves it; refused when it is not finite.
+  // The pose resolved by libsdformat's frame graph; rejects a pose that is not finite.
   Eigen::Isometry3d resolve(const sdf::SemanticPose& pose, const sdf::Element& element,
                             const std::string& resolve_to = "") const;
 };
 
-// XML path as libsdformat writes it, also of elements that it does not know.
+// XML path in libsdformat's notation, also for elements that it does not know.
 std::string xml_path(const sdf::Element& element);
 
-// The first child of that name that stands in the file, not one that a default made.
+// The first child of that name in the file, ignoring elements created as defaults.
 sdf::ElementPtr written(const sdf::ElementPtr& element, const std::string& child);
 
 }  // namespace tactus::sim

@@ -9,8 +9,8 @@ namespace tactus::sim {
 void check_regular_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw std::runtime_error("it is not there");
-  if (!std::filesystem::is_regular_file(status)) throw std::runtime_error("it is no regular file");
+  if (!std::filesystem::exists(status)) throw std::runtime_error("it does not exist");
+  if (!std::filesystem::is_regular_file(status)) throw std::runtime_error("it is not a regular file");
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) throw std::runtime_error("it is not readable");
   if (bytes > max_bytes) throw std::runtime_error("it is larger than " + std::to_string(max_bytes >> 20) + " MiB");

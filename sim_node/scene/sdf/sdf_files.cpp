@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// More includes than any scene has; a chain of files that include each other ten times over would never end.
+// More than any scene has; bounds chains of files that include each other several times.
 constexpr int kMaxIncludes = 10'000;
 
 std::string after_scheme(const std::string& uri) {
@@ -30,7 +30,7 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-// The SDF file of a model folder, as its model.config names it: of several the newest that libsdformat 12 reads.
+// The SDF file that model.config of a model folder names: the newest version that libsdformat 12 reads.
 fs::path file_of_folder(const fs::path& folder) {
   tinyxml2::XMLDocument config;
   if (config.LoadFile((folder / "model.config").c_str()) != tinyxml2::XML_SUCCESS) return {};
@@ -62,10 +62,10 @@ SdfFiles::SdfFiles(const fs::path& file, std::vector<std::string>& warnings)
 }
 
 std::string SdfFiles::where(const std::string& file, int line) const {
-  fs::path shown = file;
-  const fs::path inside = shown.lexically_relative(main_.parent_path());
-  if (!inside.empty()) shown = shown_folder_ / inside;
-  return shown.string() + (line > 0 ? ":" + std::to_string(line) : "");
+  fs::path display_path = file;
+  const fs::path inside = display_path.lexically_relative(main_.parent_path());
+  if (!inside.empty()) display_path = shown_folder_ / inside;
+  return display_path.string() + (line > 0 ? ":" + std::to_string(line) : "");
 }
 
 void SdfFiles::check_version(const tinyxml2::XMLElement& root, const std::string& here) {
@@ -73,32 +73,32 @@ void SdfFiles::check_version(const tinyxml2::XMLElement& root, const std::string
   if (version.empty()) throw std::runtime_error(here + ": <sdf> lacks its version, e.g. version=\"1.9\"");
   const bool major = version.starts_with("1.") && version.size() > 2;
   if (!major || !std::all_of(version.begin() + 2, version.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
-    throw std::runtime_error(here + ": <sdf version=\"" + version + "\"> is no version of SDF: 1.4 to 1.9 are");
+    throw std::runtime_error(here + ": <sdf version=\"" + version + "\"> is not a supported version of SDF: use 1.4 to 1.9");
   if (version.size() > 3)
-    warnings_.push_back(here + ": <sdf version=\"" + version + "\"> is newer than 1.9: what is new in it is not supported");
+    warnings_.push_back(here + ": <sdf version=\"" + version + "\"> is newer than 1.9: its new elements are not supported");
 }
 
 void SdfFiles::scan(const fs::path& file, const std::string& from, std::vector<fs::path> chain) {
-  const std::string whence = from.empty() ? "" : ", included by " + from;
+  const std::string included_by = from.empty() ? "" : ", included by " + from;
   if (std::find(chain.begin(), chain.end(), file) != chain.end())
     throw std::runtime_error(from + ": includes \"" + file.filename().string() +
                              "\", which includes this again: break the circle");
   if (documents_.contains(file)) return;
   auto& document = documents_[file] = std::make_unique<tinyxml2::XMLDocument>();
   if (document->LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)
-    throw std::runtime_error(where(file, document->ErrorLineNum()) + ": this is no well-formed XML" + whence + ": " +
+    throw std::runtime_error(where(file, document->ErrorLineNum()) + ": this is not well-formed XML" + included_by + ": " +
                              document->ErrorStr());
   const tinyxml2::XMLElement* root = document->RootElement();
   if (!root || std::string(root->Value()) != "sdf")
     throw std::runtime_error(where(file, root ? root->GetLineNum() : 1) +
-                             ": the outermost element must be <sdf version=\"1.9\">" + whence);
+                             ": the outermost element must be <sdf version=\"1.9\">" + included_by);
   check_version(*root, where(file, root->GetLineNum()));
 
   for (const fs::path& folder : {file.parent_path(), file.parent_path() / "models", file.parent_path().parent_path()})
     if (fs::is_directory(folder) && std::find(folders_.begin(), folders_.end(), folder) == folders_.end())
       folders_.push_back(folder);
   chain.push_back(file);
-  // Depth-first without recursion: the document's own depth limit bounds the XML, the chain bounds the files.
+  // Depth-first without recursion: the document's depth limit bounds the XML, the chain bounds the files.
   std::vector<const tinyxml2::XMLElement*> pending{root};
   while (!pending.empty()) {
     const tinyxml2::XMLElement* element = pending.back();
@@ -128,7 +128,7 @@ void SdfFiles::follow(const tinyxml2::XMLElement& include, const fs::path& file,
     skipped_.push_back({uri, include.GetLineNum()});
     warnings_.push_back(here + (is_remote(uri) ? ": include of \"" + uri + "\" is skipped: nothing is downloaded, put a "
                                                  "copy beside the file"
-                                               : ": include of \"" + uri + "\" is not beside the file: ours stands in"));
+                                               : ": include of \"" + uri + "\" is not beside the file: the built-in model replaces it"));
     return;
   }
   if (!found.empty() && fs::is_directory(found)) found = file_of_folder(found);
@@ -136,7 +136,7 @@ void SdfFiles::follow(const tinyxml2::XMLElement& include, const fs::path& file,
     throw std::runtime_error(here + ": include of \"" + uri + "\" is not found: put it beside the file");
   scan(fs::weakly_canonical(found), here, chain);
 
-  // libsdformat takes the first in its list of folders, whoever asks.
+  // libsdformat uses the first match in its list of folders, for every including file.
   for (const fs::path& folder : folders_) {
     fs::path first = folder / after_scheme(uri);
     if (!fs::exists(first)) continue;
@@ -165,7 +165,7 @@ const tinyxml2::XMLElement* SdfFiles::in_file(const sdf::Element& element) const
   const tinyxml2::XMLElement* root = document->second->RootElement();
   if (!element.GetParent()) return root;
   if (element.LineNumber()) {
-    // The first of that name on that line.
+    // The first element of that name on that line.
     std::vector<const tinyxml2::XMLElement*> pending{root};
     while (!pending.empty()) {
       const tinyxml2::XMLElement* candidate = pending.back();

@@ -1,6 +1,6 @@
-// The files that make up a scene: the SDF file and everything it includes, found and checked before libsdformat reads
-// them. libsdformat looks for an include in the working directory, overflows its stack on a loop, and prints what is
-// wrong in an included file instead of returning it.
+// The SDF file of a scene and all files that it includes, located and checked before libsdformat reads them.
+// libsdformat searches the working directory for includes, overflows its stack on a cycle, and prints errors of
+// included files instead of returning them.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace tactus::sim {
 
 class SdfFiles {
  public:
-  // Reads `file` and all it includes. Throws std::runtime_error with one sentence and its line.
+  // Reads `file` and all its includes. Throws std::runtime_error with one sentence and its line.
   SdfFiles(const std::filesystem::path& file, std::vector<std::string>& warnings);
   ~SdfFiles();
 
@@ -31,16 +31,17 @@ class SdfFiles {
 
   const std::filesystem::path& main_file() const { return main_; }
   const std::string& main_text() const { return text_; }
-  // The included files, each once, the deepest first.
+  // The included files, each once, deepest first.
   const std::vector<std::filesystem::path>& included() const { return included_; }
-  // Where libsdformat shall look for includes.
+  // Search folders of libsdformat for includes.
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
-  // Includes that are not there to be read: of another machine, or one of the two models that every Gazebo brings.
+  // Includes that are not read: remote files, and the two models of every Gazebo installation.
   const std::vector<Skipped>& skipped() const { return skipped_; }
 
-  // A file that an element names (a mesh, an image), or an empty path when there is none.
+  // Finds a file that an element names (a mesh, an image); an empty path when it does not exist.
   std::filesystem::path find(const std::string& uri, const std::filesystem::path& from_file) const;
-  // "FILE:LINE", the file as the user named it. Elements that libsdformat does not know carry no line: it is looked up.
+  // "FILE:LINE", with the file as the user named it. Elements unknown to libsdformat carry no line; this function
+  // finds it.
   std::string where(const sdf::Element& element) const;
   std::string where(const std::string& file, int line) const;
 

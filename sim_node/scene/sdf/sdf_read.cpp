@@ -13,24 +13,24 @@
 namespace tactus::sim {
 namespace {
 
-// While it lives, nothing that libsdformat says reaches a terminal or a log file in somebody's home.
-class Silence {
+// While an instance exists, libsdformat writes nothing to the terminal or to a log file in the home folder.
+class MutedConsole {
  public:
-  Silence() : console_(std::cerr.rdbuf(heard_.rdbuf())) {
+  MutedConsole() : console_(std::cerr.rdbuf(captured_.rdbuf())) {
     static const bool made = [] {
       const char* home = std::getenv("HOME");
       const std::string before = home ? home : "";
-      setenv("HOME", "/dev/null", 1);  // the console opens $HOME/.sdformat/sdformat.log when it is made
+      setenv("HOME", "/dev/null", 1);  // the console opens $HOME/.sdformat/sdformat.log when it is created
       sdf::Console::Instance();
       home ? setenv("HOME", before.c_str(), 1) : unsetenv("HOME");
       return true;
     }();
     (void)made;
   }
-  // The first error that was said, without colours and source line: "Error [Param.cc:1] message" in escape sequences.
-  // libsdformat says more there than it returns, for instance which value it could not read.
+  // The first printed error, without colours and source line: "Error [Param.cc:1] message" in escape sequences.
+  // libsdformat prints more than it returns, for example the value that it could not read.
   std::string first_error() const {
-    std::istringstream lines(heard_.str());
+    std::istringstream lines(captured_.str());
     for (std::string line; std::getline(lines, line);) {
       std::string plain;
       for (std::size_t i = 0; i < line.size(); ++i) {
@@ -42,18 +42,18 @@ class Silence {
     }
     return "";
   }
-  ~Silence() { std::cerr.rdbuf(console_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  ~MutedConsole() { std::cerr.rdbuf(console_); }
+  MutedConsole(const MutedConsole&) = delete;
+  MutedConsole& operator=(const MutedConsole&) = delete;
 
  private:
-  std::ostringstream heard_;
+  std::ostringstream captured_;
   std::streambuf* console_;
 };
 
 void configure(const SdfFiles& files) {
   sdf::ParserConfig config;
-  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);  // unsupported.h says it better, and with a line
+  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);  // unsupported.h reports these with a line
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetFindCallback([](const std::string&) { return std::string(); });
@@ -63,7 +63,7 @@ void configure(const SdfFiles& files) {
 }
 
 bool tolerated(const sdf::Error& error, const SdfFiles& files) {
-  // bodies.h checks inertia itself and names the line.
+  // bodies.h checks the inertia itself and names the line.
   if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) return true;
   if (error.Code() == sdf::ErrorCode::URI_LOOKUP)
     for (const auto& skipped : files.skipped())
@@ -71,11 +71,11 @@ bool tolerated(const sdf::Error& error, const SdfFiles& files) {
   return error.Message().starts_with("Failed to load a world");
 }
 
-// The line of the element that an error without a line speaks of: the first whose name the message quotes.
-const sdf::Element* spoken_of(const sdf::ElementPtr& element, const std::string& message) {
+// The element that an error without a line refers to: the first one whose name the message quotes.
+const sdf::Element* find_quoted_element(const sdf::ElementPtr& element, const std::string& message) {
   if (!element) return nullptr;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement())
-    if (const sdf::Element* found = spoken_of(child, message)) return found;
+    if (const sdf::Element* found = find_quoted_element(child, message)) return found;
   if (!element->HasAttribute("name") || !element->LineNumber()) return nullptr;
   const std::string name = element->GetAttribute("name")->GetAsString();
   for (const auto& [open, close] : {std::pair{"[", "]"}, {"'", "'"}, {"named ", " "}})
@@ -84,7 +84,7 @@ const sdf::Element* spoken_of(const sdf::ElementPtr& element, const std::string&
 }
 
 void refuse_errors(const sdf::Errors& errors, const sdf::ElementPtr& root, const SdfFiles& files,
-                   const Silence& silence) {
+                   const MutedConsole& muted) {
   const sdf::Error* first = nullptr;
   int more = 0;
   for (const sdf::Error& error : errors) {
@@ -96,30 +96,30 @@ void refuse_errors(const sdf::Errors& errors, const sdf::ElementPtr& root, const
   while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) message.pop_back();
   std::string where = files.where(first->FilePath().value_or(files.main_file().string()), first->LineNumber().value_or(0));
   if (!first->LineNumber())
-    if (const sdf::Element* element = spoken_of(root, message)) where = files.where(*element);
-  const std::string said = message.starts_with("Error reading element") ? silence.first_error() : "";
-  if (!said.empty()) message += ": " + said;
+    if (const sdf::Element* element = find_quoted_element(root, message)) where = files.where(*element);
+  const std::string printed = message.starts_with("Error reading element") ? muted.first_error() : "";
+  if (!printed.empty()) message += ": " + printed;
   throw std::runtime_error(where + ": " + message + (more ? " (and " + std::to_string(more) + " more)" : ""));
 }
 
 }  // namespace
 
 std::unique_ptr<sdf::Root> read_sdf(const SdfFiles& files) {
-  const Silence silence;
+  const MutedConsole muted;
   configure(files);
   auto root = std::make_unique<sdf::Root>();
   try {
     for (const auto& file : files.included()) {
       sdf::Errors errors;
       sdf::readFile(file.string(), sdf::ParserConfig::GlobalConfig(), errors);
-      refuse_errors(errors, nullptr, files, silence);
+      refuse_errors(errors, nullptr, files, muted);
     }
     const sdf::Errors errors = root->Load(files.main_file().string(), sdf::ParserConfig::GlobalConfig());
-    refuse_errors(errors, root->Element(), files, silence);
+    refuse_errors(errors, root->Element(), files, muted);
   } catch (const std::runtime_error&) {
     throw;
   } catch (const std::exception& e) {
-    throw std::runtime_error(files.where(files.main_file().string(), 0) + ": libsdformat gave up: " + e.what());
+    throw std::runtime_error(files.where(files.main_file().string(), 0) + ": libsdformat failed: " + e.what());
   }
   return root;
 }

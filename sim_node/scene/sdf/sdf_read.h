@@ -1,4 +1,4 @@
-// Runs libsdformat over a scene: silent, and with its errors as one exception.
+// Runs libsdformat on a scene without console output; its errors become one exception.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace tactus::sim {
 
-// Throws std::runtime_error with libsdformat's first message, its file and its line. Not for two threads at once:
-// libsdformat's configuration and console are global.
+// Throws std::runtime_error with libsdformat's first message, its file and its line. Not thread-safe: libsdformat's
+// configuration and console are global.
 std::unique_ptr<sdf::Root> read_sdf(const SdfFiles& files);
 
 }  // namespace tactus::sim

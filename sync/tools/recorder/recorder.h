@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tactus/asset_ref_t.hpp>
 #include <tactus/log_info_t.hpp>
 
 #include "sync/log/log_parts.h"

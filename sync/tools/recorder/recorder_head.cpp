@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/log/recorder_types.h"

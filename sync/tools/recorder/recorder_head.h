@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <tactus/asset_ref_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <vector>
 

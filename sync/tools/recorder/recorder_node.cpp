@@ -13,6 +13,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tag_request_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "sync/node/node.h"

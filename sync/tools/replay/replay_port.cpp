@@ -14,7 +14,7 @@ ReplayPort::ReplayPort(const BusOptions& options)
   if (!connection_->lcm.good())
     throw std::runtime_error(
         "cannot send to " + lcm_url(options, options.port) +
-        "; start it with scripts/replay, or add a multicast route: ip route add 224.0.0.0/4 dev lo");
+        "; start it with tactus replay, or add a multicast route: ip route add 224.0.0.0/4 dev lo");
 }
 
 ReplayPort::~ReplayPort() = default;

@@ -1,5 +1,7 @@
 #include "sync/tools/replay/replay_scene.h"
 
+#include <tactus/asset_ref_t.hpp>
+
 namespace tactus::sync {
 
 std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "sync/text/printable.h"
 

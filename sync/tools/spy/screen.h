@@ -4,6 +4,8 @@
 
 #include <map>
 #include <string>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <vector>
 
 #include "sync/tools/spy/channels.h"

@@ -2,6 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/log/log_header.h"

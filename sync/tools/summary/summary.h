@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <tactus/game_state_t.hpp>
+#include <tactus/header_t.hpp>
 #include <tactus/log_info_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <vector>

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <tactus/game_state_t.hpp>
+#include <tactus/hole_state_t.hpp>
 
 #include "sync/tools/summary/summary.h"
 #include "sync/presentation/thresholds.h"

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <tactus/game_state_t.hpp>
+#include <tactus/hole_state_t.hpp>
 
 #include "sync/text/printable.h"
 #include "sync/tools/summary/summary.h"

@@ -23,6 +23,8 @@
 #include <memory>
 #include <mutex>
 #include <random>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
 #include <thread>
 
 #include "audio_node/devices/stream.h"

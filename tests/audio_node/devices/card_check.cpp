@@ -8,6 +8,7 @@
 #include <memory>
 #include <thread>
 #include <vector>
+#include <tactus/presentation_t.hpp>
 
 #include "audio_node/devices/stream.h"
 #include "sync/clocks/pacing.h"

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 #include <optional>
+#include <tactus/presentation_t.hpp>
 #include <tuple>
 
 #include "tests/audio_node/support/bench.h"

@@ -1,6 +1,7 @@
 #include "audio_node/excitation/due_hits.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <vector>
 
 using namespace tactus;

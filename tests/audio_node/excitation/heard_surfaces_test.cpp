@@ -1,6 +1,8 @@
 #include "audio_node/excitation/heard_surfaces.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/audio_node/support/waves.h"
 #include "tests/grey_png.h"

@@ -6,6 +6,12 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "audio_node/spatial/pan.h"
 #include "audio_node/mixer/renderer.h"

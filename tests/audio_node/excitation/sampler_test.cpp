@@ -3,6 +3,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/samples/loops.h"
 #include "lcmtypes/vectors.h"

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/contact_patch.h"
 #include "audio_node/mixer/scrapes.h"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <tactus/presentation_t.hpp>
 #include <vector>
 
 #include "tests/audio_node/support/bench.h"

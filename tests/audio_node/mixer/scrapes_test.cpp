@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <tactus/material_def_t.hpp>
 
 #include "tests/audio_node/support/rub.h"
 

@@ -2,6 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/body_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/measured_mode_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 

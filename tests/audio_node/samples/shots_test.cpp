@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/audio_node/support/bench.h"
 #include "tests/audio_node/support/sounds.h"

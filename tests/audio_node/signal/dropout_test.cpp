@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/presentation_t.hpp>
 #include <vector>
 
 #include "tests/audio_node/support/bench.h"

@@ -1,6 +1,9 @@
 #include "audio_node/spatial/ear.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/clocks/clock_maps.h"

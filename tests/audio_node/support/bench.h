@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <tactus/presentation_t.hpp>
 #include <vector>
 
 #include "audio_node/mixer/renderer.h"

@@ -4,8 +4,16 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <vector>
 
 #include "lcmtypes/vectors.h"

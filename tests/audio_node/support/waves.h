@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
 
 #include "audio_node/excitation/heard_surfaces.h"
 #include "sync/time/time.h"

@@ -1,11 +1,18 @@
 // Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and
 // rolled on by a tip of its own material, all alike, with silence after each. What audio_node --log makes of it is drawn by
-// scripts/draw_sounds.
+// tests/measure/draw_sounds.
 //
 //   bin/bench_sounds LOG MATERIAL...
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/modal/body_sound.h"
 #include "audio_node/excitation/contact_patch.h"
@@ -19,7 +26,7 @@ using audio::test::RecordedRun;
 
 namespace {
 
-// Of each material, s: scripts/draw_sounds draws it by the same.
+// Of each material, s: tests/measure/draw_sounds draws it by the same.
 constexpr double kFirst_s = 1, kEach_s = 4.2, kScrape_s = 1.6, kRoll_s = 2.9, kLasts_s = 0.6;
 constexpr double kSpeed_m_s = 0.15, kForce_N = 4, kStep_s = 1.0 / 60;
 constexpr double kTip_1_m = 200;  // a round tip of 5 mm

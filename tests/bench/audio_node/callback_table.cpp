@@ -17,6 +17,7 @@
 #include <random>
 #include <utility>
 #include <vector>
+#include <tactus/presentation_t.hpp>
 
 #include "audio_node/mixer/renderer.h"
 #include "audio_node/spatial/space_of.h"

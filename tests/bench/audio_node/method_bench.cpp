@@ -10,6 +10,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/mixer/renderer.h"

@@ -8,8 +8,16 @@
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/node/node.h"

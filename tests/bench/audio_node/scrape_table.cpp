@@ -8,6 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "audio_node/mixer/scrapes.h"
 #include "audio_node/excitation/sliding.h"

@@ -1,9 +1,16 @@
 // Strikes bodies one after the other, each alone, through the card's callback and the virtual card, and says into which WAV file.
-// scripts/measure_modes holds what is in them against closed forms.
+// tests/measure/measure_modes holds what is in them against closed forms.
 #include <chrono>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/vec3_t.hpp>
+#include <tactus/vec3f_t.hpp>
 #include <thread>
 
 #include <CLI/CLI.hpp>

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/relief.h"
 #include "sim_node/model/triangles.h"

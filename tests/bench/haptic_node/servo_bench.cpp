@@ -9,6 +9,11 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/model/triangles.h"
 #include "tests/bench/haptic_node/stroke_loop.h"

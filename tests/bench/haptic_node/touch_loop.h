@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <optional>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
 #include <utility>
 #include <vector>
 

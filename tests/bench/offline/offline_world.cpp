@@ -2,6 +2,12 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sim_node/scene/scene_assets.h"
 #include "sync/bus/decode.h"

@@ -5,7 +5,13 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "haptic_node/rendering/session.h"

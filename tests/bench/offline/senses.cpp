@@ -4,6 +4,10 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/mixer/renderer.h"
@@ -21,7 +25,7 @@ namespace {
 
 constexpr int kFrames = 128;  // of a block
 constexpr double kRate_Hz = 48000;
-constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as scripts/measure_onsets
+constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as tests/measure/measure_onsets
 
 double seconds(std::int64_t host_ns) { return static_cast<double>(host_ns - kWorldBegins_ns) * 1e-9; }
 
@@ -121,7 +125,7 @@ class Pictures {
   }
   void finish(Rendered& out) const {
     for (const contact_event_t& e : out.events) {
-      if (!visual::owed(e)) continue;
+      if (!visual::is_expected(e)) continue;
       ++out.visual.owed;
       if (const auto at = shown_.find(e.event_id); at != shown_.end())
         out.visual.error_s.push_back(at->second - 1e-9 * static_cast<double>(e.time_ns));

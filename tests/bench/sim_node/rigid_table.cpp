@@ -13,6 +13,8 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "haptic_node/rendering/rigid_coupling.h"

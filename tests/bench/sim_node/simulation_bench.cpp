@@ -1,5 +1,5 @@
 // One scene with one detector and one law of contact: what a step costs, how deep and how steady contact is, what
-// it does to energy; and its log rendered by all senses. Prints JSON; scripts/benchmark_simulation runs all
+// it does to energy; and its log rendered by all senses. Prints JSON; tests/measure/benchmark_simulation runs all
 // pairings.
 //
 //   bin/simulation_bench SCENE.sdf [--detector ode] [--solver quick] [--seconds 3] [--log FILE]
@@ -10,6 +10,9 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "sim_node/model/behaviour_model.h"
 #include "sim_node/scene/load_sdf.h"

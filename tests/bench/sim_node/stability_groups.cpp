@@ -4,6 +4,10 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/behaviour/behaviour_checks.h"

@@ -8,6 +8,10 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/pose_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "sim_node/touch/tool_touch.h"
 #include "sim_node/model/triangles.h"

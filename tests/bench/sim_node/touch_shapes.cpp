@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/pose_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/touch/tool_touch.h"
 #include "sim_node/scene/meshes/mesh_file.h"
@@ -180,7 +185,7 @@ class Bench {
     put();
     for (const Vector3d& way : scene_.ways)
       for (int k = 0; k < 60; ++k) {
-        probe.feel(sync::sim_time(m.header.sim_time_ns), bodies_, {&m, 1});
+        probe.update_at_rest(sync::sim_time(m.header.sim_time_ns), bodies_, {&m, 1});
         double gap = kMargin_m;
         for (const touch_plane_t& p : probe.model().planes) {
           const Vector3d n = to_eigen(p.normal);

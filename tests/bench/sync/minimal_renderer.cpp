@@ -1,6 +1,6 @@
 // The least that a renderer is to the bus: one more that hears it. Sixty times a second it takes in what has arrived,
 // decodes what a renderer needs, counts gaps, and takes the time from publish_time_ns to the arrival that the kernel
-// stamped. Behind scripts/measure_growth; prints one JSON object when it is ended.
+// stamped. Behind tests/measure/measure_growth; prints one JSON object when it is ended.
 #include <arpa/inet.h>
 #include <signal.h>
 #include <sys/socket.h>

@@ -9,6 +9,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <vector>
 
 #include "sync/resampling/body_history.h"

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <iostream>
 #include <numbers>
+#include <tactus/question_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/golden/shipped_scene.h"
 #include "visual_node/overlay/question_panel.h"

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/load_sdf.h"

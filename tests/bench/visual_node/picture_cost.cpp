@@ -13,6 +13,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tactus/body_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/clocks/pacing.h"

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <tactus/body_def_t.hpp>
+#include <tactus/contact_event_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/load_sdf.h"

@@ -1,6 +1,14 @@
 #include "tests/bench/visual_node/picture_scenes.h"
 
 #include <cmath>
+#include <tactus/body_def_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/pose_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

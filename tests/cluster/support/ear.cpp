@@ -1,6 +1,13 @@
 #include "tests/cluster/support/ear.h"
 
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 namespace tactus::cluster {
 namespace {

@@ -5,7 +5,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <vector>

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>

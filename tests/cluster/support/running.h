@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/cluster/support/ear.h"
 #include "tests/cluster/support/processes.h"

@@ -3,6 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/grey_png.h"
 #include "tests/haptic_node/support/world.h"

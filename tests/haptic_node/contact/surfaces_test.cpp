@@ -1,6 +1,8 @@
 #include "haptic_node/contact/surfaces.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/proxy.h"
 #include "tests/haptic_node/support/world.h"

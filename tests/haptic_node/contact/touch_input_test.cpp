@@ -1,6 +1,7 @@
 #include "haptic_node/contact/touch_input.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/touch_model_t.hpp>
 
 using namespace tactus;
 using namespace tactus::haptic;

@@ -1,6 +1,8 @@
 #include "haptic_node/devices/external.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/device_force_t.hpp>
+#include <tactus/device_state_t.hpp>
 
 #include "haptic_node/devices/selection/make_device.h"
 #include "lcmtypes/vectors.h"

@@ -1,6 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/rendering/session.h"
 #include "tests/haptic_node/support/world.h"

@@ -1,5 +1,6 @@
 // Devices that turn: torque to the hand, spin from it.
 #include <catch2/catch.hpp>
+#include <tactus/device_state_t.hpp>
 
 #include "haptic_node/devices/external.h"
 #include "haptic_node/devices/playback.h"

@@ -1,5 +1,10 @@
 // A face that lies on more places than a message tells of.
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

@@ -1,6 +1,7 @@
 #include "haptic_node/rendering/quality.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

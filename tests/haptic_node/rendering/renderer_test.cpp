@@ -5,6 +5,10 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/valid.h"

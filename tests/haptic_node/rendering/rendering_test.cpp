@@ -2,6 +2,11 @@
 #include "haptic_node/rendering/rendering.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/rendering/rigid_coupling.h"
 #include "tests/haptic_node/support/world.h"

@@ -1,6 +1,12 @@
 #include "haptic_node/rendering/session.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

@@ -1,6 +1,7 @@
 // Closed loops of hand, renderer and world with the delays of a bus between them.
 #include <catch2/catch.hpp>
 #include <deque>
+#include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/devices/virtual_hand.h"
 #include "tests/haptic_node/support/world.h"

@@ -2,6 +2,8 @@
 // the facet that is nearest to the proxy, a little late.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

@@ -1,6 +1,7 @@
 #include "haptic_node/rendering/transient.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

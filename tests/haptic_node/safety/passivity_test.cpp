@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "tests/haptic_node/support/episode.h"
 #include "tests/haptic_node/support/world.h"

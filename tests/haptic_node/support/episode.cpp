@@ -4,6 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <random>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 #include "tests/haptic_node/support/world.h"
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <tactus/touch_applied_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 #include <vector>
 
 #include "haptic_node/contact/touch_model_view.h"

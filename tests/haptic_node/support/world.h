@@ -2,6 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 #include <vector>
 
 #include "haptic_node/rendering/renderer.h"

@@ -11,9 +11,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Inverse dynamics in the classical form (Newton and Euler for each link, in three dimensions), written apart from
-// the algorithm under test: the forces along the joints that these accelerations need, and for a free base the
-// force and moment about its centre that would have to hold it.
+// Inverse dynamics in the classical form (Newton and Euler for each link, in three dimensions), independent of the
+// algorithm under test: the joint forces that these accelerations require, and for a free base the force and moment
+// about its centre that would hold it.
 struct NewtonEuler {
   ArticulatedSystem& s;
   std::vector<double> needed;
@@ -103,12 +103,12 @@ Eigen::VectorXd joined(ArticulatedSystem& s, int link, const Vector3d& p, const 
 
 }  // namespace
 
-TEST_CASE("Accelerations need, by Newton and Euler, exactly the torques that act, in trees of every joint") {
+TEST_CASE("Inverse dynamics by Newton-Euler returns the applied torques, in trees of every joint type") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 200; ++n) {
     ArticulatedSystem s(random_tree(1 + n % 9, n % 3 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     std::vector<double> torque(s.tree().dofs.size());
     for (std::size_t j = 0; j < torque.size(); ++j)
       if (!s.tree().links[at(s.tree().dofs[j].link)].def.is_free)
@@ -117,7 +117,7 @@ TEST_CASE("Accelerations need, by Newton and Euler, exactly the torques that act
     double largest = 1;
     for (const double a : s.accelerations()) largest = std::max(largest, std::abs(a));
     INFO("tree " << n << " fastest " << largest);
-    // Sums of some 50 terms as large as mass, length and acceleration (all below 1 here) allow.
+    // Tolerance of sums of about 50 terms of the size of mass, length and acceleration (all below 1 here).
     for (std::size_t j = 0; j < torque.size(); ++j)
       CHECK(oracle.needed[j] == Approx(torque[j]).margin(1e-12 * largest));
     CHECK(oracle.base_force.norm() < 1e-12 * largest);
@@ -125,12 +125,12 @@ TEST_CASE("Accelerations need, by Newton and Euler, exactly the torques that act
   }
 }
 
-TEST_CASE("Forces and moments on links do work at the rate that the energy grows") {
+TEST_CASE("The power of forces and moments on links equals the rate of energy") {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 30; ++n) {
     ArticulatedSystem s(random_tree(5, n % 2 == 0, random));
-    stir(s, random, 1);
+    randomize_state(s, random, 1);
     const Vector3d force(u(random), u(random), u(random)), moment(u(random), u(random), u(random));
     const Vector3d point = s.dynamics().centre_m(4) + Vector3d(0.1, 0.2, -0.1);
     const double power = force.dot(s.dynamics().velocity_at(4, point)) + moment.dot(s.dynamics().spin_rad_s(4));
@@ -138,17 +138,17 @@ TEST_CASE("Forces and moments on links do work at the rate that the energy grows
     s.add_force(4, force, point);
     s.add_moment(4, moment);
     s.step(h);
-    // One-sided difference: errs by h times the second derivative, some 1e3 W/s here; rounding 1e-15 J / h = 1e-9
-    // W.
+    // One-sided difference: the error is h times the second derivative, about 1e3 W/s here; rounding is 1e-15 J / h =
+    // 1e-9 W.
     CHECK((energy_J(s) - before) / h == Approx(power).margin(5e-3));
   }
 }
 
-TEST_CASE("Points move as their Jacobian and their joint rates say") {
+TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
   std::mt19937 random(3);
   for (int n = 0; n < 30; ++n) {
     ArticulatedSystem s(random_tree(6, n % 2 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     const auto state = s.state();
     const std::size_t dofs = state.rates.size();
     const Vector3d local(0.1, -0.2, 0.3);
@@ -160,7 +160,7 @@ TEST_CASE("Points move as their Jacobian and their joint rates say") {
     for (std::size_t j = 0; j < dofs; ++j)
       for (int k = 0; k < 3; ++k) sum[k] += rows[at(k) * dofs + j] * state.rates[j];
     CHECK((sum - s.dynamics().velocity_at(5, here)).norm() < 1e-12 * (1 + sum.norm()));
-    // And as the poses do: central difference, errs by h^2 v'' / 6 with v'' below 1e4 m/s^3.
+    // And with the poses. Central difference: the error is h^2 v'' / 6 with v'' below 1e4 m/s^3.
     const double h = 1e-5;
     std::vector<double> by(dofs);
     for (std::size_t j = 0; j < dofs; ++j) by[j] = h * state.rates[j];
@@ -173,11 +173,11 @@ TEST_CASE("Points move as their Jacobian and their joint rates say") {
   }
 }
 
-TEST_CASE("A blow moves another point as a blow there would move this one, and as the joints say") {
+TEST_CASE("The response of one point to an impulse at another is symmetric and matches the joint rates") {
   std::mt19937 random(4);
   for (int n = 0; n < 60; ++n) {
     ArticulatedSystem s(random_tree(2 + n % 7, n % 3 == 0, random));
-    stir(s, random);
+    randomize_state(s, random);
     const int links = static_cast<int>(s.tree().links.size());
     const int a = n % links, b = (3 * n + 1) % links;
     const Vector3d pa = s.dynamics().centre_m(a) + Vector3d(0.1, 0, 0.2),
@@ -185,14 +185,14 @@ TEST_CASE("A blow moves another point as a blow there would move this one, and a
     const Eigen::Matrix3d there = s.dynamics().response(a, pa, b, pb), back = s.dynamics().response(b, pb, a, pa);
     const double scale = 1e-11 * (1 + there.norm());
     CHECK((there - back.transpose()).norm() < scale);
-    // The same through the rates of the joints, J M^-1 J^T.
+    // The same with the joint rates, J M^-1 J^T.
     std::vector<double> rows(3 * s.tree().dofs.size());
     s.dynamics().jacobian(a, pa, rows);
     const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
         rows.data(), 3, static_cast<Eigen::Index>(s.tree().dofs.size()));
     for (int k = 0; k < 3; ++k)
       CHECK((jacobian * joined(s, b, pb, Vector3d::Unit(k)) - there.col(k)).norm() < scale);
-    // A blow's energy: what is struck gains half the impulse times the velocity that it takes.
+    // Energy of an impulse: the body gains half the impulse times its change of velocity.
     auto still = s.state();
     std::fill(still.rates.begin(), still.rates.end(), 0.0);
     s.set_state(still);
@@ -204,10 +204,10 @@ TEST_CASE("A blow moves another point as a blow there would move this one, and a
   }
 }
 
-TEST_CASE("A blow along a joint is answered along another as that one's would be along it") {
+TEST_CASE("The response of one joint to an impulse along another is symmetric") {
   std::mt19937 random(5);
   ArticulatedSystem s(random_tree(7, true, random));
-  stir(s, random);
+  randomize_state(s, random);
   const std::size_t n = s.tree().dofs.size();
   Eigen::MatrixXd inverse(n, n);
   for (std::size_t j = 0; j < n; ++j) s.dynamics().strike_dof(static_cast<int>(j), {inverse.data() + j * n, n});
@@ -215,9 +215,9 @@ TEST_CASE("A blow along a joint is answered along another as that one's would be
   CHECK(inverse.ldlt().isPositive());
 }
 
-TEST_CASE("A blow in the middle of a free rod leaves a joint at its centre of percussion at rest") {
-  // A rod of length l struck at 2/3 l turns about its end without loading it: what the hinge there feels is
-  // nothing, so the free rod and the hinged one move alike.
+TEST_CASE("An impulse at the middle of a free rod leaves a joint at its centre of percussion at rest") {
+  // A rod of length l struck at 2/3 l rotates about its end without a load on it. A hinge there gets no force, so the
+  // free rod and the hinged one move equally.
   std::vector<LinkDef> hinged = {rod_link(-1, JointKind::kBall, {0, 0, 0})};
   const double m = hinged[0].mass_kg, inertia = hinged[0].inertia_kg_m2(2, 2), half = 0.05;
   std::vector<LinkDef> loose = hinged;
@@ -230,7 +230,7 @@ TEST_CASE("A blow in the middle of a free rod leaves a joint at its centre of pe
   CHECK(ra[2] == Approx(blow.y() * struck.x() / (inertia + m * half * half)).epsilon(1e-12));
 }
 
-TEST_CASE("A tree that has no dynamics is refused with its link") {
+TEST_CASE("A tree without valid dynamics is rejected with the name of the link") {
   std::vector<LinkDef> links = horizontal_chain(2);
   links[1].mass_kg = 0;
   CHECK_THROWS_WITH(ArticulatedSystem(links), Catch::Contains("link 1"));

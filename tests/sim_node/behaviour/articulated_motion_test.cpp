@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kG = 9.81, kH = 0.001;
 
-// A planar chain of n rods by the Lagrangian in absolute angles (from the x axis, upwards), written apart from the
+// A planar chain of n rods by the Lagrangian in absolute angles (from the x axis, upwards), independent of the
 // algorithm under test: the centre of rod k lies at the sum of reach(k, i) e(angle_i).
 struct PlanarChain {
   int n;
@@ -67,7 +67,7 @@ TEST_CASE("The chain of eleven universal joints released from horizontal keeps i
   auto state = s.state();
   state.rates[vertical_first ? 0 : 1] = about_vertical;
   s.set_state(state);
-  // Of the weight's energy against the pivot, all rods at their distance below it: 2.968 J.
+  // Potential energy relative to the pivot, with all rods at their distance below it: 2.968 J.
   const double scale = 0.05 * kG * 0.1 * 11 * 11 / 2, start = energy_J(s);
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -79,7 +79,7 @@ TEST_CASE("The chain of eleven universal joints released from horizontal keeps i
   CHECK(worst < 0.01);
 }
 
-TEST_CASE("A planar chain moves as its Lagrangian says") {
+TEST_CASE("A planar chain follows its Lagrangian equations") {
   const int n = 4;
   ArticulatedSystem s(horizontal_chain(n, JointKind::kRevolute, {0, -1, 0}));
   const PlanarChain oracle(n);
@@ -93,13 +93,13 @@ TEST_CASE("A planar chain moves as its Lagrangian says") {
     for (int k = 0; k < n; ++k) end += (k + 1 < n ? 0.1 : 0.05) * Vector3d(std::cos(q[k]), 0, std::sin(q[k]));
     worst = std::max(worst, (s.dynamics().centre_m(n - 1) - end).norm());
   }
-  // Sub-steps err by at most 1e-4 of the fastest rate (30 rad/s here), in practice a hundredth; the swing
-  // amplifies.
+  // The error of a sub-step is at most 1e-4 of the fastest rate (30 rad/s here), in practice a hundredth of that; the
+  // swing amplifies it.
   INFO("worst " << worst);
   CHECK(worst < 1e-5);
 }
 
-TEST_CASE("A chain that hardly swings does so in the modes of its stiffness and mass") {
+TEST_CASE("Small oscillations of a chain follow the modes of its stiffness and mass") {
   const int n = 5;
   std::vector<LinkDef> links;
   for (int i = 0; i < n; ++i) {
@@ -125,13 +125,13 @@ TEST_CASE("A chain that hardly swings does so in the modes of its stiffness and 
     const double period = 2 * std::numbers::pi / std::sqrt(modes.eigenvalues()[mode]);
     const int steps = 2000;
     for (int i = 0; i < steps; ++i) s.step(period / steps);
-    // After a period everything is where it was; amplitudes of 1e-4 lengthen it by 1e-9.
+    // After one period all coordinates return; amplitudes of 1e-4 lengthen it by 1e-9.
     for (std::size_t i = 0; i < state.positions.size(); ++i)
       CHECK(std::abs(s.state().positions[i] - state.positions[i]) < 1e-5 * amplitude);
   }
 }
 
-TEST_CASE("A rod swings with the period of the elliptic integral, however wide") {
+TEST_CASE("A rod swings with the period of the elliptic integral at any amplitude") {
   const double amplitude = GENERATE(0.1, 1.0, 2.5, 3.1);
   std::vector<LinkDef> links = {rod_link(-1, JointKind::kRevolute, {0, 0, 0}, {0, 0, -1})};
   links[0].axes[0].axis = {0, 1, 0};
@@ -149,7 +149,7 @@ TEST_CASE("A rod swings with the period of the elliptic integral, however wide")
     s.step(kH);
     const double now = s.state().positions[0];
     if (last < 0 && now >= 0) {
-      // Where the cubic through both ends of the step crosses zero, by a Newton step from the chord.
+      // Zero crossing of the cubic through both ends of the step, by a Newton step from the chord.
       const double mean = (rate + s.state().rates[0]) / 2;
       end = (i - 1) * kH - last / mean;
       if (first < 0) first = end;
@@ -157,17 +157,17 @@ TEST_CASE("A rod swings with the period of the elliptic integral, however wide")
     }
     last = now;
   }
-  // The chord errs by h^2 q'' / 8 q' < 1e-7 s in all.
+  // The error of the chord is h^2 q'' / 8 q' < 1e-7 s in total.
   CHECK((end - first) / 10 == Approx(period).epsilon(1e-6));
 }
 
-TEST_CASE("What flies keeps its momentum and energy") {
+TEST_CASE("A flying system keeps its momentum and energy") {
   std::mt19937 random(6);
   for (int n = 0; n < 10; ++n) {
     auto links = random_tree(4 + n % 3, true, random);
     for (LinkDef& l : links) l.gravity_m_s2.setZero();
     ArticulatedSystem s(links);
-    stir(s, random, 3);
+    randomize_state(s, random, 3);
     const auto momenta = [&] {
       Vector3d p = Vector3d::Zero(), l = Vector3d::Zero();
       for (std::size_t i = 0; i < links.size(); ++i) {
@@ -183,16 +183,16 @@ TEST_CASE("What flies keeps its momentum and energy") {
     for (int i = 0; i < steps; ++i) s.step(kH);
     const auto [p2, l2] = momenta();
     INFO("tree " << n << ": " << (p2 - p).norm() / p.norm() << " " << (l2 - l).norm() / l.norm());
-    // Not held exactly: the fifth order leaves (rate h)^6 of each step's change; 3 rad/s and accelerations of some
-    // 1e3 rad/s^2 make that 1e-12 a step.
+    // Not conserved exactly: the fifth order leaves (rate h)^6 of each step's change. Rates of 3 rad/s and
+    // accelerations of about 1e3 rad/s^2 give 1e-12 per step.
     CHECK((p2 - p).norm() < 1e-12 * steps * std::max(1.0, p.norm()));
     CHECK((l2 - l).norm() < 1e-12 * steps * std::max(1.0, l.norm()));
     CHECK(energy_J(s) == Approx(energy).epsilon(1e-9));
   }
 }
 
-TEST_CASE("An asymmetric top free of its mount nutates by Jacobi's elliptic functions' period") {
-  // Spun near its middle axis; the component along it returns after 4 K(k) / rate (Landau and Lifshitz 1976,
+TEST_CASE("A free asymmetric top nutates with the period of Jacobi's elliptic functions") {
+  // Spinning near its middle axis: the component along it returns after 4 K(k) / rate (Landau and Lifshitz 1976,
   // section 37).
   LinkDef top;
   top.is_free = true;
@@ -203,7 +203,7 @@ TEST_CASE("An asymmetric top free of its mount nutates by Jacobi's elliptic func
   for (int k = 0; k < 3; ++k) state.rates[static_cast<std::size_t>(k)] = spin[k];
   s.set_state(state);
   const double e2 = inertia.dot(spin.cwiseAbs2()), m2 = inertia.cwiseProduct(spin).squaredNorm();
-  // For m^2 > 2 E I2 the first and third axes change places.
+  // For m^2 > 2 E I2 the first and third axes are exchanged.
   double i1 = inertia[0], i2 = inertia[1], i3 = inertia[2];
   if (m2 < e2 * i2) std::swap(i1, i3);
   const double k2 = (i2 - i1) * (e2 * i3 - m2) / ((i3 - i2) * (m2 - e2 * i1));
@@ -217,7 +217,7 @@ TEST_CASE("An asymmetric top free of its mount nutates by Jacobi's elliptic func
   CHECK((local - before).norm() < 1e-5);
 }
 
-TEST_CASE("A system continues from its state to the bit") {
+TEST_CASE("A system continues from its saved state to the bit") {
   ArticulatedSystem a(horizontal_chain(11)), b(horizontal_chain(11));
   for (int i = 0; i < 500; ++i) a.step(kH);
   b.set_state(a.state());

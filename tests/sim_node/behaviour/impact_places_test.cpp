@@ -1,7 +1,8 @@
-// Where surfaces met, as events tell it: in the frames of the bodies, whatever frames the law reckons in.
+// Impact positions in the events: in the body frames, for every contact law and its internal frames.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/solver.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr double kRadius_m = 0.02, kLength_m = 0.2, kMass_kg = 0.3;
 const Eigen::Isometry3d kLying(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY()));
 
-// A capsule that lies in the air along x, 10 cm above the floor, with its weight somewhere along its axis.
+// A capsule in the air along x, 10 cm above the floor, with its centre of mass somewhere on its axis.
 int add_capsule(WorldDef& w, double centre_of_mass_m) {
   const double across = kMass_kg * kLength_m * kLength_m / 12;
   const int body = add_body(w, "capsule", kMass_kg, Vector3d(across, across, across / 50).asDiagonal(),
@@ -27,15 +28,15 @@ int add_capsule(WorldDef& w, double centre_of_mass_m) {
   return body;
 }
 
-// The scenes: what strikes, and how curved it truly is there.
+// A test scene: the body that strikes, and its true curvature there.
 struct Blow {
   WorldDef world = empty_world();
   int body = -1;
   double curvature_1_m = 0;
 };
 
-// It stands on its head and falls onto it. From the centre of mass, which is in the middle of its head, that is no
-// end of it.
+// It stands upright and falls onto its head. The centre of mass is in the middle of the head, which is thus no end of
+// the body as seen from it.
 Blow falling_head_first() {
   Blow b;
   add_floor(b.world);
@@ -45,7 +46,7 @@ Blow falling_head_first() {
   return b;
 }
 
-// It hangs on one end, is let go when it lies, and strikes with the other.
+// It hangs on one end, is released horizontally, and strikes with the other end.
 Blow swinging_on_a_hinge() {
   Blow b;
   add_floor(b.world);
@@ -63,28 +64,27 @@ double from_surface_m(const Vector3d& in_body) {
 
 }  // namespace
 
-TEST_CASE(
-    "Places of impacts lie on the shapes as the scene has them, of bodies with their weight aside and of links") {
+TEST_CASE("Impact positions lie on the shapes of the scene, for bodies with an offset centre of mass and for links") {
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.solver = GENERATE("impulse", "penalty");
-  s.penalty_stiffness_N_m = 100;  // so soft that the blow is one
+  s.penalty_stiffness_N_m = 100;  // so soft that the impact is a single one
   Solver solver(blow.world, s);
-  int blows = 0;
+  int impacts = 0;
   for (int i = 0; i < 600; ++i) {
     solver.step();
     for (const Manifold& m : solver.solved()) {
-      if (m.impact.blows == 0) continue;
-      ++blows;
+      if (m.impact.count == 0) continue;
+      ++impacts;
       const bool first = m.body_a == blow.body;
       CHECK(from_surface_m(first ? m.impact.a_body_m : m.impact.b_body_m) == Approx(0).margin(1e-9));
       CHECK((first ? m.impact.b_body_m : m.impact.a_body_m).z() == Approx(0).margin(1e-9));
     }
   }
-  CHECK(blows > 0);
+  CHECK(impacts > 0);
 }
 
-TEST_CASE("What a body strikes that was put elsewhere and turned is told in the frame of that one") {
+TEST_CASE("An impact on a displaced and rotated body is reported in the frame of that body") {
   WorldDef w = empty_world();
   const Eigen::Isometry3d turned = at(0.3, -0.2, 0.5) * Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized());
   const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), turned);
@@ -93,20 +93,20 @@ TEST_CASE("What a body strikes that was put elsewhere and turned is told in the 
   w.bodies[static_cast<std::size_t>(ball)].velocity_m_s = turned.linear() * Vector3d(0, 0, -1);
   w.gravity_m_s2.setZero();
   Solver solver(w, Settings{});
-  int blows = 0;
+  int impacts = 0;
   for (int i = 0; i < 300; ++i) {
     solver.step();
     for (const Manifold& m : solver.solved()) {
-      if (m.impact.blows == 0) continue;
-      ++blows;
+      if (m.impact.count == 0) continue;
+      ++impacts;
       CHECK((m.impact.a_body_m - Vector3d(0.05, 0.03, 0.05)).norm() < 1e-6);
       CHECK((m.impact.b_body_m + turned.linear() * Vector3d(0, 0, 0.02)).norm() < 1e-6);
     }
   }
-  CHECK(blows == 1);
+  CHECK(impacts == 1);
 }
 
-TEST_CASE("A blow is told with the curvature of the place that struck") {
+TEST_CASE("An impact is reported with the curvature at its position") {
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.groups = GENERATE("single", "dual");

@@ -14,7 +14,7 @@ Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Ei
 
 }  // namespace
 
-TEST_CASE("Newton's cradle: as many balls leave as arrive, with touching balls and with balls apart") {
+TEST_CASE("Newton's cradle: the same number of balls leave as arrive, with touching and with separated balls") {
   const double apart = GENERATE(0.0, 1e-4);
   const int arriving = GENERATE(1, 2, 3);
   Toys toys;
@@ -37,13 +37,13 @@ TEST_CASE("Newton's cradle: as many balls leave as arrive, with touching balls a
   CHECK(energy == Approx(arriving).margin(1e-12));
 }
 
-TEST_CASE("A ball bounces to e^2n of its height and at the instants that follow, at 1 kHz and at 60 Hz") {
+TEST_CASE("A ball bounces to e^2n of its height and at the matching times, at 1 kHz and at 60 Hz") {
   const double e = GENERATE(0.5, 0.8, 1.0), h = GENERATE(0.001, 1.0 / 60);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
   const double r = 0.03, height = 1.37;
   const int ball = toys.ball(0.2, r, {0, 0, r + height}, 0.5, e);
-  // Starts at rest; leapfrog's velocity belongs to half a step earlier.
+  // Starts at rest; the leapfrog velocity belongs to half a step earlier.
   toys.world.free_body(ball).velocity_m_s.z() = h / 2 * kToyG;
   const double fall = std::sqrt(2 * height / kToyG);
   double touch = fall, worst = 0, speed = kToyG * fall;
@@ -62,7 +62,7 @@ TEST_CASE("A ball bounces to e^2n of its height and at the instants that follow,
     worst = std::max(worst, std::abs(toys.motion(ball).centre_m.z() - r - expected));
   }
   INFO("e " << e << " h " << h << " worst " << worst);
-  // Impacts inside a step are placed exactly; the rest is rounding.
+  // Impacts inside a step have exact times; the rest is rounding.
   CHECK(worst < 1e-11);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("A box that falls flat rebounds flat") {
   CHECK(toys.motion(box).spin_rad_s.norm() < 1e-9);
 }
 
-TEST_CASE("Two bodies that meet keep their momentum and spin momentum, with friction and spin") {
+TEST_CASE("A collision with friction and spin keeps linear and angular momentum") {
   Toys toys;
   toys.gravity_m_s2.setZero();
   const int a = toys.ball(0.3, 0.05, {-0.2, 0, 0}, 0.4, 0.6),
@@ -100,12 +100,12 @@ TEST_CASE("Two bodies that meet keep their momentum and spin momentum, with fric
   for (int i = 0; i < 600; ++i) toys.step(0.001);
   CHECK(fa.velocity_m_s.x() < 0);
   CHECK((momenta().first - p).norm() < 1e-12);
-  // The blow is taken at the instant of impact and applied where the bodies were at the start of the step: off by
-  // the way between, h times the closing speed of 1.5 m/s, times the blow of at most (1 + e) 0.21 kg 1.5 m/s.
+  // The impulse is computed at the impact and applied at the poses of the start of the step. The error is the
+  // distance between, h times the closing speed of 1.5 m/s, times the impulse of at most (1 + e) 0.21 kg 1.5 m/s.
   CHECK((momenta().second - l).norm() < 0.001 * 1.5 * 1.6 * 0.21 * 1.5);
 }
 
-TEST_CASE("A ball that strikes a hanging rod: both leave as the compound pendulum's blow says") {
+TEST_CASE("A ball that strikes a hanging rod follows the impact formula of the compound pendulum") {
   const double e = GENERATE(0.0, 0.5, 1.0), where = GENERATE(0.02, 0.05, 0.0667, 0.09);
   Toys toys;
   toys.gravity_m_s2.setZero();
@@ -114,17 +114,17 @@ TEST_CASE("A ball that strikes a hanging rod: both leave as the compound pendulu
   const int rod = toys.world.add_system(articulated::ArticulatedSystem({link}));
   toys.capsule(rod, 0.1, 0.01, {0, 0, 1}, 0, e);
   const double m = 0.03, v = 2;
-  // Without restitution a gap may close and no more in a step: so that one step has all of it, none.
+  // Without restitution a gap only closes within a step. This start puts the whole impact into one step.
   const int ball = toys.ball(m, 0.02, {e > 0 ? -0.0305 : -0.03, 0, -where}, 0, e);
   toys.world.free_body(ball).velocity_m_s = {v, 0, 0};
   // Angular momentum about the pivot and Newton's e: v' = v - J / m, w' = J where / I.
   const double inertia = link.inertia_kg_m2(1, 1) + link.mass_kg * 0.05 * 0.05;
   const double blow = (1 + e) * v / (1 / m + where * where / inertia);
-  // One step: the blow falls inside it. Half a millimetre of the way is what the rod turns by after it.
+  // One step with the impact inside. The rod rotates by half a millimetre after it.
   toys.step(0.001);
   const auto& rates = toys.world.system_of(rod).state().rates;
   CHECK(toys.world.free_body(ball).velocity_m_s.x() == Approx(v - blow / m).margin(1e-9));
-  // About +y, x at -z grows by -w... the point at depth d moves with -w d.
+  // About +y, x at -z grows by -w: the point at depth d moves with -w d.
   CHECK(rates[1] == Approx(-blow * where / inertia).epsilon(1e-9));
   CHECK(std::abs(rates[0]) < 1e-12);
 }
@@ -164,13 +164,13 @@ TEST_CASE("A ball that strikes a chain in free space shares its momentum with al
     CHECK(energy() <= had * (1 + 1e-6));
   }
   CHECK(struck);
-  // Held by the impulses exactly; by the integration of links that turn at up to 100 rad/s to the error allowed to
-  // a sub-step, 1e-4 of their rates, in practice a thousandth of that, which as it is not one-sided does not add
-  // up.
+  // The impulses conserve it exactly. The integration of links that rotate at up to 100 rad/s has the error allowed
+  // to a sub-step, 1e-4 of their rates, in practice a thousandth of that. The error has no fixed sign and does not
+  // accumulate.
   CHECK((momentum() - before).norm() < 1e-7 * before.norm());
 }
 
-TEST_CASE("What comes fast stops at the surface and not behind it, on thin walls too") {
+TEST_CASE("A fast body stops at the surface, also of thin walls") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(1.0, 5.0, 20.0), e = GENERATE(0.0, 0.4);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
@@ -185,8 +185,8 @@ TEST_CASE("What comes fast stops at the surface and not behind it, on thin walls
     least = std::min(least, toys.least_gap_m());
   }
   INFO("h " << h << " speed " << speed << " e " << e << " least gap " << least);
-  // The ball exactly. A corner of a turning box leaves the straight line by (spin h)^2 / 2 of its arm in a step,
-  // which is not the solver's to know: speculation is linear.
+  // Exact for the ball. A corner of a rotating box deviates from the linear path by (spin h)^2 / 2 of its arm per
+  // step, which speculative contacts ignore, since they are linear.
   CHECK(toys.motion(ball).centre_m.z() > 0.01 - 1e-5);
   const double spin = 2 * speed / 0.04;
   CHECK(least > -1e-5 - 0.5 * std::min(1.0, spin * h * spin * h) * 0.06);

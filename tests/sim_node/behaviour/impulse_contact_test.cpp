@@ -40,7 +40,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), the sam
       CHECK(moved.head<2>().norm() < 1e-6);
       CHECK(speed.norm() < 1e-6);
     } else {
-      // Velocity after n steps: n h g (sin - mu cos); the first step may settle, one of 500.
+      // Velocity after n steps: n h g (sin - mu cos). The first step may settle, one of 500.
       const double a = kToyG * (std::sin(theta) - mu * std::cos(theta));
       CHECK(speed.x() == Approx(0.5 * a).epsilon(0.003).margin(1e-4));
       CHECK(std::abs(moved.y()) < 1e-3 * moved.x() + 1e-6);
@@ -48,7 +48,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), the sam
   }
 }
 
-TEST_CASE("A sliding box is braked by mu g whatever its heading, and keeps to it") {
+TEST_CASE("A sliding box is braked by mu g in any direction and keeps its direction") {
   for (double heading = 0; heading < std::numbers::pi / 2; heading += std::numbers::pi / 16) {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.4);
@@ -58,13 +58,13 @@ TEST_CASE("A sliding box is braked by mu g whatever its heading, and keeps to it
     run(toys, 0.2);
     const Vector3d v = toys.motion(box).velocity_m_s;
     INFO("heading " << heading << " v " << v.transpose());
-    // A pyramid would brake by up to 41 % more; 2 % is what the proof set allows, the iterations leave far less.
+    // A friction pyramid would brake by up to 41 % more. The requirement is 2 %; the iterations leave much less.
     CHECK((2 - v.dot(along)) / 0.2 == Approx(0.4 * kToyG).epsilon(0.005));
     CHECK(std::abs(v.dot(along.cross(Vector3d::UnitZ()))) < 1e-3);
   }
 }
 
-TEST_CASE("A ball that slides ends up rolling at 5/7 of its speed, when and whatever the friction") {
+TEST_CASE("A sliding ball ends up rolling at 5/7 of its speed with any friction, at the predicted time") {
   const double mu = GENERATE(0.1, 0.4, 0.9);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
@@ -80,7 +80,7 @@ TEST_CASE("A ball that slides ends up rolling at 5/7 of its speed, when and what
   }
   CHECK(step * kH == Approx(rolls_at).margin(1.5 * kH));
   run(toys, 0.1);
-  // The step in which it begins to roll is cut to fit: no error is left.
+  // The step in which it begins to roll fits exactly: no error is left.
   CHECK(toys.motion(ball).velocity_m_s.x() == Approx(5.0 / 7 * v0).epsilon(1e-9));
   CHECK(toys.motion(ball).spin_rad_s.y() == Approx(5.0 / 7 * v0 / r).epsilon(1e-9));
 }
@@ -102,7 +102,7 @@ TEST_CASE("A block tips where friction holds it beyond width over height, and sl
   CHECK_FALSE(topples(2 * edge, 0.5 * edge));
 }
 
-TEST_CASE("Contacts carry the weight of what rests on them") {
+TEST_CASE("Contacts carry the weight of resting bodies") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
   double weight = 0;
@@ -115,7 +115,7 @@ TEST_CASE("Contacts carry the weight of what rests on them") {
   for (int i = 1; i <= 4; ++i) CHECK(toys.motion(i).centre_m.z() == Approx(0.05).margin(1e-9));
 }
 
-TEST_CASE("What rests weighs the same in steps of 16 and 17 ms by turns, and its answer is known at once") {
+TEST_CASE("A resting body has constant weight in alternating steps of 16 and 17 ms and warm start converges at once") {
   const double mass = 0.5;
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
@@ -144,12 +144,12 @@ TEST_CASE("Stacks of five and of ten boxes stand") {
   CHECK(toys.motion(n).velocity_m_s.norm() < 1e-4);
 }
 
-TEST_CASE("Painleve's rod finds an impulse: with mu beyond 4/3 it jams, and gains no energy") {
+TEST_CASE("Painleve's rod has an impulse solution: with mu above 4/3 it jams and gains no energy") {
   const double mu = GENERATE(1.0, 1.4, 2.0, 5.0), angle = GENERATE(0.4, 0.8, 1.0, 1.2);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
   const double length = 1, mass = 1, r = 0.005;
-  // Leans back from its motion: friction at the tip turns it into the floor.
+  // Leans back from its motion: friction at the tip rotates it into the floor.
   const Eigen::Isometry3d pose =
       at(0, 0, length / 2 * std::sin(angle) + r) * Eigen::AngleAxisd(angle, Vector3d::UnitY());
   const int rod = toys.rod(mass, length, r, pose, mu);
@@ -163,13 +163,13 @@ TEST_CASE("Painleve's rod finds an impulse: with mu beyond 4/3 it jams, and gain
   double had = energy(), least = 1;
   for (int i = 0; i < 1000; ++i) {
     toys.step(kH);
-    // Leapfrog's velocity is half a step behind its height: the sum sways by m g v h / 2.
+    // The leapfrog velocity is half a step behind its height: the sum varies by m g v h / 2.
     const double sway = mass * kToyG * kH * (1 + b.velocity_m_s.norm());
     REQUIRE(energy() < had + sway);
     least = std::min(least, toys.least_gap_m());
   }
   CHECK(b.velocity_m_s.allFinite());
-  // In one step a tip that turns at 10 rad/s bends off its line by (spin h)^2 l / 4.
+  // In one step a tip that rotates at 10 rad/s deviates from its line by (spin h)^2 l / 4.
   CHECK(least > -1e-4);
 }
 
@@ -187,8 +187,7 @@ TEST_CASE("A ball rests in a corner of three planes, pushed into it") {
   CHECK(toys.motion(ball).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE(
-    "A free body lies on the parabola. An asymmetric one keeps its spin momentum exactly and its energy well") {
+TEST_CASE("A free body follows the parabola, and an asymmetric one keeps its angular momentum exactly and its energy closely") {
   Toys toys;
   const int box = toys.box(2, {0.1, 0.2, 0.4}, at(0, 0, 50));
   auto& b = toys.world.free_body(box);
@@ -207,12 +206,12 @@ TEST_CASE(
     least = std::min(least, (b.orientation.conjugate() * b.spin_rad_s).y());
   }
   CHECK(worst < 1.2e-11);  // 2000 sums of order 50: 2000 * 50 * 2^-53
-  CHECK(least < -5);       // it has turned over, as Dzhanibekov saw
+  CHECK(least < -5);       // it has flipped (Dzhanibekov effect)
   CHECK((momentum() - l).norm() < 1e-12 * l.norm());
   CHECK(l.dot(b.spin_rad_s) == Approx(energy).epsilon(1e-9));
 }
 
-TEST_CASE("Two runs are the same to the bit") {
+TEST_CASE("Two runs with the impulse world are the same to the bit") {
   const auto digest = [] {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.3);

@@ -36,8 +36,7 @@ struct Wheel {
 
 }  // namespace
 
-TEST_CASE(
-    "A fan under constant torque approaches the speed at which drag and dry friction balance it, exponentially") {
+TEST_CASE("A fan under constant torque approaches its equilibrium speed with drag and dry friction exponentially") {
   Wheel fan;
   fan.inertia = 1e-3;
   fan.axis.damping = 4e-3;
@@ -46,11 +45,11 @@ TEST_CASE(
   for (int i = 0; i < 4; ++i) {
     fan.run(0.25, 20e-3);
     const double t = 0.25 * (i + 1);
-    // Friction takes its share at the start of each step, the torque acts in all of it: the end of a step is half
-    // of friction's share, h * 5 mN m / 2 I = 2.5 mrad/s, above the mean.
+    // Friction acts at the start of each step, the torque during all of it. At the end of a step the rate is half of
+    // friction's share, h * 5 mN m / 2 I = 2.5 mrad/s, above the mean.
     CHECK(fan.rate() == Approx(3.75 * (1 - std::exp(-4 * t))).margin(3e-3));
   }
-  SECTION("and what friction can hold stays put") {
+  SECTION("a torque within friction does not move it") {
     fan.run(4, 0);
     CHECK(std::abs(fan.world.motions()[0].spin_rad_s.z()) < 1e-9);
     const double before = fan.angle();
@@ -72,7 +71,7 @@ TEST_CASE("A motor reaches its speed with its torque, against friction, and keep
   CHECK(w.rate() == Approx(3).epsilon(1e-9));
 }
 
-TEST_CASE("A stop holds what is driven against it, from both sides") {
+TEST_CASE("A joint stop holds a driven joint on both sides") {
   Wheel w;
   w.axis.lower = -0.5;
   w.axis.upper = 0.7;
@@ -83,7 +82,7 @@ TEST_CASE("A stop holds what is driven against it, from both sides") {
   CHECK(w.angle() == Approx(-0.5).margin(1e-6));
 }
 
-TEST_CASE("Springs and dampers settle where they should, however stiff, and soft ones swing in their time") {
+TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft ones oscillate with their period") {
   Wheel w;
   SECTION("stiff ones gain no energy") {
     w.axis.stiffness = GENERATE(1e3, 1e5, 1e9);
@@ -106,7 +105,7 @@ TEST_CASE("Springs and dampers settle where they should, however stiff, and soft
     w.run(1);
     CHECK(w.angle() == Approx(0.1 * (1 - std::cos(20.0))).margin(1e-7));
   }
-  SECTION("a driven damper turns at torque over damping, however light what it brakes") {
+  SECTION("a driven damper turns at torque over damping for any inertia") {
     w.inertia = GENERATE(1e-2, 1e-4, 1e-6);
     w.axis.damping = 1e-2;
     w.build();
@@ -125,7 +124,7 @@ TEST_CASE("A chain that falls on the floor comes to rest there with its weight s
     links.back().axes[1].axis = {0, 1, 0};
     for (JointAxis& a : links.back().axes) a.damping = 2e-3;
   }
-  // Folded up so that nothing is under the floor at the start.
+  // Folded, so that no link is below the floor at the start.
   articulated::ArticulatedSystem system(links, kH);
   auto state = system.state();
   state.positions[7] = 1.2;

@@ -1,5 +1,4 @@
-// That the step of the impulse solver takes no memory once its lists have grown. Counts what operator new is asked
-// for.
+// The step of the impulse solver allocates no memory once its lists have grown. Counts the calls of operator new.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <new>
@@ -30,10 +29,10 @@ void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 
-TEST_CASE("A step of free bodies, links and blows takes no memory once its lists have grown") {
+TEST_CASE("A step of free bodies, links and impacts allocates no memory once its lists have grown") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.8);
-  // A lever over which balls bounce, and a stack beside it.
+  // A lever on which balls bounce, and a stack beside it.
   articulated::LinkDef lever;
   lever.joint = JointKind::kRevolute;
   lever.anchor_m = lever.centre_m = {0, 0, 0.1};
@@ -51,7 +50,7 @@ TEST_CASE("A step of free bodies, links and blows takes no memory once its lists
   for (int i = 0; i < 4; ++i)
     toys.box(0.5, {0.1, 0.1, 0.1}, Eigen::Isometry3d(Eigen::Translation3d(2, 0, 0.05 + 0.11 * i)));
   for (int i = 0; i < 5000; ++i) {
-    // All has come to rest, with as many contacts as there will be; then a ball bounces again.
+    // All bodies are at rest, with the final number of contacts. Then a ball bounces again.
     if (i == 4000) toys.world.free_body(ball).velocity_m_s.z() = 2;
     toys.collide(0.001);
     counting = i >= 4000;

@@ -1,4 +1,4 @@
-// What may be set while impulses move the world, against closed forms.
+// Changes of properties during an impulse simulation, against closed forms.
 #include <catch2/catch.hpp>
 
 #include "sim_node/behaviour/solver.h"
@@ -23,7 +23,7 @@ void run(Solver& s, double seconds) {
   for (int i = 0; i < std::lround(seconds / kStep); ++i) s.step();
 }
 
-// A rod of 0.4 m and 0.5 kg that hangs on its end, without weight.
+// A rod of 0.4 m and 0.5 kg that hangs on its end, without gravity.
 constexpr double kLength = 0.4, kMass = 0.5, kAcross = kMass * kLength * kLength / 12;
 constexpr double kAtPivot = kAcross + kMass * kLength * kLength / 4;
 WorldDef hanging_rod(JointKind kind) {
@@ -40,7 +40,7 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
   const int ball = add_ball(w, 0.2, 0.03, {0, 0, 5});
   add_floor(w);
   Solver s(w, by_impulse());
-  SECTION("gravity holds from the next step on, and the path stays on its parabola") {
+  SECTION("gravity holds from the next step on, and the motion continues on the new parabola") {
     run(s, 0.1);
     const double z = body(s, ball).centre_m.z(), v = -kG * 0.1;
     s.set_gravity({1, 0, -2});
@@ -48,32 +48,32 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
     CHECK(body(s, ball).centre_m.z() == Approx(z + v * 0.1 - 0.01).margin(1e-9));
     CHECK(body(s, ball).centre_m.x() == Approx(0.005).margin(1e-9));
   }
-  SECTION("a force moves another mass otherwise") {
+  SECTION("the acceleration by a force follows the new mass") {
     s.set_gravity({0, 0, 0});
     REQUIRE(s.set_mass(ball, 0.8));
     for (int i = 0; i < 100; ++i) {
       s.add_force(ball, {0.4, 0, 0}, body(s, ball).centre_m);
       s.step();
     }
-    // A force that sets in counts as if it had acted half a step before: one part in 100 steps.
+    // A new force counts as if it had acted half a step before: one part in 100 steps.
     CHECK(body(s, ball).centre_m.x() == Approx(0.5 * 0.5 * 0.01 * 1.01).epsilon(1e-9));
     CHECK(body(s, ball).inverse_mass_1_kg == Approx(1.25));
   }
-  SECTION("a pose is there at once, with its contacts") {
+  SECTION("a pose takes effect at once, with its contacts") {
     CHECK(s.contacts().empty());
     REQUIRE(s.set_pose(ball, at(1, 2, 0.03)));
     CHECK(body(s, ball).centre_m.x() == 1);
     REQUIRE(s.contacts().size() == 1);
     CHECK(s.contacts()[0].points[0].depth_m == Approx(0).margin(1e-9));
   }
-  SECTION("velocity and spin are those of now") {
+  SECTION("velocity and spin are the current ones") {
     REQUIRE(s.set_velocity(ball, {1, 2, 3}));
     REQUIRE(s.set_spin(ball, {0, 0, 7}));
     run(s, 0.1);
     CHECK((body(s, ball).centre_m - Vector3d(0.1, 0.2, 5.3 - kG * 0.005)).norm() < 1e-9);
     CHECK(body(s, ball).spin_rad_s.z() == Approx(7));
   }
-  SECTION("what never moves has none of these") {
+  SECTION("a static body has none of these") {
     CHECK_FALSE(s.set_mass(ball + 1, 1));
     CHECK_FALSE(s.set_pose(ball + 1, at(0, 0, 0)));
     CHECK_FALSE(s.set_velocity(ball + 1, {1, 0, 0}));
@@ -101,14 +101,14 @@ TEST_CASE("Solved by impulses, friction and restitution may be set") {
   CHECK(top == Approx(0.64 * 0.5).epsilon(1e-3));
 }
 
-TEST_CASE("Solved by impulses, a link starts as a blow of its momentum would send it, and so when it is set") {
+TEST_CASE("Solved by impulses, setting the velocity of a link acts like an impulse of its momentum") {
   const bool at_start = GENERATE(true, false);
   WorldDef w = hanging_rod(JointKind::kRevolute);
   if (at_start) w.bodies[0].velocity_m_s = {-2, 0.7, 0.3};
   Solver s(w, by_impulse());
   if (!at_start) REQUIRE(s.set_velocity(0, {-2, 0.7, 0.3}));
   run(s, 0.05);
-  // Angular momentum about the pivot: m v L / 2, about y; the centre hangs below.
+  // Angular momentum about the pivot: m v L / 2, about y. The centre hangs below.
   CHECK(body(s, 0).spin_rad_s.y() == Approx(kMass * 2 * kLength / 2 / kAtPivot).epsilon(1e-6));
   CHECK(body(s, 0).spin_rad_s.head<1>().norm() < 1e-9);
   if (at_start) return;
@@ -135,8 +135,8 @@ TEST_CASE("Solved by impulses, motors and dry friction of joints may be set") {
   CHECK_FALSE(s.set_motor("no such", 0, 1, 1));
 }
 
-TEST_CASE("Solved by impulses, a ball joint's dry friction brakes every turning alike, along it") {
-  // Held in its centre, alike about all axes.
+TEST_CASE("Solved by impulses, dry friction of a ball joint opposes rotation equally about every axis") {
+  // Held at its centre, with equal inertia about all axes.
   WorldDef w = empty_world(0);
   const double inertia = 0.01;
   add_body(w, "knob", 1, inertia * Eigen::Matrix3d::Identity(), at(0, 0, 0));
@@ -153,7 +153,7 @@ TEST_CASE("Solved by impulses, a ball joint's dry friction brakes every turning 
   CHECK(body(s, 0).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE("Solved by impulses, the tip of a hanging rod is as heavy as its lever makes it") {
+TEST_CASE("Solved by impulses, the effective mass at the tip of a hanging rod follows from its lever arm") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   Solver s(w, by_impulse());
   CHECK(s.mobility(0, {0, 0, -kLength}, {1, 0, 0}) == Approx(kLength * kLength / kAtPivot));
@@ -161,7 +161,7 @@ TEST_CASE("Solved by impulses, the tip of a hanging rod is as heavy as its lever
   CHECK(s.mobility(0, {0, 0, -kLength}, {0, 0, 1}) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("Solved by impulses, what was set comes back with a state") {
+TEST_CASE("Solved by impulses, properties that were set are restored with a state") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 1});
   add_floor(w);

@@ -28,7 +28,7 @@ const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<s
 }  // namespace
 
 TEST_CASE("Solved by impulses, angles and limits count as in SDF, from whichever side the joint is reached") {
-  // The world holds the child, or the parent: then the tree grows against the joint.
+  // The world is connected to the child or to the parent. In the second case the tree runs against the joint.
   const bool reversed = GENERATE(false, true);
   const JointKind kind = GENERATE(JointKind::kRevolute, JointKind::kUniversal);
   WorldDef w = empty_world(0);
@@ -59,9 +59,9 @@ TEST_CASE("Solved by impulses, angles and limits count as in SDF, from whichever
   }
 }
 
-TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and comes not apart") {
+TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and stays connected") {
   WorldDef w = chain_world(11);
-  // Horizontal: turned about the hook.
+  // Horizontal: rotated about the hook.
   const Eigen::Isometry3d lie = at(0, 0, 2) * Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitY()) * at(0, 0, -2);
   for (BodyDef& b : w.bodies) b.pose = lie * b.pose;
   for (JointDef& j : w.joints) {
@@ -84,11 +84,11 @@ TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and 
     last = energy();
   }
   CHECK(s.largest_joint_gap_m() == 0);
-  // Published velocities are means over a step: at the whip's rates they tell a little less than all.
+  // Published velocities are means over a step: at the rates of the whip they contain slightly less energy.
   CHECK(std::abs(last - start) < 0.03 * 2.968);
 }
 
-TEST_CASE("Solved by impulses, a box rests, a ball bounces, a stack stands, and complaints there are none") {
+TEST_CASE("Solved by impulses, a box rests, a ball bounces and a stack stands, without solver failures") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 0.53}, 0.5, 0.8);
@@ -99,7 +99,7 @@ TEST_CASE("Solved by impulses, a box rests, a ball bounces, a stack stands, and 
     s.step();
     if (body(s, ball).velocity_m_s.z() > 0 && i < 600) top = std::max(top, body(s, ball).position_m.z() - 0.03);
   }
-  // The overlap in which ODE finds the contact tells when it was met.
+  // The overlap at which ODE finds the contact determines the time of the impact.
   CHECK(top == Approx(0.64 * 0.5).epsilon(2e-3));
   for (int i = 1; i <= 5; ++i) {
     const Vector3d p = body(s, ball + i).position_m;
@@ -114,10 +114,10 @@ TEST_CASE("Solved by impulses, a box rests, a ball bounces, a stack stands, and 
         if (m.body_b == ball + 1 && m.body_a == 0) sum += p.normal_force_N / 100;
   }
   CHECK(sum == Approx(2.5 * kG).epsilon(0.01));
-  CHECK(s.complaints() == 0);
+  CHECK(s.solver_failures() == 0);
 }
 
-TEST_CASE("Solved by impulses, joints that close a loop are refused with their name") {
+TEST_CASE("Solved by impulses, joints that close a loop are rejected by name") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0}).name = "bite";
   CHECK_THROWS_WITH(Solver(w, by_impulse()), Catch::Contains("bite") && Catch::Contains("loop"));

@@ -21,7 +21,7 @@ FreeBody thrown() {
   return b;
 }
 
-// A pendulum and two bodies that fly; three units.
+// A pendulum and two flying bodies; three units.
 World three() {
   World w;
   w.add_free(thrown());
@@ -32,7 +32,7 @@ World three() {
 
 }  // namespace
 
-TEST_CASE("A body that flies lies on the parabola whatever the lengths of its steps", "[impulse]") {
+TEST_CASE("A flying body follows the parabola for any step lengths", "[impulse]") {
   World w;
   w.add_free(thrown());
   double t = 0;
@@ -44,7 +44,7 @@ TEST_CASE("A body that flies lies on the parabola whatever the lengths of its st
   }
 }
 
-TEST_CASE("What is not active stands still, and costs nothing to what is", "[impulse]") {
+TEST_CASE("An inactive unit stands still and does not affect the active ones", "[impulse]") {
   World all = three(), some = three();
   const std::vector<int> second{1};
   CHECK(some.unit_of(2) == 1);
@@ -58,8 +58,8 @@ TEST_CASE("What is not active stands still, and costs nothing to what is", "[imp
   CHECK(std::vector<int>(some.active_bodies().begin(), some.active_bodies().end()) == std::vector<int>{2});
 }
 
-TEST_CASE("A unit that is put into another world goes on there as it would have", "[impulse]") {
-  // Alone, in 200 steps of 1 ms; and 100 of them in a world whose steps are others.
+TEST_CASE("A unit that moves to another world continues there unchanged", "[impulse]") {
+  // Alone, in 200 steps of 1 ms; then 100 of them in a world with other steps.
   World whole = three(), first = three(), second = three();
   for (int i = 0; i < 7; ++i) second.step({}, 0.004);
   for (int i = 0; i < 200; ++i) whole.step({}, 0.001);

@@ -21,7 +21,7 @@ struct Jointed {
     child = add_body(world, "child", 1, Eigen::Matrix3d::Identity() * 0.01, at(0, 0, 0));
     if (to_body) parent = add_body(world, "parent", 1e6, Eigen::Matrix3d::Identity() * 1e6, at(0, 0, 1));
   }
-  // The child's orientation after a constant torque for so long.
+  // The child's orientation after a constant torque for this time.
   Eigen::Quaterniond turned(const Vector3d& torque, double seconds) const {
     Solver s(world, settings);
     const Vector3d axis = torque.normalized(), lever = axis.unitOrthogonal();
@@ -73,14 +73,15 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
     CHECK(angle_about(q, {1, 0, 0}) == Approx(0.2).margin(1e-3));
     CHECK(angle_about(q, {0, 1, 0}) == Approx(0).margin(1e-3));
   }
-  SECTION("a ball turns all ways, a fixed joint none, a damper brakes the ball") {
+  SECTION("a ball joint rotates about every axis, a fixed joint about none, a damper brakes the ball joint") {
     JointDef& joint = add_joint(j.world, JointKind::kBall, j.parent, j.child, {0, 0, 0}, {1, 0, 0});
-    // Half alpha t^2; ODE's sum of the steps is half alpha t (t + h).
+    // alpha t^2 / 2; ODE's sum of the steps is alpha t (t + h) / 2.
     const double free = 0.5 * 2 * 0.5 * (solver == "quick" ? 0.501 : 0.5);
     for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)})
       CHECK(angle_about(j.turned(0.02 * axis, 0.5), axis) == Approx(free).epsilon(3e-4));
     joint.axes[0].damping = 0.1;
-    // Driven against the damper: rate approaches torque / damping with time constant inertia / damping = 0.1 s.
+    // Driven against the damper: the rate approaches torque / damping with the time constant inertia / damping = 0.1
+    // s.
     CHECK(angle_about(j.turned({0, 0, 0.02}, 0.5), {0, 0, 1}) == Approx(0.2 * (0.5 - 0.1 * (1 - std::exp(-5.0)))).epsilon(2e-3));
     joint.kind = JointKind::kFixed;
     CHECK(angle_about(j.turned({0, 0, 0.02}, 0.5), {0, 0, 1}) == Approx(0).margin(1e-4));
@@ -107,7 +108,7 @@ TEST_CASE("A slider moves along its axis, up to its stop") {
   CHECK(std::hypot(s.bodies()[0].position_m.x(), s.bodies()[0].position_m.z()) < 1e-4);
 }
 
-TEST_CASE("A driven damper turns at torque over damping, however light what it brakes") {
+TEST_CASE("A driven damper turns at torque over damping for any inertia") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   for (const double inertia : {1e-2, 1e-4, 1e-6}) {
@@ -125,7 +126,7 @@ TEST_CASE("A driven damper turns at torque over damping, however light what it b
   }
 }
 
-TEST_CASE("A passive force neither gains energy nor overshoots, however stiff and damped") {
+TEST_CASE("A passive force neither gains energy nor overshoots at any stiffness and damping") {
   for (const double stiffness : {0.0, 1.0, 1e4, 1e9})
     for (const double damping : {0.0, 1e-3, 1.0, 1e6}) {
       const double inertia = 0.01;

@@ -18,7 +18,7 @@ Settings by_impulse(double h) {
   return s;
 }
 
-// What is allowed between bodies, m.
+// Allowed penetration between bodies, m.
 constexpr double kAllowed_m = 1e-5;
 
 double deepest(const HardScene& scene, double h, double seconds) {
@@ -38,7 +38,7 @@ double deepest(const HardScene& scene, double h, double seconds) {
 
 }  // namespace
 
-TEST_CASE("The oracle of penetration knows how deep things are in each other") {
+TEST_CASE("The penetration oracle gives the depth of an overlap") {
   WorldDef w = empty_world();
   add_ball(w, 1, 0.1, {0, 0, 0.099});
   add_floor(w);
@@ -69,14 +69,14 @@ TEST_CASE("The oracle of penetration knows how deep things are in each other") {
   CHECK(only({}) == 0);
 }
 
-TEST_CASE("Nothing is in anything: 20 m/s on a wall of 1 mm, at 1 ms and at 60 Hz") {
+TEST_CASE("No penetration: 20 m/s on a wall of 1 mm, at 1 ms and at 60 Hz") {
   const double h = GENERATE(0.001, 1.0 / 60), e = GENERATE(0.0, 0.5);
   const bool boxes = GENERATE(false, true);
   INFO("step " << h << " restitution " << e << (boxes ? " boxes" : " balls"));
   CHECK(deepest(shot_at_wall(e, boxes), h, 0.1) <= kAllowed_m);
 }
 
-TEST_CASE("Nothing is in anything: rods that spin, a heap, balls in a row, a chain among things") {
+TEST_CASE("No penetration: spinning rods, a heap, balls in a row, a chain among bodies") {
   const double h = GENERATE(0.001, 1.0 / 60);
   INFO("step " << h);
   CHECK(deepest(rods(), h, 0.15) <= kAllowed_m);
@@ -85,11 +85,11 @@ TEST_CASE("Nothing is in anything: rods that spin, a heap, balls in a row, a cha
   CHECK(deepest(chain_and_post(), h, 0.6) <= kAllowed_m);
 }
 
-TEST_CASE("Nothing is in anything: lumpy meshes that fall on each other") {
+TEST_CASE("No penetration: lumpy meshes that fall on each other") {
   CHECK(deepest(lumps(5), 0.001, 0.08) <= kAllowed_m);
 }
 
-TEST_CASE("Where turning would lead through a thin wall, the step is divided, and else it is not") {
+TEST_CASE("The step is divided only where rotation would pass through a thin wall") {
   WorldDef w = thin_wall(0);
   const int box = add_box(w, 0.2, {0.3, 0.02, 0.02}, at(0, 0, 0.03));
   Solver still(w, by_impulse(0.001));
@@ -105,7 +105,7 @@ TEST_CASE("Where turning would lead through a thin wall, the step is divided, an
   CHECK(turning.bodies()[static_cast<std::size_t>(box)].centre_m.z() > 0);
 }
 
-TEST_CASE("A body that is struck towards a wall which it stood far from is stopped there") {
+TEST_CASE("A body that an impact throws at a distant wall is stopped there") {
   WorldDef w = empty_world(0);
   add_box(w, 0, {0.001, 1, 1}, at(0.035, 0, 0), 0.5, 0);
   const int struck = add_ball(w, 0.01, 0.01, {0, 0, 0}, 0, 1);

@@ -1,7 +1,12 @@
-// A tool with a shape among bodies: which places it may meet, and that it follows them.
+// A tool with a shape among bodies: its possible contacts, and how they follow its motion.
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/tool_shape.h"
@@ -38,14 +43,14 @@ Eigen::Quaterniond about(const Vector3d& axis, double rad) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(rad, axis));
 }
 
-// Where the point of the tool that a plane names is, over that plane.
+// Height of the tool point of a plane over that plane.
 double height(const touch_plane_t& p, const Vector3d& place, const Eigen::Quaterniond& turn) {
   return to_eigen(p.normal).dot(place + turn * to_eigen(p.tool_point_m) - to_eigen(p.point_m));
 }
 
 }  // namespace
 
-TEST_CASE("A box over a floor may meet it with its lower corners, under the same names as it goes and tips") {
+TEST_CASE("A box over a floor has contacts at its lower corners, with stable ids as it moves and tips") {
   WorldDef w = empty_world();
   add_floor(w);
   const Vector3d size(0.04, 0.06, 0.02);
@@ -62,7 +67,7 @@ TEST_CASE("A box over a floor may meet it with its lower corners, under the same
     REQUIRE(m.plane_count == 4);
     for (const touch_plane_t& p : m.planes) {
       ids.insert(p.contact_id);
-      // A corner, but for the skin.
+      // A corner, except for the skin.
       const Vector3d corner = to_eigen(p.tool_point_m).cwiseAbs() - 0.5 * size;
       CHECK(corner.cwiseAbs().maxCoeff() < 2.1e-4);
       CHECK(to_eigen(p.normal).z() == Approx(1));
@@ -73,7 +78,7 @@ TEST_CASE("A box over a floor may meet it with its lower corners, under the same
   CHECK(ids.size() == 4);
 }
 
-TEST_CASE("A capsule and a box meet what is near them on every side, and no plane cuts into where they are") {
+TEST_CASE("A capsule and a box get planes of near surfaces on every side, and no plane cuts into them") {
   WorldDef w = empty_world();
   add_floor(w);
   for (int i = 0; i < 10; ++i)
@@ -94,7 +99,7 @@ TEST_CASE("A capsule and a box meet what is near them on every side, and no plan
   }
 }
 
-TEST_CASE("The contact of a corner begins when it meets the floor and ends when it leaves") {
+TEST_CASE("The contact of a corner begins when it touches the floor and ends when it leaves") {
   WorldDef w = empty_world();
   add_floor(w);
   Simulation s(with_tool(w, tool_def_t::BOX, {0.04, 0.04, 0.02}, {0, 0, 0.03}), {});
@@ -121,8 +126,8 @@ TEST_CASE("The contact of a corner begins when it meets the floor and ends when 
   CHECK(ends == 2);
 }
 
-TEST_CASE("A tool on more places than a touch model holds has the nearest 49, in order, and the same ones every time") {
-  // Eighty balls under a box, each less than the gap of a touch away from it, the nearest ones anywhere among them.
+TEST_CASE("A tool with more contacts than a touch model holds keeps the nearest 49, in order and repeatably") {
+  // Eighty balls under a box, each within the gap of a touch, with the nearest ones anywhere among them.
   constexpr int kBalls = 80;
   const auto gap_m = [](int ball) { return 1e-6 * (1 + ball * 37 % kBalls); };
   const auto touched = [&](bool backwards, std::vector<std::uint8_t>& bytes) {

@@ -27,7 +27,7 @@ const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<s
 
 }  // namespace
 
-TEST_CASE("A free body lies on the parabola at every step") {
+TEST_CASE("A free body follows the parabola at every step") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
@@ -41,7 +41,8 @@ TEST_CASE("A free body lies on the parabola at every step") {
     const Vector3d exact = Vector3d(0, 0, 50) + t * Vector3d(1, -2, 3) + 0.5 * t * t * Vector3d(0, 0, -kG);
     worst = std::max(worst, (body(solver, ball).position_m - exact).norm());
   }
-  // The step is exact for constant acceleration; what is left is the rounding of 2000 sums of order 50: 2000 * 50 * 2^-53.
+  // The step is exact for constant acceleration. The rest is the rounding of 2000 sums of order 50: 2000 * 50 *
+  // 2^-53.
   CHECK(worst < 1.2e-11);
 }
 
@@ -53,7 +54,7 @@ TEST_CASE("A body whose centre of mass is not its origin turns about its centre 
   w.bodies[0].centre_of_mass_m = {0.3, 0, 0};
   Solver solver(w, settings);
   CHECK((body(solver, b).centre_m - Vector3d(1.3, 2, 3)).norm() < 1e-12);
-  // A force couple about z: one second at 0.1 N m turns it by 1/2 alpha t (t + h), the sum of the steps.
+  // A force couple about z: one second at 0.1 N m rotates it by 1/2 alpha t (t + h), the sum of the steps.
   for (int i = 0; i < 1000; ++i) {
     solver.add_force(b, {0, 0.05, 0}, body(solver, b).centre_m + Vector3d(1, 0, 0));
     solver.add_force(b, {0, -0.05, 0}, body(solver, b).centre_m - Vector3d(1, 0, 0));
@@ -67,7 +68,7 @@ TEST_CASE("A body whose centre of mass is not its origin turns about its centre 
   CHECK(((body(solver, b).position_m - body(solver, b).centre_m).norm()) == Approx(0.3));
 }
 
-TEST_CASE("A box on an incline sticks above and slides below tan(theta), whatever way it faces") {
+TEST_CASE("A box on an incline sticks above and slides below tan(theta), for any yaw") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   const double theta = 0.3;
@@ -87,10 +88,10 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), whateve
       const Vector3d moved = tilt.linear().transpose() * (body(solver, box).position_m - start);
       INFO("yaw " << yaw << " mu/tan " << factor << " moved " << moved.transpose());
       if (factor > 1) {
-        // Creep: what the iterations leave of each step's g h sin(theta).
+        // Creep: the residual of the iterations in each step's g h sin(theta).
         CHECK(moved.head<2>().norm() < 2e-4);
       } else {
-        // Slides with g (sin - mu cos) and straight down; within 3 % of friction and 3 degrees.
+        // Slides with g (sin - mu cos) straight down, within 3 % of friction and 3 degrees.
         const double a = kG * (std::sin(theta) - mu * std::cos(theta));
         CHECK(moved.x() == Approx(0.5 * a * 0.25).epsilon(0.03));
         CHECK(std::abs(moved.y()) < 0.05 * moved.x());
@@ -99,7 +100,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), whateve
   }
 }
 
-TEST_CASE("A ball rebounds with the restitution of the pair, the smaller one") {
+TEST_CASE("A ball rebounds with the smaller restitution of the pair") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   for (const double e : {0.0, 0.5, 0.8, 1.0}) {
@@ -114,15 +115,15 @@ TEST_CASE("A ball rebounds with the restitution of the pair, the smaller one") {
       top = std::max(top, body(solver, ball).position_m.z() - r);
       solver.step();
     }
-    // The bounce takes the speed at the end of a step: at most one step of gravity too much of v, twice that of height;
-    // and it starts within the overlap of a step less the surface layer, m.
+    // The bounce uses the speed at the end of a step: at most one step of gravity too much in v, twice that in
+    // height. It starts within the overlap of a step minus the surface layer, m.
     const double v = std::sqrt(2 * kG * height);
     INFO("e " << e);
     CHECK(top == Approx(e * e * height).margin(2 * e * e * height * kG * kStep / v + 2e-4));
   }
 }
 
-TEST_CASE("A resting body is carried with its weight") {
+TEST_CASE("The contact force on a resting body equals its weight") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
@@ -135,7 +136,7 @@ TEST_CASE("A resting body is carried with its weight") {
     solver.step();
     sum += total_force(solver) / 100;
   }
-  // In the mean exactly, or it would move; 1e-4 for a body that still settles by 1 mm/s over the 0.1 s.
+  // Exact in the mean, or the body would move; 1e-4 for a body that still settles by 1 mm/s over the 0.1 s.
   CHECK(sum == Approx(1.7 * kG).epsilon(1e-3));
   CHECK(body(solver, box).velocity_m_s.norm() < 1e-3);
   CHECK(body(solver, box).position_m.z() == Approx(0.05).margin(3e-4));
@@ -152,7 +153,7 @@ TEST_CASE("A stack of five boxes stands for ten seconds") {
   for (int i = 1; i <= 5; ++i) {
     const Vector3d p = body(solver, i).position_m;
     CHECK(std::hypot(p.x(), p.y()) < 2e-3);
-    // Each contact gives way by the surface layer and what the iterations leave.
+    // Each contact yields by the surface layer and the residual of the iterations.
     CHECK(p.z() == Approx(0.1 * i - 0.05).margin(1e-3 * i));
   }
 }
@@ -180,7 +181,7 @@ TEST_CASE("A pendulum swings with the period of the elliptic integral") {
     }
     last = x;
   }
-  // The step is symplectic: the period errs by (omega h)^2 / 24 = 8e-7; ERP and CFM of the joint add less than 1e-3.
+  // The step is symplectic: the period error is (omega h)^2 / 24 = 8e-7; ERP and CFM of the joint add less than 1e-3.
   CHECK((time - first) / 8 == Approx(period).epsilon(1e-3));
 }
 
@@ -191,18 +192,18 @@ TEST_CASE("A chain of eleven universal joints stays connected") {
   Solver solver(w, settings);
   double worst = 0;
   for (int i = 0; i < 3000; ++i) {
-    // Swung about by its end.
+    // Swung by its end.
     if (i < 300) solver.add_force(10, {0.5, 0.2, 0}, body(solver, 10).centre_m);
     solver.step();
     worst = std::max(worst, solver.largest_joint_gap_m());
   }
   CHECK(worst < 1e-3);
   CHECK(body(solver, 10).position_m.allFinite());
-  // Joints keep their energy within that of the swing: the end never rises above what the work lifts it to.
+  // Joints keep the energy of the swing: the end never rises above the height that the work lifts it to.
   CHECK(body(solver, 10).position_m.z() < 2);
 }
 
-TEST_CASE("Joints keep to limits, friction and dampers") {
+TEST_CASE("Joints obey limits, friction and dampers") {
   WorldDef w = empty_world(0);
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
@@ -226,7 +227,7 @@ TEST_CASE("Joints keep to limits, friction and dampers") {
     }
     CHECK(angle(solver) == Approx(0.7).margin(5e-3));
   }
-  SECTION("Coulomb friction holds what is weaker and slows what is stronger") {
+  SECTION("Coulomb friction holds a smaller torque and slows a larger one") {
     joint.axes[0].friction = 0.1;
     Solver solver(w, settings);
     for (int i = 0; i < 500; ++i) {
@@ -238,22 +239,22 @@ TEST_CASE("Joints keep to limits, friction and dampers") {
       torque(solver, 0.15);
       solver.step();
     }
-    // By impulses the spin is the mean over a step, which lags by half of one, and what breaks loose does so in a step.
+    // With impulses the spin is the mean over a step, which lags by half a step, and breakaway takes one step.
     CHECK(body(solver, wheel).spin_rad_s.z() == Approx(0.05 / 0.01 * 0.5).margin(0.05 / 0.01 * kStep));
   }
-  SECTION("a damper decays exponentially, of ODE with the implicit step's rate") {
+  SECTION("a damper decays exponentially, in ODE with the rate of the implicit step") {
     joint.axes[0].damping = 0.02;
     Solver solver(w, settings);
     for (int i = 0; i < 100; ++i) {
       torque(solver, 1);
       solver.step();
     }
-    // By impulses the spin is the mean over a step: of one without the drive.
+    // With impulses the spin is the mean over a step: this is one without the drive.
     solver.step();
     const double start = body(solver, wheel).spin_rad_s.z();
     run(solver, 1);
     const double truth = settings.solver == "quick" ? std::pow(1 + 0.02 * kStep / 0.01, -1000) : std::exp(-2);
-    // One step expects the drive to go on: (h d / I)^2 = 4e-6 of the rate for each of the first steps.
+    // One step assumes that the drive continues: (h d / I)^2 = 4e-6 of the rate for each of the first steps.
     CHECK(body(solver, wheel).spin_rad_s.z() / start == Approx(truth).epsilon(1e-4));
   }
   SECTION("a motor reaches its speed with its torque") {
@@ -294,7 +295,7 @@ TEST_CASE("Two runs of one world are the same to the bit") {
   CHECK(first == digest());
 }
 
-TEST_CASE("Two bodies that meet in free space keep their momentum") {
+TEST_CASE("Two bodies that collide in free space keep their momentum") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world(0);
@@ -309,7 +310,7 @@ TEST_CASE("Two bodies that meet in free space keep their momentum") {
   CHECK(body(solver, a).velocity_m_s.x() < 0);
 }
 
-TEST_CASE("A body with an impossible mass is refused in one sentence that names it") {
+TEST_CASE("A body with an invalid mass is rejected in one sentence that names it") {
   WorldDef w = empty_world();
   add_body(w, "ghost", 1, -Eigen::Matrix3d::Identity(), at(0, 0, 0));
   CHECK_THROWS_WITH(Solver(w, {}), Catch::Contains("ghost"));

@@ -19,7 +19,7 @@ ShapeDef shape(ShapeKind kind, const Vector3d& size) {
   return s;
 }
 
-// The surface of a box in n x n squares a side, two triangles each.
+// The surface of a box with n x n squares per side, two triangles each.
 TriangleMesh box_mesh(const Vector3d& size, int n) {
   TriangleMesh m;
   for (int axis = 0; axis < 3; ++axis)
@@ -46,7 +46,7 @@ TriangleMesh box_mesh(const Vector3d& size, int n) {
 
 }  // namespace
 
-TEST_CASE("The plane of a primitive is that of its nearest point, as a search over its surface finds it") {
+TEST_CASE("The plane of a primitive is at its nearest point, as found by a search over its surface") {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.3, 0.2, 0.4);
@@ -59,12 +59,12 @@ TEST_CASE("The plane of a primitive is that of its nearest point, as a search ov
     REQUIRE(planes.size() == 1);
     const SurfacePlane& s = planes[0];
     CHECK(s.normal.norm() == Approx(1));
-    // The point is that far along the normal, and it is on the surface: its own distance is zero.
+    // The plane's point lies at the distance along the normal, and on the surface: its own distance is zero.
     CHECK((s.point + s.distance_m * s.normal - p).norm() < 1e-9);
     const double d = s.distance_m;
     surface.query(s.point + 1e-7 * s.normal, 10, planes);
     CHECK(planes[0].distance_m == Approx(1e-7).margin(1e-9));
-    // Signed distance never changes faster than the place moves.
+    // The signed distance changes at most as fast as the position.
     const Vector3d q = p + 0.01 * Vector3d(u(random), u(random), u(random));
     surface.query(q, 10, planes);
     CHECK(std::abs(planes[0].distance_m - d) <= (q - p).norm() + 1e-12);
@@ -72,7 +72,7 @@ TEST_CASE("The plane of a primitive is that of its nearest point, as a search ov
   }
 }
 
-TEST_CASE("A box of triangles, however fine, feels like a box") {
+TEST_CASE("A box of triangles of any resolution gives the planes of a box") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.1, 0.08, 0.06);
@@ -86,7 +86,7 @@ TEST_CASE("A box of triangles, however fine, feels like a box") {
       const Vector3d p = 0.08 * Vector3d(u(random), u(random), u(random));
       solid.query(p, 0.015, exact);
       if (exact.empty() || exact[0].distance_m < -0.01) continue;
-      // Where two faces are equally near, inside, either may be the one.
+      // Inside, where two faces are equally near, either may be reported.
       if (exact[0].distance_m < 0) continue;
       soup.query(p, 0.015, planes);
       INFO("n " << n << " at " << p.transpose() << " distance " << exact[0].distance_m);
@@ -101,7 +101,7 @@ TEST_CASE("A box of triangles, however fine, feels like a box") {
   }
 }
 
-TEST_CASE("Just inside a mesh the nearest face pushes out") {
+TEST_CASE("Just inside a mesh the nearest face gives the plane") {
   const Vector3d size(0.1, 0.08, 0.06);
   const TriangleMesh mesh = box_mesh(size, 5);
   const ClosestSurface soup(shape(ShapeKind::kMesh, size), &mesh);
@@ -112,7 +112,7 @@ TEST_CASE("Just inside a mesh the nearest face pushes out") {
   CHECK(planes[0].normal.z() == Approx(1));
 }
 
-TEST_CASE("A concave edge of a mesh keeps both its planes") {
+TEST_CASE("A concave edge of a mesh gives both its planes") {
   // A floor at z = 0 and a wall at x = 0, in one mesh, each of several triangles.
   TriangleMesh mesh;
   const auto square = [&](const Vector3d& o, const Vector3d& a, const Vector3d& b) {

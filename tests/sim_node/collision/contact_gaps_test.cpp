@@ -1,5 +1,6 @@
-// The tracker where contacts have gaps and the solver says how surfaces met.
+// The contact tracker with contacts that have gaps and with impacts reported by the solver.
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/contacts/contact_tracker.h"
@@ -48,7 +49,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("A bounce within one step begins, hits and ends at its instant inside the step, at 1 kHz and at 60 Hz") {
+TEST_CASE("A bounce within one step begins, hits and ends at its time inside the step, at 1 kHz and at 60 Hz") {
   const double h = GENERATE(0.001, 1.0 / 60), e = GENERATE(0.5, 0.9);
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
@@ -74,7 +75,7 @@ TEST_CASE("A bounce within one step begins, hits and ends at its instant inside 
   CHECK(t.tracker.live().empty());
 }
 
-TEST_CASE("What does not bounce hits once with the speed from before, and stays") {
+TEST_CASE("A body without restitution hits once, with its approach speed, and stays in contact") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(0.5, 20.0);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -93,7 +94,7 @@ TEST_CASE("What does not bounce hits once with the speed from before, and stays"
   CHECK(t.tracker.live()[0].touching);
 }
 
-TEST_CASE("What is only near is no contact") {
+TEST_CASE("A body that is only near has no contact") {
   const double h = GENERATE(0.001, 1.0 / 60);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -107,7 +108,7 @@ TEST_CASE("What is only near is no contact") {
   CHECK(t.tracker.live().empty());
 }
 
-TEST_CASE("What rests, rolls or slides for ten seconds begins once") {
+TEST_CASE("A body that rests, rolls or slides for ten seconds begins its contact once") {
   const double h = GENERATE(0.001, 1.0 / 60);
   WorldDef w = empty_world();
   add_floor(w, 0.3);
@@ -125,7 +126,7 @@ TEST_CASE("What rests, rolls or slides for ten seconds begins once") {
   CHECK(t.tracker.live().size() == 4);
 }
 
-TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart it ends. A gap is none") {
+TEST_CASE("An impact reported within the step is a contact, whatever the gap at its end, and a gap alone is none") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});
@@ -147,7 +148,7 @@ TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart i
   update(0, 0.001, 1e-3, nullptr);
   update(1, 0.001, 1e-4, nullptr);
   CHECK(events.empty());
-  SECTION("begin, hit and end lie where the solver says, in steps of any length") {
+  SECTION("begin, hit and end are at the times that the solver reports, in steps of any length") {
     Manifold met = m;
     met.impact.blows = 2;
     met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3,
@@ -164,7 +165,7 @@ TEST_CASE("Told by hand: a meeting in the step is a contact, however far apart i
     CHECK(events[2].time_ns == 12'000'000);
     CHECK(tracker.live().empty());
   }
-  SECTION("nearer than a residual touches, until it is clearly apart") {
+  SECTION("a gap below the residual is contact until it is clearly open") {
     update(2, 0.001, 8e-6, nullptr);
     CHECK(events.size() == 1);
     for (int tick = 3; tick < 60; ++tick) update(tick, 0.001, tick % 2 ? 4e-5 : 0, nullptr);

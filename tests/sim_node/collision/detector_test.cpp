@@ -40,7 +40,7 @@ const Vector3d kSize(0.1, 0.06, 0.12);
 
 }  // namespace
 
-TEST_CASE("A ball against each primitive: every detector that takes them gives the distance that geometry says") {
+TEST_CASE("A ball against each primitive: every detector that supports the pair gives the geometric distance") {
   const double r = 0.03, reach = 0.004;
   const WorldDef world;
   for (auto& detector : built_in()) {
@@ -60,7 +60,7 @@ TEST_CASE("A ball against each primitive: every detector that takes them gives t
         const Vector3d place = uniform(random, 0.05, 0.2) * direction(random);
         surface.query(place, 10, planes);
         const double gap = planes[0].distance_m - r;
-        // Deep in, and just at the border of what is asked for, is nobody's promise.
+        // Results deep inside and at the limit of the reach are not specified.
         if (planes[0].distance_m < 0.01 || std::abs(gap) < 1e-4 || std::abs(gap - reach) < 0.2 * reach) continue;
         const bool swapped = i % 2;
         const Isometry3d of_ball(pose * Eigen::Translation3d(place));
@@ -79,8 +79,7 @@ TEST_CASE("A ball against each primitive: every detector that takes them gives t
             found.begin(), found.end(), [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
         const Vector3d n = pose.linear() * planes[0].normal * (swapped ? -1 : 1);
         if (can.least_depth) {
-          // Of iterating detectors: a tenth of a millimetre. Those are what they are; ours has an oracle of its
-          // own.
+          // Accuracy of iterative detectors: 0.1 mm. Our own detector has a separate oracle.
           CHECK(p.gap_m == Approx(gap).margin(1e-4));
           CHECK(p.normal.dot(n) > 0.98);
         } else {
@@ -103,7 +102,7 @@ TEST_CASE("A ball against each primitive: every detector that takes them gives t
   }
 }
 
-TEST_CASE("Boxes at random: the detectors that see gaps agree on them, whether as boxes, hulls or triangles") {
+TEST_CASE("Random boxes: the detectors that report gaps agree, as boxes, hulls or triangles") {
   const WorldDef world = world_of_meshes();
   auto ccd = make_detector("ccd"), layers = make_detector("layers");
   const ShapeDef one = shape(ShapeKind::kBox, {0.1, 0.08, 0.06}), hull = shape(ShapeKind::kMesh, {1, 1, 1}, 0);
@@ -138,7 +137,7 @@ TEST_CASE("Boxes at random: the detectors that see gaps agree on them, whether a
   CHECK(compared > 50);
 }
 
-TEST_CASE("A detector refuses what it cannot do, with what to choose instead, before anything starts") {
+TEST_CASE("A detector rejects unsupported shapes at start-up and names an alternative") {
   const WorldDef world = world_of_meshes();
   CHECK_THROWS_WITH(make_detector("opcode"), Catch::Contains("unknown"));
   for (auto& detector : built_in())
@@ -164,9 +163,7 @@ TEST_CASE("A detector refuses what it cannot do, with what to choose instead, be
                     Catch::Contains("hashed remover"));
 }
 
-TEST_CASE(
-    "Asked twice, with other questions between, a detector that calls itself deterministic says the same to the "
-    "bit") {
+TEST_CASE("A deterministic detector gives bit-identical results for a repeated query, with other queries between") {
   const WorldDef world = world_of_meshes();
   for (auto& detector : built_in()) {
     if (!detector->abilities().deterministic) continue;

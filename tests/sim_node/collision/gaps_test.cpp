@@ -29,7 +29,7 @@ const PointPair& least(const std::vector<PointPair>& found) {
                            [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
 }
 
-// Poses at random, or with faces, edges and axes aligned as they rest on each other.
+// Random poses, or poses with aligned faces, edges and axes, as of shapes that rest on each other.
 Isometry3d turned(Random& random, int i) {
   Isometry3d pose = Isometry3d::Identity();
   if (i % 3 == 0) {
@@ -44,7 +44,7 @@ Isometry3d turned(Random& random, int i) {
 
 }  // namespace
 
-TEST_CASE("Convex shapes that are apart: the least gap is proven by points on both and by planes between them") {
+TEST_CASE("Separated convex shapes: witness points and a separating plane prove the least gap") {
   const WorldDef world;
   for (const ShapeKind kind_a : kConvex)
     for (const ShapeKind kind_b : kConvex) {
@@ -65,20 +65,20 @@ TEST_CASE("Convex shapes that are apart: the least gap is proven by points on bo
         INFO("kinds " << static_cast<int>(kind_a) << ' ' << static_cast<int>(kind_b) << " case " << i);
         if (found.empty()) {
           if (i % 5) continue;
-          // The oracle's gap is never more than the distance, and here that is what counts.
+          // The oracle's gap is at most the distance, which is the relevant bound here.
           REQUIRE(widest_gap(a, pose_a, b, pose_b, random) > reach - 1e-5);
           ++far;
           continue;
         }
         const PointPair& p = least(found);
-        // 1e-9: rounding at 2 m from the origin, and what the search leaves open.
+        // 1e-9: rounding at 2 m from the origin, and the convergence limit of the search.
         REQUIRE(gap_along(a, pose_a, b, pose_b, p.normal) == Approx(p.gap_m).margin(1e-7));
         REQUIRE(p.gap_m <= reach + 1e-9);
         for (const PointPair& q : found) {
           REQUIRE((q.on_b_m - q.on_a_m - q.gap_m * q.normal).norm() < 1e-9);
           REQUIRE(q.normal.norm() == Approx(1));
           if (p.gap_m <= 0) continue;
-          // Lines along round sides may be 0.1 mm beside each other.
+          // Lines on round sides may be 0.1 mm beside each other.
           REQUIRE(lies_in(a, pose_a, q.on_a_m, 1e-6));
           REQUIRE(lies_in(b, pose_b, q.on_b_m, 1e-6));
         }
@@ -89,8 +89,7 @@ TEST_CASE("Convex shapes that are apart: the least gap is proven by points on bo
     }
 }
 
-TEST_CASE(
-    "Convex shapes that overlap: moving them by the depth along the normal parts them, and hardly less would do") {
+TEST_CASE("Overlapping convex shapes: the depth along the normal separates them, and hardly less does") {
   const WorldDef world;
   for (const ShapeKind kind_a : kConvex)
     for (const ShapeKind kind_b : kConvex) {
@@ -111,7 +110,7 @@ TEST_CASE(
                       << -p.gap_m);
         REQUIRE(gap_along(a, pose_a, b, pose_b, p.normal) == Approx(p.gap_m).margin(1e-7));
         const double way_out = -widest_gap(a, pose_a, b, pose_b, random);
-        // Deep in a round shape the way out is one of many that are nearly as short.
+        // Deep inside a round shape there are many directions of nearly minimal depth.
         const bool round = kind_a == ShapeKind::kCylinder || kind_b == ShapeKind::kCylinder;
         REQUIRE(-p.gap_m <= (round ? 1.5 : 1.0) * way_out + 1e-5);
         ++overlapping;

@@ -55,11 +55,11 @@ Soup prism(double r, double length, int n) {
 
 }  // namespace
 
-TEST_CASE("A body near a mesh: the least gap is that of all its triangles, and no pair is nearer than that") {
+TEST_CASE("A body near a mesh: the least gap is the least over all triangles, and no pair has less") {
   struct Case {
     ShapeDef def;
     Soup soup;       // its core as triangles
-    double round_m;  // and what that is grown by
+    double round_m;  // rounding radius of the core
     double error_m;
   };
   Soup point, segment;
@@ -68,7 +68,7 @@ TEST_CASE("A body near a mesh: the least gap is that of all its triangles, and n
   const Case cases[] = {{shape(ShapeKind::kSphere, {0.03, 0, 0}), point, 0.03, 1e-9},
                         {shape(ShapeKind::kCapsule, {0.02, 0, 0.1}), segment, 0.02, 1e-8},
                         {shape(ShapeKind::kBox, {0.06, 0.04, 0.1}), box({0.06, 0.04, 0.1}), 0, 1e-8},
-                        // The sides of the prism lie inside the round one by r (1 - cos(pi / 48)).
+                        // The sides of the prism lie inside the cylinder by r (1 - cos(pi / 48)).
                         {shape(ShapeKind::kCylinder, {0.03, 0, 0.1}), prism(0.03, 0.1, 48), 0, 7e-5},
                         {shape(ShapeKind::kMesh, {1, 1, 1}, 1), comb(2, 0.1), 0, 1e-8}};
   const Soup lumpy = lumpy_sphere(0, 0.1, 3);
@@ -110,7 +110,7 @@ TEST_CASE("A body near a mesh: the least gap is that of all its triangles, and n
   }
 }
 
-TEST_CASE("What slides over a plain of triangles is held back by none of their edges") {
+TEST_CASE("A body that slides over a plane of triangles does not catch on internal edges") {
   const Soup plain = plate(1, 1, 40, 40);
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
@@ -133,7 +133,7 @@ TEST_CASE("What slides over a plain of triangles is held back by none of their e
     INFO("kind " << static_cast<int>(def.kind) << " height " << height << " at "
                  << pose.translation().transpose());
     REQUIRE(!found.empty());
-    // Two meshes that go through each other part over the face that is nearer, which may be any of a corner.
+    // Two intersecting meshes separate over the nearer face, which may be any face of a corner.
     const bool parted = height < 0 && def.kind == ShapeKind::kMesh;
     if (!parted) CHECK(least(found).gap_m == Approx(height).margin(1e-9));
     for (const PointPair& p : found)
@@ -141,7 +141,7 @@ TEST_CASE("What slides over a plain of triangles is held back by none of their e
   }
 }
 
-TEST_CASE("In the corner of a mesh a body touches floor and wall") {
+TEST_CASE("A body in the corner of a mesh touches floor and wall") {
   Soup corner = plate(1, 1, 10, 10);
   Isometry3d wall = Isometry3d::Identity();
   wall.translate(Vector3d(0.3, 0, 0.3));
@@ -164,7 +164,7 @@ TEST_CASE("In the corner of a mesh a body touches floor and wall") {
     if (p.normal.x() < -0.999) on_wall = std::min(on_wall, p.gap_m);
   }
   INFO("kind " << static_cast<int>(def.kind) << " height " << height << " aside " << aside);
-  // Balls inside a surface know the nearest face only.
+  // A ball inside a surface gets the nearest face only.
   if (def.kind == ShapeKind::kSphere && (height < 0 || aside < 0)) {
     CHECK(std::min(on_floor, on_wall) == Approx(std::min(height, aside)).margin(1e-9));
     return;
@@ -173,7 +173,7 @@ TEST_CASE("In the corner of a mesh a body touches floor and wall") {
   CHECK(on_wall == Approx(aside).margin(1e-8));
 }
 
-TEST_CASE("Meshes that go through each other are told a way out") {
+TEST_CASE("Intersecting meshes get a direction that separates them") {
   WorldDef world;
   world.meshes = {mesh_of(box({0.2, 0.2, 0.2})), mesh_of(lumpy_sphere(2, 0.1, 5))};
   auto gaps = make_detector("gaps");
@@ -190,7 +190,7 @@ TEST_CASE("Meshes that go through each other are told a way out") {
   FAIL("they never met");
 }
 
-TEST_CASE("Of what lies askew over a plain of triangles the other end is there too") {
+TEST_CASE("A tilted body over a plane of triangles also has contacts at its far end") {
   const Soup plain = plate(1, 1, 40, 40);
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
@@ -204,7 +204,7 @@ TEST_CASE("Of what lies askew over a plain of triangles the other end is there t
   pose.rotate(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
   pose.rotate(Eigen::AngleAxisd(capsule ? M_PI / 2 - tilt : tilt, Vector3d::UnitY()));
   if (!capsule) pose.rotate(Eigen::AngleAxisd(tilt / 2, Vector3d::UnitX()));
-  // Its lowest points, by their heights over its middle.
+  // Its lowest points, by their heights relative to its centre.
   std::vector<double> low;
   if (capsule) {
     low = {-0.05 * std::sin(tilt) - 0.02, 0.05 * std::sin(tilt) - 0.02};

@@ -1,4 +1,4 @@
-// Mesh against mesh, held against FCL and on meshes that others made.
+// Mesh against mesh, compared with FCL and on third-party models.
 #include <filesystem>
 
 #include "sim_node/collision/detector.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRadius_m = 0.1;
 
-// Turned to a radius of 0.1 m about zero.
+// Scaled to a radius of 0.1 m about the origin.
 Soup model(const std::filesystem::path& file) {
   TriangleMesh m = read_mesh(file, "", true, {1, 1, 1});
   double largest = 0;
@@ -35,9 +35,7 @@ bool models_are_there() {
 
 }  // namespace
 
-TEST_CASE(
-    "On the models of assimp's tests every pair of triangles within the tolerance is covered, and no false one "
-    "given") {
+TEST_CASE("Models of assimp's tests: every pair of triangles within the tolerance is covered, without false pairs") {
   if (!models_are_there()) return;
   const auto other = lumpy_sphere(2, kRadius_m, 3);
   for (const char* name : kNames) {
@@ -48,7 +46,7 @@ TEST_CASE(
     for (int i = 0; i < 2; ++i) {
       const Soup& second = i % 2 ? soup : other;
       const ContactMesh b(second.vertices, second.indices);
-      const Isometry3d pose = brought_near(a, b, random, 3 * kRadius_m, 5e-4);
+      const Isometry3d pose = placed_near(a, b, random, 3 * kRadius_m, 5e-4);
       const double tolerance = 1e-3;
       MeshContact contact;
       MeshContactResult found;
@@ -56,7 +54,7 @@ TEST_CASE(
       INFO(name << ", " << soup.triangles() << " triangles, pose " << i << ", " << found.pairs.size() << " pairs");
       const Placed pa(soup, Isometry3d::Identity()), pb(second, pose);
       const Truth truth = compare(pa, pb, tolerance, found);
-      CHECK(truth.silent == 0);
+      CHECK(truth.missed == 0);
       check_sound(pa, pb, tolerance, found);
       near += truth.near;
     }
@@ -65,8 +63,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "The contact of models is the same seen from the other side, from elsewhere, and for any winding and order") {
+TEST_CASE("The contact of models does not depend on the order of the meshes, the frame, the winding or the order of triangles") {
   if (!models_are_there()) return;
   const auto other = lumpy_sphere(2, kRadius_m, 3);
   for (const char* name : kNames) {
@@ -76,7 +73,7 @@ TEST_CASE(
     int compared = 0;
     for (int i = 0; i < 3; ++i) {
       INFO(name << ", pose " << i);
-      const Isometry3d pose = brought_near(a, b, random, 3 * kRadius_m, 5e-4);
+      const Isometry3d pose = placed_near(a, b, random, 3 * kRadius_m, 5e-4);
       compared += check_invariant(soup, other, pose, {1e-3, 5e-4}, random);
     }
     INFO(name << ": " << compared << " pairs");
@@ -87,7 +84,7 @@ TEST_CASE(
 #ifdef TACTUS_WITH_FCL
 namespace {
 
-// So many poses from nearly touching to far.
+// The number of poses, from nearly touching to far apart.
 void check_distances(const std::string& name, const Soup& sa, const Soup& sb, int poses, Random& random) {
   const ContactMesh a(sa.vertices, sa.indices), b(sb.vertices, sb.indices);
   WorldDef world;
@@ -111,7 +108,7 @@ void check_distances(const std::string& name, const Soup& sa, const Soup& sb, in
 
 }  // namespace
 
-TEST_CASE("The least distance of two meshes is the one that FCL finds") {
+TEST_CASE("The least distance of two meshes equals FCL's") {
   Random random(12);
   check_distances("lumpy spheres", lumpy_sphere(4, kRadius_m, 1), lumpy_sphere(4, kRadius_m, 2), 30, random);
   check_distances("comb and sphere", comb(5, kRadius_m), lumpy_sphere(3, kRadius_m, 3), 30, random);
@@ -124,7 +121,7 @@ TEST_CASE("The least distance of two meshes is the one that FCL finds") {
                   random);
 }
 
-TEST_CASE("The least distance of models is the one that FCL finds") {
+TEST_CASE("The least distance of models equals FCL's") {
   if (!models_are_there()) return;
   Random random(13);
   for (const char* name : kNames) {

@@ -8,7 +8,7 @@
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 
-TEST_CASE("The tree finds every sphere within reach that a search through all finds, boundless ones always") {
+TEST_CASE("The tree finds the same spheres within reach as an exhaustive search, and unbounded ones always") {
   for (const int count : {0, 1, 2, 3, 500}) {
     Random random(3);
     std::vector<SphereTree::Sphere> all;

@@ -6,6 +6,9 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
+#include <tactus/sim_command_t.hpp>
+#include <tactus/sim_reply_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 #include <thread>
 
 #include "lcmtypes/vectors.h"
@@ -62,14 +65,14 @@ struct Bench {
   }
   ~Bench() { std::filesystem::remove_all(folder); }
 
-  // As sim_node does it.
+  // As in sim_node.
   void tick() {
     if (commander.step_due())
       simulation.step({});
     else
       simulation.hold({});
   }
-  // Its answer. Waits for files.
+  // The reply to a command. Waits for file operations.
   sim_reply_t ask(const sim_command_t& c) {
     commander.take(c);
     for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
@@ -93,7 +96,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("A world that is told to pause stands still, takes single steps, and goes on") {
+TEST_CASE("A world pauses, takes single steps, and resumes on command") {
   Bench b;
   for (int i = 0; i < 10; ++i) b.tick();
   CHECK(b.ask(command(sim_command_t::PAUSE)).paused == 1);
@@ -110,7 +113,7 @@ TEST_CASE("A world that is told to pause stands still, takes single steps, and g
   CHECK_THAT(b.refusal(step = command(sim_command_t::STEP)), Catch::Contains("pause it"));
 }
 
-TEST_CASE("A pause changes nothing but the time at which the world goes on") {
+TEST_CASE("A pause changes only the time at which the world continues") {
   Bench paused, straight;
   const sim_command_t spin = command(sim_command_t::SET, "ball", "velocity", {0.5, 0.2, 0});
   paused.ask(spin), straight.ask(spin);
@@ -124,7 +127,7 @@ TEST_CASE("A pause changes nothing but the time at which the world goes on") {
   }
 }
 
-TEST_CASE("A paused world is felt where the hand is, at rest, and takes no push of it") {
+TEST_CASE("A paused world has touch planes at the hand, is at rest, and takes no push from it") {
   Bench b;
   b.ask(command(sim_command_t::SET, "ball", "velocity", {0, 0, 2}));
   for (int i = 0; i < 20; ++i) b.tick();
@@ -149,12 +152,12 @@ TEST_CASE("A paused world is felt where the hand is, at rest, and takes no push 
   CHECK((ball && !floor));
   CHECK(b.simulation.bodies()[1].velocity_m_s.norm() == 0);
   b.ask(command(sim_command_t::RESUME));
-  // What the hand felt meanwhile is not made up for: the ball flies on, 2 m/s less gravity.
+  // The push during the pause is not applied later: the ball flies on, 2 m/s less gravity.
   b.simulation.step(std::vector{hand.tick(b.simulation.touch_models()[0], {0, 0, 0.5}, 0)});
   CHECK(b.simulation.bodies()[1].velocity_m_s.z() == Approx(2 - 9.81 * 0.022).margin(0.06));
 }
 
-TEST_CASE("A command takes effect once, however often it is repeated, and is answered each time") {
+TEST_CASE("A repeated command takes effect once and is replied to each time") {
   Bench b;
   const sim_command_t kick = push("ball", {2, 0, 0}, 0.01);
   for (int i = 0; i < 50; ++i) {
@@ -162,14 +165,14 @@ TEST_CASE("A command takes effect once, however often it is repeated, and is ans
     b.tick();
   }
   CHECK(b.simulation.wrenches() == 0);
-  // 2 N for 10 ms on 0.2 kg, less what friction took.
+  // 2 N for 10 ms on 0.2 kg, less the effect of friction.
   CHECK(b.ball().velocity_m_s.x() < 0.1);
   CHECK(b.ball().velocity_m_s.x() > 0.02);
   const sim_command_t wrong = command(sim_command_t::SET, "ball", "mass", {-1});
   CHECK(b.ask(wrong).text == b.ask(wrong).text);
 }
 
-TEST_CASE("A push gives a free body the impulse that it names") {
+TEST_CASE("A push gives a free body the commanded impulse") {
   Bench b;
   b.ask(command(sim_command_t::SET, "world", "gravity", {0, 0, 0}));
   b.ask(command(sim_command_t::SET, "ball", "pose", {0, 0, 1, 0, 0, 0}));
@@ -182,7 +185,7 @@ TEST_CASE("A push gives a free body the impulse that it names") {
   CHECK(b.ball().spin_rad_s.x() == Approx(0.001 * 0.025 / (0.4 * 0.2 * 0.05 * 0.05)));
 }
 
-TEST_CASE("Every property that may be set is set, and moves what it should") {
+TEST_CASE("Every property can be set and has its effect") {
   Bench b;
   CHECK(b.ask(command(sim_command_t::SET, "world", "gravity", {0, 0, -1.6})).done == 1);
   CHECK(b.ask(command(sim_command_t::SET, "ball", "pose", {0.2, 0.1, 1, 0, 0, 0})).done == 1);
@@ -206,7 +209,7 @@ TEST_CASE("Every property that may be set is set, and moves what it should") {
     up = std::max(up, b.ball().velocity_m_s.z());
   }
   CHECK(up == Approx(0.5 * std::sqrt(2 * 1.6 * 0.95)).epsilon(0.02));
-  // A scene as it was.
+  // The scene is reset.
   CHECK(b.ask(command(sim_command_t::RESET)).done == 1);
   CHECK(b.commander.take_anew());
   CHECK(!b.commander.take_anew());
@@ -214,7 +217,7 @@ TEST_CASE("Every property that may be set is set, and moves what it should") {
   CHECK((b.ball().position_m - Vector3d(0, 0, 0.05)).norm() < 1e-12);
 }
 
-TEST_CASE("What cannot be done is refused with a sentence, and nothing changes") {
+TEST_CASE("An impossible command is rejected with a sentence, and nothing changes") {
   Bench b;
   for (int i = 0; i < 5; ++i) b.tick();
   const auto set = [](const std::string& of, const std::string& property, std::vector<double> values) {
@@ -240,16 +243,16 @@ TEST_CASE("What cannot be done is refused with a sentence, and nothing changes")
   CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "")), Catch::Contains("letters"));
 }
 
-TEST_CASE("No more pushes act at once than there may be") {
+TEST_CASE("The number of active pushes is limited") {
   Bench b;
   for (std::size_t i = 0; i < Simulation::kMaxWrenches; ++i)
     CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
-  CHECK_THAT(b.refusal(push("ball", {0.01, 0, 0}, 0.05)), Catch::Contains("as many pushes"));
+  CHECK_THAT(b.refusal(push("ball", {0.01, 0, 0}, 0.05)), Catch::Contains("64 pushes are active"));
   for (int i = 0; i < 60; ++i) b.tick();
   CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
 }
 
-TEST_CASE("A kept state is put back under its name, from memory and, by another process, from its file") {
+TEST_CASE("A stored state is restored under its name, from memory and, by another process, from its file") {
   Bench b;
   b.ask(command(sim_command_t::SET, "ball", "velocity", {0.3, 0, 0}));
   for (int i = 0; i < 100; ++i) b.tick();
@@ -272,10 +275,10 @@ TEST_CASE("A kept state is put back under its name, from memory and, by another 
   CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("no state"));
 }
 
-TEST_CASE("So many states are kept and no more. A name that is used again takes the place of the old one") {
+TEST_CASE("The number of stored states is limited. A repeated name replaces the old state") {
   Bench b;
   for (std::size_t i = 0; i < StateStore::kMax; ++i)
     CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s" + std::to_string(i))).done == 1);
-  CHECK_THAT(b.refusal(command(sim_command_t::SNAPSHOT, "another")), Catch::Contains("as many states"));
+  CHECK_THAT(b.refusal(command(sim_command_t::SNAPSHOT, "another")), Catch::Contains("16 states are stored"));
   CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s3")).done == 1);
 }

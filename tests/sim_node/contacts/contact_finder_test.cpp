@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// The motions of the bodies as a world begins, at rest unless told.
+// Initial motions of the bodies of a world, at rest unless set.
 std::vector<BodyMotion> motions(const WorldDef& w) {
   std::vector<BodyMotion> out;
   for (const BodyDef& b : w.bodies) {
@@ -53,7 +53,7 @@ TriangleMesh mesh_of(const Soup& s) { return {s.vertices, {}, s.indices}; }
 
 }  // namespace
 
-TEST_CASE("A finder takes only detectors that see gaps: it asks no other one in their place") {
+TEST_CASE("A contact finder accepts only detectors that report gaps and never replaces them silently") {
   WorldDef w = empty_world();
   add_floor(w);
   add_ball(w, 1, 0.05, {0, 0, 0.0501});
@@ -64,12 +64,11 @@ TEST_CASE("A finder takes only detectors that see gaps: it asks no other one in 
     if (make_detector(name)->abilities().separation)
       CHECK_NOTHROW(ContactFinder(w, s));
     else
-      CHECK_THROWS_WITH(ContactFinder(w, s), Catch::Contains(s.detector) && Catch::Contains("sees no gaps"));
+      CHECK_THROWS_WITH(ContactFinder(w, s), Catch::Contains(s.detector) && Catch::Contains("reports no gaps"));
   }
 }
 
-TEST_CASE(
-    "A box above the floor, tilted by a degree, shows all its lower corners when they may land in the step") {
+TEST_CASE("A box above the floor, tilted by one degree, has contacts at all lower corners that may land in the step") {
   WorldDef w = empty_world();
   add_floor(w);
   const double edge = 0.1, tilt = M_PI / 180;
@@ -84,7 +83,7 @@ TEST_CASE(
   CHECK(least_gap(found[0]) == Approx(0.001).epsilon(1e-9));
 }
 
-TEST_CASE("A ball is seen from as far as it may come in a step, by floor, box, ball, cylinder, capsule and mesh") {
+TEST_CASE("Contacts of a ball with floor, box, ball, cylinder, capsule and mesh are found out to the motion of one step") {
   const double r = 0.03, speed = 20;
   const auto kind = GENERATE(ShapeKind::kPlane, ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder,
                              ShapeKind::kCapsule, ShapeKind::kMesh);
@@ -111,7 +110,7 @@ TEST_CASE("A ball is seen from as far as it may come in a step, by floor, box, b
   CHECK(found[0].points[0].normal.z() == Approx(1));
 }
 
-TEST_CASE("Bodies that are not active are not there, and those that never move meet nothing among themselves") {
+TEST_CASE("Inactive bodies have no contacts, and static bodies have none with each other") {
   WorldDef w = empty_world();
   add_floor(w);
   for (int i = 0; i < 3; ++i) add_box(w, 1, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 0.1 * i));
@@ -128,20 +127,21 @@ TEST_CASE("Bodies that are not active are not there, and those that never move m
   CHECK(out.empty());
 }
 
-TEST_CASE("A blow is seen as far as it goes within the step, through those that stand in a row") {
+TEST_CASE("Contacts include bodies that an impact reaches within the step through a row of bodies") {
   WorldDef w = empty_world(0);
   const double r = 0.02, gap = 0.004, e = GENERATE(0.0, 1.0);
   for (int i = 0; i < 5; ++i) add_ball(w, 1, r, {i * (2 * r + gap), 0, 0}, 0.5, e);
   CHECK(contacts(w).empty());
   w.bodies[0].velocity_m_s = {20, 0, 0};
   const auto found = contacts(w);
-  // 20 mm of way for 4 mm gaps: without loss the last is hit too, and with half of it lost at each.
+  // 20 mm of travel for 4 mm of gaps: without loss the last body is hit too; with half of the speed lost at each
+  // impact, two gaps close.
   CHECK(found.size() >= (e > 0 ? 4u : 2u));
   for (const Manifold& m : found)
     if (m.body_b == m.body_a + 1) CHECK(least_gap(m) == Approx(gap));
 }
 
-TEST_CASE("What bounces off the floor is seen by what it then meets above it") {
+TEST_CASE("A body that bounces off the floor has contacts with the body above it") {
   WorldDef w = empty_world(0);
   add_floor(w, 0.5, 1);
   add_ball(w, 1, 0.02, {0, 0, 0.022}, 0.5, 1);
@@ -151,7 +151,7 @@ TEST_CASE("What bounces off the floor is seen by what it then meets above it") {
   CHECK(std::any_of(found.begin(), found.end(), [](const Manifold& m) { return m.body_a == 1 && m.body_b == 2; }));
 }
 
-TEST_CASE("What the floor throws aside by friction is seen by what stands beside it") {
+TEST_CASE("A body that floor friction throws aside has contacts with the body beside it") {
   WorldDef w = empty_world(0);
   add_floor(w, 1, 0.5);
   add_ball(w, 1, 0.02, {0, 0, 0.022}, 1, 0.5);
@@ -161,7 +161,7 @@ TEST_CASE("What the floor throws aside by friction is seen by what stands beside
   CHECK(std::any_of(found.begin(), found.end(), [](const Manifold& m) { return m.body_a == 1 && m.body_b == 2; }));
 }
 
-TEST_CASE("The way along a floor makes no blow: what rolls past others is no contact of theirs") {
+TEST_CASE("Motion along a floor causes no impact: a body that rolls past others has no contact with them") {
   WorldDef w = empty_world();
   add_floor(w);
   const double h = 1.0 / 60, speed = 0.2, gap = GENERATE(0.003, 0.005);
@@ -172,11 +172,11 @@ TEST_CASE("The way along a floor makes no blow: what rolls past others is no con
   ContactFinder finder(w, Settings{});
   std::vector<Manifold> found;
   finder.find(rolling, moving(w), h, found);
-  // Whatever the way: what gravity may do to a gap, and the tolerance.
+  // In any direction: the effect of gravity on a gap, and the tolerance.
   CHECK(found.size() == (gap < kG * h * h + Settings{}.contact_tolerance_m ? 3u : 2u));
 }
 
-TEST_CASE("What is found does not depend on which others are there, nor on what was asked before") {
+TEST_CASE("Contacts of a pair do not depend on other bodies or on earlier queries") {
   Random random(17);
   WorldDef w = empty_world();
   w.meshes = {mesh_of(lumpy_sphere(2, 0.05, 4))};

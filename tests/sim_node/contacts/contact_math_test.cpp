@@ -18,14 +18,14 @@ Manifold through(std::initializer_list<Vector3d> points) {
 
 }  // namespace
 
-TEST_CASE("A contact is a point, an edge or a surface by its points") {
+TEST_CASE("The points of a contact classify it as point, edge or surface") {
   CHECK(kind_of(through({{0, 0, 0}})) == ContactKind::kPoint);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}})) == ContactKind::kEdge);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}})) == ContactKind::kEdge);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) == ContactKind::kSurface);
 }
 
-TEST_CASE("The area of a patch is that of its hull, in whatever order its points come") {
+TEST_CASE("The area of a patch is that of its hull, for any order of the points") {
   std::array<Vector3d, 4> corners{Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(2, 3, 0), Vector3d(0, 3, 0)};
   std::sort(corners.begin(), corners.end(), [](const Vector3d& a, const Vector3d& b) { return a.sum() < b.sum(); });
   std::array<int, 4> order{0, 1, 2, 3};
@@ -48,15 +48,15 @@ TEST_CASE("Hertz: area grows with force to the power 2/3 at a point and 1/2 alon
         Approx(2 * 0.1 * std::sqrt(4 * 0.03 * 5e-9 / (std::numbers::pi * 0.1))));
   CHECK(hertz_point_area(0, 50, 5e-9) == 0);
   CHECK(hertz_point_area(1, 0, 5e-9) == 0);
-  // However soft, no wider than the ball.
+  // At any compliance, no wider than the ball.
   CHECK(hertz_point_area(1e6, 50, 1) == Approx(std::numbers::pi * 0.02 * 0.02));
 }
 
-TEST_CASE("The effective mass is that of the textbook") {
+TEST_CASE("The effective mass matches the textbook formula") {
   BodyMotion wall, ball, rod;
   ball.inverse_mass_1_kg = 1 / 0.5;
   ball.inverse_inertia = Eigen::Matrix3d::Identity() * 1e3;
-  // A central hit: the turn does not matter.
+  // Central impact: rotation has no effect.
   CHECK(effective_mass(wall, ball, {0, 0, -0.1}, Vector3d::UnitZ()) == Approx(0.5));
   CHECK(effective_mass(ball, ball, {0, 0, 0.1}, Vector3d::UnitZ()) == Approx(0.25));
   // A uniform rod struck at its end: a quarter of its mass.
@@ -67,7 +67,7 @@ TEST_CASE("The effective mass is that of the textbook") {
   CHECK(effective_mass(wall, wall, {0, 0, 0}, Vector3d::UnitZ()) == 1e9);
 }
 
-TEST_CASE("Curvature comes from the shape and where it is touched") {
+TEST_CASE("Curvature follows from the shape and the contact position") {
   WorldDef w = empty_world();
   const int body = add_body(w, "b", 1, Eigen::Matrix3d::Identity(), at(0, 0, 0));
   add_shape(w, body, ShapeKind::kSphere, {0.05, 0, 0});
@@ -89,8 +89,8 @@ TEST_CASE("Curvature comes from the shape and where it is touched") {
   CHECK(curvature(s[3], K::kPoint, {0, 0, 0.3}, -1) == Approx(10));
 }
 
-TEST_CASE("The triangles of a ball have the curvature of the ball") {
-  // An octahedron whose faces are cut in four, three times, and blown up to the sphere.
+TEST_CASE("The triangles of a ball give the curvature of the ball") {
+  // An octahedron whose faces are divided in four, three times, and projected to the sphere.
   TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};

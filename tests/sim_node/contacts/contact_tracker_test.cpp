@@ -4,6 +4,8 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "sim_node/behaviour/solver.h"
 #include "tests/sim_node/support/small_worlds.h"
@@ -15,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A world that is stepped and tracked.
+// A world with a tracker, stepped together.
 struct Tracked {
   Settings settings;
   Ids ids{3};
@@ -42,14 +44,14 @@ struct Tracked {
   }
 };
 
-// By impulses with contacts that see gaps, and by ODE with contacts that overlap.
+// Impulses with contacts that have gaps, or ODE with overlapping contacts.
 Settings by(const char* solver) {
   Settings s;
   s.solver = solver;
   return s;
 }
 
-// Where gaps are seen surfaces meet that far apart, m.
+// With gaps, surfaces meet at this distance, m.
 constexpr double kMeet_m = 1e-5;
 
 contact_t described(const Tracked& t, std::size_t i) {
@@ -60,7 +62,7 @@ contact_t described(const Tracked& t, std::size_t i) {
 
 }  // namespace
 
-TEST_CASE("A falling ball begins and hits once, at the instant of the parabola inside the step") {
+TEST_CASE("A falling ball begins and hits once, at the time of the parabola inside the step") {
   const auto solver = GENERATE("impulse", "quick");
   for (const double height : {0.05, 0.3, 1.0, 2.37}) {
     WorldDef w = empty_world();
@@ -75,13 +77,13 @@ TEST_CASE("A falling ball begins and hits once, at the instant of the parabola i
     REQUIRE(t.of_kind(contact_event_t::HIT).size() == 1);
     CHECK(t.of_kind(contact_event_t::END).empty());
     const contact_event_t hit = t.of_kind(contact_event_t::HIT)[0];
-    // The positions at the ends of the steps lie on the parabola. Back from the overlap with the speed of the middle of
-    // the step instead of the curve: off by at most g h^2 / (8 v).
+    // The positions at the ends of the steps lie on the parabola. The tracker extrapolates from the overlap with the
+    // speed of the middle of the step instead of the curve: the error is at most g h^2 / (8 v).
     CHECK(std::abs(hit.time_ns * 1e-9 - exact_s) < kG * kStep * kStep / (8 * speed) + 1.01 * kMeet_m / speed + 2e-9);
     CHECK(hit.approach_speed_m_s == Approx(speed).margin(kG * kStep));
     CHECK(hit.effective_mass_kg == Approx(0.2).epsilon(1e-6));
     CHECK(hit.curvature_1_m == Approx(1 / r).epsilon(1e-5));
-    CHECK(hit.normal.z == Approx(1));  // from the floor, the lower body, to the ball
+    CHECK(hit.normal.z == Approx(1));  // from the floor, which is body a, to the ball
     CHECK(hit.body_a == 0);
     // Within the overlap at the end of the step.
     CHECK(hit.point_m.z == Approx(0).margin(speed * kStep));
@@ -90,7 +92,7 @@ TEST_CASE("A falling ball begins and hits once, at the instant of the parabola i
   }
 }
 
-TEST_CASE("A bouncing ball hits in the series of its restitution") {
+TEST_CASE("The hits of a bouncing ball follow its restitution") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   const double r = 0.02, height = 0.4, e = 0.7;
@@ -99,15 +101,15 @@ TEST_CASE("A bouncing ball hits in the series of its restitution") {
   Tracked t(w, by(solver));
   t.run(3);
   const auto hits = t.of_kind(contact_event_t::HIT);
-  // Hits at t0, t0 + 2 e t0, ..., with speeds v0 e^n, until they are slower than the threshold of a hit.
+  // Hits at t0, t0 + 2 e t0, ..., with speeds v0 e^n, until they are below the hit threshold.
   const double t0 = std::sqrt(2 * height / kG), v0 = kG * t0;
   double time = t0, speed = v0;
   std::size_t n = 0;
   for (; speed > 1.3 * t.settings.hit_speed_m_s; ++n) {
     REQUIRE(hits.size() > n);
     INFO("bounce " << n);
-    // Each bounce starts at the end of its step, up to a step late, from within the surface layer, and with up to a step
-    // of gravity too much speed; all add up.
+    // Each bounce starts at the end of its step, up to a step late, from within the surface layer, and with up to a
+    // step of gravity too much speed. The errors add up.
     CHECK(hits[n].time_ns * 1e-9 == Approx(time).margin(1e-6 + 1.01 * kMeet_m / speed + 0.0035 * static_cast<double>(n)));
     CHECK(hits[n].approach_speed_m_s == Approx(speed).margin(2.5 * kG * kStep));
     speed *= e;
@@ -115,12 +117,12 @@ TEST_CASE("A bouncing ball hits in the series of its restitution") {
   }
   CHECK(n >= 8);
   CHECK(hits.size() <= n + 3);
-  // It comes to rest in one contact that lasts.
+  // It comes to rest in one lasting contact.
   REQUIRE(t.tracker.live().size() == 1);
   CHECK(t.of_kind(contact_event_t::BEGIN).size() == t.of_kind(contact_event_t::END).size() + 1);
 }
 
-TEST_CASE("A stack that rests begins once and never hits") {
+TEST_CASE("The contacts of a resting stack begin once and never hit") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w);
@@ -139,11 +141,11 @@ TEST_CASE("A stack that rests begins once and never hits") {
   CHECK(lowest.impulse_N_s == Approx(4 * 0.5 * kG * 3).epsilon(0.02));
 }
 
-TEST_CASE("A box that rocks onto its other edge hits anew within the same contact") {
+TEST_CASE("A box that rocks onto its other edge hits again within the same contact") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w, 1);
-  // Held up on one edge by 4 degrees, then let go: it turns about the edge until the other edge hits.
+  // Released from a tilt of 4 degrees on one edge: it rotates about the edge until the other edge hits.
   const double tilt = 0.07, half = 0.1;
   const double rise = half * std::sin(tilt) + 0.02 * std::cos(tilt);
   add_box(w, 1, {2 * half, 0.1, 0.04}, at(0, 0, rise) * Eigen::AngleAxisd(tilt, Vector3d::UnitY()), 1);
@@ -154,13 +156,13 @@ TEST_CASE("A box that rocks onto its other edge hits anew within the same contac
   const contact_event_t hit = t.of_kind(contact_event_t::HIT)[0];
   CHECK(hit.time_ns > t.of_kind(contact_event_t::BEGIN)[0].time_ns + 20'000'000);
   CHECK(hit.approach_speed_m_s > 0.2);
-  // The speed of energy: m g h = I w^2 / 2 about the edge, at the lever of its full width.
+  // Speed from energy: m g h = I w^2 / 2 about the edge, at the lever arm of the full width.
   const double inertia = 1.0 / 12 * (0.04 + 0.0016) + (half * half + 0.0004);
   const double energy_speed = 2 * half * std::sqrt(2 * kG * (rise - 0.02) / inertia);
   CHECK(hit.approach_speed_m_s == Approx(energy_speed).epsilon(0.05));
 }
 
-TEST_CASE("Sliding and rolling are told apart") {
+TEST_CASE("Sliding and rolling are distinguished") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w, 0.3);
@@ -170,18 +172,18 @@ TEST_CASE("Sliding and rolling are told apart") {
   Tracked t(w, by(solver));
   t.run(0.02);
   contact_t c = described(t, 0);
-  // Slides first: deceleration mu g, angular acceleration mu m g r / I.
+  // Sliding first: deceleration mu g, angular acceleration mu m g r / I.
   CHECK(c.sliding_velocity_m_s.x == Approx(1 - 0.3 * kG * 0.02 * 3.5).epsilon(0.03));
   t.run(0.5);
   c = described(t, 0);
-  // Then rolls with 5/7 of the speed, whatever the friction.
+  // Then rolling with 5/7 of the speed, for any friction.
   CHECK(std::abs(c.sliding_velocity_m_s.x) < 0.01);
   CHECK(t.solver.bodies()[static_cast<std::size_t>(ball)].velocity_m_s.x() == Approx(5.0 / 7).epsilon(0.01));
   CHECK(c.rolling_velocity_m_s.x == Approx(5.0 / 7).epsilon(0.03));
   CHECK(c.kind == contact_t::POINT);
 }
 
-TEST_CASE("Whatever tumbles, every contact begins once, hits in between and ends once") {
+TEST_CASE("Every contact of tumbling bodies begins once, hits in between and ends once") {
   const auto solver = GENERATE("impulse", "quick");
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -226,7 +228,7 @@ TEST_CASE("Whatever tumbles, every contact begins once, hits in between and ends
     life.last = e.time_ns;
   }
   CHECK(t.of_kind(contact_event_t::HIT).size() > 50);
-  // What is live is what began and has not ended, once each, and one per pair of shapes.
+  // The live contacts are those that have begun and not ended, once each, and one per pair of shapes.
   std::size_t open = 0;
   for (const auto& [id, life] : lives) open += life.ended < 0;
   CHECK(open == t.tracker.live().size());
@@ -237,7 +239,7 @@ TEST_CASE("Whatever tumbles, every contact begins once, hits in between and ends
   }
 }
 
-TEST_CASE("Surfaces that chatter within the hysteresis stay one contact") {
+TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});
@@ -256,7 +258,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis stay one contact") {
     const std::span<const Manifold> now(&touch, height_m <= 0 ? 1 : 0);
     tracker.update(sync::sim_time(tick * std::int64_t{1'000'000}), sync::Nanoseconds(1'000'000), bodies, now, {}, events);
   };
-  // Up and down by 0.2 mm, three ticks at a time: below the gap and the time that end a contact.
+  // Up and down by 0.2 mm, three ticks each: below the gap and the time that end a contact.
   for (int i = 0; i < 60; ++i) step(i, i % 6 < 3 ? -1e-5 : 2e-4, i % 6 < 3 ? -0.01 : 0.01);
   REQUIRE(events.size() == 1);
   CHECK(events[0].kind == contact_event_t::BEGIN);
@@ -268,7 +270,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis stay one contact") {
       CHECK(events[i].time_ns - events[i - 1].time_ns >= 4'900'000);
     }
   }
-  SECTION("a gap that is too wide ends it, at the time when it opened") {
+  SECTION("a gap that is too wide ends the contact, at the time when it opened") {
     step(60, -1e-5, 0.0);
     step(61, 1e-3, 1.0);
     REQUIRE(events.size() == 2);

@@ -1,6 +1,8 @@
 #include "sim_node/contacts/friction_maps.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sync/bus/identity.h"
@@ -14,8 +16,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A slope of 20 degrees and a box of 0.1 kg on it, u of the slope's map uphill; the slope's halves have 0.25 and 4
-// times 0.4.
+// A slope of 20 degrees with a box of 0.1 kg. The u axis of the slope's map points uphill. The halves have 0.25 and 4
+// times a friction of 0.4.
 constexpr double kSlope_rad = 20 * M_PI / 180, kFriction = 0.4;
 
 WorldDef slope(double box_at_u_m) {
@@ -44,7 +46,7 @@ WorldDef slope(double box_at_u_m) {
   return w;
 }
 
-// Speed downhill after a second, m/s.
+// Downhill speed after one second, m/s.
 double slid(const WorldDef& w, const std::string& solver) {
   Settings settings;
   settings.solver = solver;
@@ -57,37 +59,37 @@ double slid(const WorldDef& w, const std::string& solver) {
 
 }  // namespace
 
-TEST_CASE("A box slides on the slippery half of a slope and stays on the rough one, by every law of contact") {
+TEST_CASE("A box slides on the slippery half of a slope and stays on the rough half, with every contact law") {
   const std::string solver = GENERATE("impulse", "penalty", "quick");
-  // Pair: the root of 0.4 * 0.4 times the root of the factor: 0.2 and 0.8; tan 20 degrees is 0.36.
+  // Friction of the pair: sqrt(0.4 * 0.4) times the root of the factor, 0.2 and 0.8. tan 20 degrees is 0.36.
   const double g = 9.81, after_s = 0.5;
   const double sliding = g * (std::sin(kSlope_rad) - 0.2 * std::cos(kSlope_rad)) * after_s;
   CAPTURE(solver);
   CHECK(slid(slope(0.5), solver) == Approx(sliding).epsilon(0.05));
   CHECK(std::abs(slid(slope(1.5), solver)) < 0.02);
-  SECTION("as it would with those coefficients everywhere") {
+  SECTION("equal to uniform friction with those coefficients") {
     WorldDef plain = slope(0.5);
     plain.materials[1].friction_asset = 0;
-    CHECK(std::abs(slid(plain, solver)) < 0.02);  // 0.4: it stays
+    CHECK(std::abs(slid(plain, solver)) < 0.02);  // 0.4: it sticks
     plain.shapes[0].friction = kFriction * 0.25;
     CHECK(slid(plain, solver) == Approx(slid(slope(0.5), solver)).epsilon(0.02));
   }
 }
 
-TEST_CASE("Of two mapped surfaces each gives its factor at its own place, whichever is a or b") {
+TEST_CASE("Each of two mapped surfaces gives its factor at its own position, independent of the order") {
   WorldDef w = slope(0.5);
   w.shapes[1].material = 1;
   const FrictionMaps maps(w);
-  CHECK(maps.concern(0, 1));
+  CHECK(maps.applies(0, 1));
   Manifold m;
   m.shape_a = 0, m.shape_b = 1, m.body_a = 0, m.body_b = 1, m.count = 1;
   m.points[0].point_m = Vector3d(0.5, 0, 0), m.points[0].normal = Vector3d::UnitZ();
-  // Where the box lies its own u is 1.5.
+  // At the box's position its own u is 1.5.
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-  maps.look(here, Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0)), m);
+  maps.apply(here, Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0)), m);
   CHECK(m.points[0].friction == Approx(std::sqrt(0.25 * 4)));
-  maps.look(here, here, m);
+  maps.apply(here, here, m);
   CHECK(m.points[0].friction == Approx(0.25));
   w.materials[1].friction_asset = 0;
-  CHECK_FALSE(FrictionMaps(w).concern(0, 1));
+  CHECK_FALSE(FrictionMaps(w).applies(0, 1));
 }

@@ -1,6 +1,7 @@
-// Both groups at work, against a tool that does its worst and a thread that is never given time.
+// Stress tests of both groups: a tool with hostile motion, and a thread that gets no time.
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
 
 #include "tests/sim_node/support/dual_bench.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kBall_m = 0.03;
 
-// Where a body of the visual group is at an instant within its step: on the chords between its sub-steps.
+// Position of a body of the visual group at an instant within its step: on the chords between its sub-steps.
 Vector3d on_its_way(const VisualStep& step, std::size_t unit, sync::Nanoseconds passed) {
   const std::size_t k = step.time_before(passed);
   const Vector3d from = step.states[k][unit].body.centre_m;
@@ -24,7 +25,7 @@ Vector3d on_its_way(const VisualStep& step, std::size_t unit, sync::Nanoseconds 
   return from + share * (to - from);
 }
 
-// A tray of balls, thrown about.
+// A tray of balls with random velocities.
 WorldDef tray(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> speed(-0.7, 0.7);
@@ -45,7 +46,7 @@ WorldDef tray(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("Whatever a hand does, bodies of one group never touch those of the other") {
+TEST_CASE("Bodies of one group never touch those of the other, for any motion of the hand") {
   const double acceleration = GENERATE(10.0, 100.0, 300.0);
   const unsigned seed = GENERATE(1u, 2u);
   CAPTURE(acceleration, seed);
@@ -58,7 +59,7 @@ TEST_CASE("Whatever a hand does, bodies of one group never touch those of the ot
   for (int i = 0; i < 1500; ++i) {
     GroupTool& tool = d.tools[0];
     if (i == 0) tool = {{0, 0, 0.05}, Vector3d::Zero(), 0.01};
-    // Bang-bang, with its speed bounded, in the tray: at one ball after the other.
+    // Bang-bang control with bounded speed, inside the tray, towards one ball after the other.
     if (i % 47 == 0) {
       const Vector3d at_ball = d.body(5 + static_cast<int>(random() % 16)).centre_m - tool.centre_m;
       direction = (at_ball.normalized() + 0.3 * Vector3d(normal(random), normal(random), normal(random))).normalized();
@@ -71,7 +72,7 @@ TEST_CASE("Whatever a hand does, bodies of one group never touch those of the ot
       if (tool.centre_m[k] < least || tool.centre_m[k] > most) tool.velocity_m_s[k] = 0;
       tool.centre_m[k] = std::clamp(tool.centre_m[k], least, most);
     }
-    // It pushes what it meets, as a hand of 2 kN/m would.
+    // It pushes the balls that it meets with a stiffness of 2 kN/m.
     for (const int body : d.groups.haptic()) {
       const Vector3d apart = d.body(body).centre_m - tool.centre_m;
       const double depth = kBall_m + 0.01 - apart.norm();
@@ -88,7 +89,7 @@ TEST_CASE("Whatever a hand does, bodies of one group never touch those of the ot
       const Vector3d place = on_its_way(step, u, passed);
       for (const int other : d.groups.haptic())
         nearest_m = std::min(nearest_m, (d.body(other).centre_m - place).norm() - 2 * kBall_m);
-      // Nor does the tool reach what it is not in a group with.
+      // Nor does the tool touch a body outside the haptic group.
       nearest_m = std::min(nearest_m, (tool.centre_m - place).norm() - kBall_m - tool.radius_m);
     }
     moved_over += d.groups.haptic().empty() ? 0 : 1;
@@ -101,14 +102,14 @@ TEST_CASE("Whatever a hand does, bodies of one group never touch those of the ot
     if (m.moves()) CHECK((m.centre_m.head<2>().cwiseAbs().maxCoeff() < 0.36 && m.centre_m.z() > kBall_m - 1e-5));
 }
 
-TEST_CASE("A visual step that is late holds its bodies, is counted, and delays no tick") {
+TEST_CASE("A late visual step holds its bodies, is counted, and delays no tick") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
   for (int i = 0; i < 60; ++i) add_ball(w, 1, 0.05, {1.0 + 0.2 * (i % 8), 0.2 * (i / 8), 10});
   Settings settings = dual_settings();
   settings.visual_thread = "own";
   Dual d(w, settings);
-  // Ticks as fast as they can be: the thread is far behind.
+  // Ticks run as fast as they can, so that the thread is far behind.
   std::int64_t held = 0;
   double last = 10;
   for (int i = 0; i < 3000; ++i) {
@@ -120,13 +121,13 @@ TEST_CASE("A visual step that is late holds its bodies, is counted, and delays n
   }
   CHECK(d.groups.late_steps() > 0);
   CHECK(d.groups.held_ticks() >= d.groups.late_steps());
-  // It fell for as long as it was not held, on its parabola.
+  // It falls on its parabola during the time in which it is not held.
   const double fell_s =
       sync::to_seconds(d.groups.step()->begins.time_since_epoch() + d.groups.step()->task.length);
   CHECK(d.groups.step()->states.back()[0].body.centre_m.z() == Approx(10 - kG / 2 * fell_s * fell_s).margin(1e-9));
 }
 
-TEST_CASE("A push brings a body into the haptic group, and what is set of it holds") {
+TEST_CASE("A push brings a body into the haptic group, and values set on it persist") {
   WorldDef w = empty_world(0);
   const int ball = add_ball(w, 0.2, 0.05, {0, 0, 1});
   Dual d(w);
@@ -146,7 +147,7 @@ TEST_CASE("A push brings a body into the haptic group, and what is set of it hol
   d.run(120);
   CHECK_FALSE(d.groups.is_haptic(ball));
   CHECK(d.body(ball).velocity_m_s.y() == Approx(1));
-  // Gravity holds for both groups, wherever the body is.
+  // Gravity acts on both groups.
   CHECK(d.groups.apply({.kind = impulse::SceneChange::kGravity, .values = {0, 0, -1}}));
   const double before = d.groups.step()->end[static_cast<std::size_t>(ball)].velocity_m_s.z();
   d.run(200);
@@ -154,7 +155,7 @@ TEST_CASE("A push brings a body into the haptic group, and what is set of it hol
         Approx(before - 0.2).margin(0.04));
 }
 
-TEST_CASE("The visual group in a thread of its own gives and takes bodies in contact, and is told of changes") {
+TEST_CASE("The visual group on its own thread exchanges bodies in contact and applies changes") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
   for (int i = 0; i < 24; ++i)
@@ -163,7 +164,7 @@ TEST_CASE("The visual group in a thread of its own gives and takes bodies in con
   settings.visual_thread = "own";
   Dual d(w, settings);
   int here = 0, there = 0;
-  // Ticks as fast as they can be: steps are late as often as not.
+  // Ticks run as fast as they can, so that about half of the steps are late.
   for (int i = 0; i < 4000; ++i) {
     const double t = 0.001 * i;
     d.tools[0].centre_m = {0.25 + 0.3 * std::sin(3 * t), 0.15 + 0.2 * std::cos(5 * t), 0.03};

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/contact_event_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "tests/sim_node/support/dual_bench.h"
@@ -9,7 +10,7 @@ using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
 
-TEST_CASE("What no tool can reach falls in visual steps, on the parabola") {
+TEST_CASE("A body out of reach of all tools falls in visual steps, on the parabola") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
   Dual d(w);
@@ -27,7 +28,7 @@ TEST_CASE("What no tool can reach falls in visual steps, on the parabola") {
 TEST_CASE("A ball that falls past the tool goes to the haptic group and back, and stays on its parabola") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 2});
-  // Beside the way of the ball, so near that it might be touched.
+  // Beside the trajectory of the ball, near enough for contact to be possible.
   Dual d(w, dual_settings(), {0.063, 0, 1.0});
   bool was = false, is = false;
   for (int i = 0; i < 620; ++i) {
@@ -46,7 +47,7 @@ TEST_CASE("A ball that falls past the tool goes to the haptic group and back, an
         Approx(2 - kG / 2 * t * t).margin(1e-9));
 }
 
-TEST_CASE("A bounce within one visual step begins, hits and ends, at its instants") {
+TEST_CASE("A bounce within one visual step begins, hits and ends at the right instants") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
   add_ball(w, 1, 0.05, {0, 0, 0.55}, 0.5, 1);
@@ -61,23 +62,23 @@ TEST_CASE("A bounce within one visual step begins, hits and ends, at its instant
   CHECK(d.events[1].approach_speed_m_s == Approx(kG * fall).epsilon(0.005));
 }
 
-TEST_CASE("What happens in a visual step is told in the tick in which it happens") {
+TEST_CASE("An event of a visual step is published in the tick in which it happens") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.8);
   for (int i = 0; i < 8; ++i) add_ball(w, 0.2, 0.05, {0.3 * i, 0, 0.5 - 0.004 * i}, 0.5, 0.8);
   Dual d(w);
-  std::size_t told = 0;
+  std::size_t seen = 0;
   for (int i = 0; i < 1500; ++i) {
     d.tick();
-    for (; told < d.events.size(); ++told) {
-      CHECK(d.events[told].time_ns <= d.ticks * 1'000'000);
-      CHECK(d.events[told].time_ns > (d.ticks - 1) * 1'000'000);
+    for (; seen < d.events.size(); ++seen) {
+      CHECK(d.events[seen].time_ns <= d.ticks * 1'000'000);
+      CHECK(d.events[seen].time_ns > (d.ticks - 1) * 1'000'000);
     }
   }
-  CHECK(told > 30);
+  CHECK(seen > 30);
 }
 
-TEST_CASE("Groups of bodies at rest change hands without a begin or an end") {
+TEST_CASE("Bodies at rest change groups without a begin or an end event") {
   WorldDef w = empty_world();
   add_floor(w);
   const int box = add_box(w, 0.5, {0.1, 0.1, 0.1}, at(0, 0, 0.05));
@@ -86,7 +87,7 @@ TEST_CASE("Groups of bodies at rest change hands without a begin or an end") {
   d.run(300);
   const std::size_t before = d.events.size();
   for (int round = 0; round < 5; ++round) {
-    // The tool comes near the lower box only; what stands on it comes along.
+    // The tool comes near the lower box only; the box on top of it enters too.
     d.tools[0].centre_m = {0.062, 0, 0.03};
     d.run(40);
     CHECK(d.groups.is_haptic(box));
@@ -102,7 +103,7 @@ TEST_CASE("Groups of bodies at rest change hands without a begin or an end") {
   CHECK(d.body(upper).centre_m.z() == Approx(0.15).margin(0.001));
 }
 
-TEST_CASE("Whatever the tool does, the same ticks give the same world to the bit") {
+TEST_CASE("The same ticks give the same world to the bit, for any motion of the tool") {
   const auto run = [] {
     WorldDef w = empty_world();
     add_floor(w, 0.5, 0.3);
@@ -123,7 +124,7 @@ TEST_CASE("Whatever the tool does, the same ticks give the same world to the bit
   CHECK(run() == run());
 }
 
-TEST_CASE("A state that is put back goes on to the bit, whatever has happened since") {
+TEST_CASE("A restored state continues identically to the bit, regardless of the steps since") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
   for (int i = 0; i < 12; ++i) add_ball(w, 0.2, 0.03, {0.08 * (i % 4), 0.08 * (i / 4), 0.1 + 0.03 * i}, 0.4, 0.5);
@@ -160,8 +161,9 @@ TEST_CASE("A state that is put back goes on to the bit, whatever has happened si
   CHECK(go_on() == first);
 }
 
-TEST_CASE("The springs near a tool are those of the end of a step or of its start, as the solver says") {
-  // A ball that sinks into its spring: of the start of the step, the first force is that of the place where it was.
+TEST_CASE("The springs near a tool are evaluated at the end or at the start of a step, as the solver setting selects") {
+  // The ball sinks into its spring. Evaluated at the start of the step, the first force belongs to the previous
+  // position.
   WorldDef w = empty_world();
   add_floor(w);
   const double mass = 0.1;

@@ -37,7 +37,7 @@ struct Row {
 
 }  // namespace
 
-TEST_CASE("A body joins the group when the tool may reach it before the next visual step, and says so") {
+TEST_CASE("A body joins the group when the tool may reach it before the next visual step, and is reported as entered") {
   Row r(3);
   Grouping g(r.bodies, r.limits);
   r.step(g, 0);
@@ -50,7 +50,7 @@ TEST_CASE("A body joins the group when the tool may reach it before the next vis
   CHECK_FALSE(g.is_haptic(1));
   r.tools[0].velocity_m_s = {0, 0, 30};
   r.step(g, 34);
-  CHECK(Row::list(g.haptic()) == Ints{0});  // for a while
+  CHECK(Row::list(g.haptic()) == Ints{0});  // stays for leave_after
   CHECK(g.entered().empty());
   r.step(g, 17 + 33);
   CHECK(g.left().empty());
@@ -59,13 +59,13 @@ TEST_CASE("A body joins the group when the tool may reach it before the next vis
   CHECK(g.haptic().empty());
 }
 
-TEST_CASE("Ways that cross at different times do not group. Capsules do") {
+TEST_CASE("Trajectories that cross at different times do not group bodies. Capsules do") {
   Row r(1);
   r.limits.tool_acceleration_m_s2 = 0;
   r.limits.gravity_m_s2 = 0;
   r.motions[0].velocity_m_s = {20, 0, 0};
   r.tools[0].velocity_m_s = {0, 0, -40};
-  r.tools[0].centre_m = {0.02, 0, 0.62};  // is at z = 0 after 15.5 ms: the ball is 0.3 m away by then
+  r.tools[0].centre_m = {0.02, 0, 0.62};  // at z = 0 after 15.5 ms, when the ball is 0.3 m away
   Grouping sound(r.bodies, r.limits), kim(r.bodies, r.limits, GroupingRule::kKim2005);
   r.step(sound, 0);
   r.step(kim, 0);
@@ -73,7 +73,7 @@ TEST_CASE("Ways that cross at different times do not group. Capsules do") {
   CHECK(Row::list(kim.haptic()) == Ints{0});
 }
 
-TEST_CASE("A system of joints enters whole, and what touches it enters too. What never moves does not") {
+TEST_CASE("A system of joints enters as a whole, with the moving bodies that touch it. A static body does not enter") {
   Row r(6);
   r.bodies[0].system = r.bodies[2].system = r.bodies[3].system = 0;
   r.touching = {{3, 4}, {0, 5}};
@@ -84,7 +84,7 @@ TEST_CASE("A system of joints enters whole, and what touches it enters too. What
   CHECK(Row::list(g.haptic()) == Ints{0, 2, 3, 4});
 }
 
-TEST_CASE("What a struck body may strike is in the group, and what that strikes enters as soon as it is struck") {
+TEST_CASE("A body that a struck body may strike is in the group, and a third body enters when the second is struck") {
   Row r(3);
   r.motions[1].centre_m = {0.11, 0, 0};  // a centimetre from the first
   r.motions[2].centre_m = {0.22, 0, 0};
@@ -100,14 +100,14 @@ TEST_CASE("What a struck body may strike is in the group, and what that strikes 
   CHECK(Row::list(sound.entered()) == Ints{2});
 }
 
-TEST_CASE("A tool that leaves its straight way is noticed in the same tick, and the group grows at once") {
+TEST_CASE("A tool that leaves its straight line is detected in the same tick, and the group grows at once") {
   Row r(4);
   Grouping g(r.bodies, r.limits);
   r.step(g, 0);
   CHECK(g.haptic().empty());
   g.watch(Row::at(1), r.motions, r.tools);
   CHECK(g.alarms() == 0);
-  r.tools[0].centre_m = {1.5, 0, 0.05};  // nobody can jump so far
+  r.tools[0].centre_m = {1.5, 0, 0.05};  // further than any hand can move
   g.watch(Row::at(2), r.motions, r.tools);
   CHECK(g.alarms() == 1);
   CHECK(Row::list(g.entered()) == Ints{3});
@@ -117,7 +117,7 @@ TEST_CASE("A tool that leaves its straight way is noticed in the same tick, and 
   CHECK(g.entered().empty());
 }
 
-TEST_CASE("Whatever a hand does, no body is touched that is not in the group") {
+TEST_CASE("Every body that the hand touches is in the group, for any motion of the hand") {
   test::AdversaryResult all_sound, all_kim;
   for (const double acceleration : {0.0, 9.8, 30.0, 100.0, 300.0})
     for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -135,5 +135,5 @@ TEST_CASE("Whatever a hand does, no body is touched that is not in the group") {
       all_kim.missed += kim.missed;
     }
   CHECK(all_sound.contacts > 500);
-  CHECK(all_kim.missed > 50);  // so the shadow sees what there is to see
+  CHECK(all_kim.missed > 50);  // so the comparison covers real contacts
 }

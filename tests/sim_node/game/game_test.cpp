@@ -1,6 +1,7 @@
 #include "sim_node/game/game.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/game_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sim;
@@ -9,7 +10,7 @@ namespace {
 
 HoleDef hole(const char* name, double x, int ball) { return {name, {x, 0, 0}, 0.03, 0.1, ball}; }
 
-// Two balls, 0 and 1, and a game of a hole for each, at x = 0 and x = 1.
+// Two balls, 0 and 1, and a game with one hole for each, at x = 0 and x = 1.
 struct Table {
   Game game{{hole("left", 0, 0), hole("right", 1, 1)}};
   std::vector<BodyMotion> balls{2};
@@ -27,7 +28,7 @@ struct Table {
 
 }  // namespace
 
-TEST_CASE("A hole is filled when its ball has lain below its rim for a while, and the game is won when all are") {
+TEST_CASE("A hole is filled when its ball has been below its rim for a while, and the game is won when all holes are filled") {
   Table t;
   CHECK(t.after(10).holes[0].inside == -1);
   t.put(0, {0.01, 0, -0.05});
@@ -46,7 +47,7 @@ TEST_CASE("A hole is filled when its ball has lain below its rim for a while, an
   CHECK(open.holes[1].inside == -1);
 }
 
-TEST_CASE("A ball in the hole of another lies inside and fills nothing") {
+TEST_CASE("A ball in the hole of another ball is inside and fills nothing") {
   Table t;
   t.put(0, {1, 0, -0.05});
   const game_state_t m = t.after(200);
@@ -55,7 +56,7 @@ TEST_CASE("A ball in the hole of another lies inside and fills nothing") {
   CHECK(m.holes[0].inside == -1);
 }
 
-TEST_CASE("A ball that rolls over a hole, bounces out of it or lies beside or far below it is not in it") {
+TEST_CASE("A ball that rolls over a hole, bounces out of it or is beside or far below it is not in it") {
   Table t;
   for (const Eigen::Vector3d& place :
        {Eigen::Vector3d(0, 0, 0.025), Eigen::Vector3d(0.031, 0, -0.05), Eigen::Vector3d(0, 0, -0.11)}) {
@@ -70,9 +71,9 @@ TEST_CASE("A ball that rolls over a hole, bounces out of it or lies beside or fa
   }
 }
 
-TEST_CASE("Every change of a game is told once") {
+TEST_CASE("Every change of a game is reported once") {
   Table t;
-  CHECK(t.game.take_change());  // how it stands at the beginning
+  CHECK(t.game.take_change());  // the initial state
   t.after(100);
   CHECK(!t.game.take_change());
   t.put(0, {0, 0, -0.05});

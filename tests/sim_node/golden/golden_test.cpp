@@ -1,5 +1,4 @@
-// What each scene comes to: the same to the bit as when the table was written, and whichever instructions are
-// used.
+// The final state of each scene is identical to the bit to the table, for every instruction set.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <fstream>
@@ -21,7 +20,7 @@ std::string hex(std::uint64_t hash) {
   return text;
 }
 
-// Lines "scene hash"; what begins with # is a comment.
+// Lines "scene hash"; a # starts a comment.
 std::map<std::string, std::string> table() {
   std::map<std::string, std::string> rows;
   std::ifstream in(TACTUS_SOURCE_DIR "/tests/sim_node/golden/golden_hashes.txt");
@@ -36,7 +35,7 @@ std::map<std::string, std::string> table() {
 }  // namespace
 
 TEST_CASE(
-    "Every scene comes to the state of the table (scripts/golden_hashes --write when it is meant to change)") {
+    "Every scene ends in the state of the table (tests/measure/golden_hashes --write updates the table)") {
   const auto golden = table();
   std::size_t scenes = 0;
   for (const auto& scene : scenes_in(kScenes)) {
@@ -48,10 +47,10 @@ TEST_CASE(
   CHECK(golden.size() == scenes);
 }
 
-TEST_CASE("Every scene comes to the same state with every instruction set that the processor has") {
+TEST_CASE("Every scene ends in the same state with every instruction set of the processor") {
   int compared = 0;
   for (const auto& scene : scenes_in(kScenes)) {
-    constexpr int kSteps = 120;  // of all scenes; those in which the instructions matter take all steps below
+    constexpr int kSteps = 120;  // of all scenes; scenes that depend on the instructions take all steps below
     const std::uint64_t baseline = state_hash(scene, {"isa=baseline"}, kSteps);
     for (const Isa isa : {Isa::kAvx2, Isa::kAvx512}) {
       if (isa > best_isa()) continue;
@@ -63,18 +62,18 @@ TEST_CASE("Every scene comes to the same state with every instruction set that t
   CHECK((compared > 0 || best_isa() == Isa::kBaseline));
 }
 
-TEST_CASE("Meshes that touch meshes come to the same state with every instruction set") {
-  // Where the detector layers is, which has code of its own for each.
+TEST_CASE("Meshes in contact end in the same state with every instruction set") {
+  // The detector "layers" has separate code for each instruction set.
   const auto with = [](const std::string& isa) {
     return state_hash(kScenes / "peg_in_hole.sdf", {"detector=layers", "isa=" + isa});
   };
   const std::uint64_t baseline = with("baseline");
-  CHECK(baseline != state_hash(kScenes / "peg_in_hole.sdf", {"detector=gaps"}));  // it does take part
+  CHECK(baseline != state_hash(kScenes / "peg_in_hole.sdf", {"detector=gaps"}));  // the detector is used
   if (best_isa() >= Isa::kAvx2) CHECK(with("avx2") == baseline);
   if (best_isa() >= Isa::kAvx512) CHECK(with("avx512") == baseline);
 }
 
-TEST_CASE("A state hash tells one bit of one body from another, and a scene from itself after one step more") {
+TEST_CASE("A state hash distinguishes one bit of one body, and a scene one step later") {
   const auto scene = kScenes / "stack.sdf";
   const std::uint64_t once = state_hash(scene, {}, 60);
   CHECK(state_hash(scene, {}, 60) == once);

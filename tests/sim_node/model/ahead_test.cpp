@@ -1,9 +1,15 @@
-// Bodies computed ahead, from the simulation's hands to a renderer's.
+// Bodies computed ahead, from the simulation to the rendered poses.
 #include <catch2/catch.hpp>
 #include <iostream>
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sim_node/publish/publisher.h"
 #include "sync/resampling/body_history.h"
@@ -18,14 +24,14 @@ constexpr std::int64_t kMs = 1'000'000;
 
 std::int64_t step_begin(std::int64_t n) { return (1000 * n + 59) / 60; }
 
-// Moves with an acceleration that a promotion changes, as a touch would: between samples, on cubics, pictures are
+// Motion whose acceleration changes at a promotion, as by a touch. Between samples on cubics, rendered poses are
 // exact.
 struct Course {
-  std::map<std::int64_t, Eigen::Vector3d> positions, velocities;  // at the beginning of each piece, by ms
+  std::map<std::int64_t, Eigen::Vector3d> positions, velocities;  // at the start of each piece, by ms
   std::map<std::int64_t, Eigen::Vector3d> accelerations;
 
   BodyMotion at(std::int64_t ms) const { return beyond(ms, std::prev(accelerations.upper_bound(ms))->first); }
-  // As the piece that began then would go on.
+  // Extrapolation of the piece that began then.
   BodyMotion beyond(std::int64_t ms, std::int64_t piece) const {
     const double s = 1e-3 * static_cast<double>(ms - piece);
     BodyMotion m;
@@ -53,7 +59,7 @@ contact_t contact(std::int64_t id, int a, int b) {
   return c;
 }
 
-// The dual simulation, as far as it is told of.
+// The dual simulation as its publisher sees it.
 class Dual {
  public:
   Dual(std::size_t bodies, unsigned seed) : courses(bodies), motions(bodies), random_(seed), ahead_(bodies, 0) {
@@ -63,17 +69,17 @@ class Dual {
   void tick() {
     ahead.promoted = {};
     promoted_.clear();
-    // As the simulation does: a step begins with a tick, and is told of at its end.
+    // As in the simulation: a step begins with a tick and is published at its end.
     const bool fresh = now - 1 == step_begin(step_);
     if (fresh) ++step_;
-    // Some are taken back in the middle of a step, some leave with its end.
+    // Some bodies are promoted in the middle of a step, some leave at its end.
     for (std::size_t i = 0; i < courses.size(); ++i) {
       if (!ahead_[i] || random_() % 300 != 0) continue;
       ahead_[i] = 0;
       courses[i].bend(now, acceleration());
       promoted_.push_back(static_cast<int>(i));
     }
-    for (std::size_t i = 1; fresh && i < courses.size(); ++i)  // 0 is on its own from begin to end
+    for (std::size_t i = 1; fresh && i < courses.size(); ++i)  // body 0 stays ahead from begin to end
       if (!ahead_[i] && random_() % 4 == 0 && std::find(promoted_.begin(), promoted_.end(), i) == promoted_.end())
         ahead_[i] = 1;
     bodies_.clear();
@@ -106,7 +112,7 @@ class Dual {
   }
 
   std::int64_t now = 0;
-  bool touching = false;  // body 0 touches all others, always
+  bool touching = false;  // body 0 is always in contact with all others
   std::vector<Course> courses;
   std::vector<BodyMotion> motions;
   Ahead ahead;
@@ -134,25 +140,23 @@ void stamp(Message& m, std::int64_t now, std::int64_t& seq) {
 
 }  // namespace
 
-TEST_CASE(
-    "Pictures of bodies that are computed ahead are where the bodies are, also of those that are taken back, in "
-    "any order of pages") {
-  const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: of more the snapshots are fewer
+TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after revisions, for any order of pages") {
+  const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: with more bodies there are fewer snapshots
   const unsigned seed = GENERATE(1, 2, 3);
   Dual world(bodies, seed);
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
   sync::BodyHistory history(1);
   std::mt19937 random(seed);
-  std::multimap<std::int64_t, world_state_t> wire;  // by arrival
+  std::multimap<std::int64_t, world_state_t> wire;  // by arrival time
   std::int64_t seq = 0, promoted_late = 0, pages = 0;
   const std::int64_t jitter_ns = GENERATE(0, 1, 12) * kMs;
   std::map<int, std::int64_t> promoted;
   double worst_m = 0, worst_behind_m = 0;
-  std::int64_t stood_ms = 0;  // the world stood still for so long
+  std::int64_t stood_ms = 0;  // duration for which the world stood still
   for (; world.now < 600; ++world.now) {
     world.tick();
     for (const int b : world.ahead.promoted) promoted[b] = world.now;
-    const auto tell = [&] {
+    const auto publish = [&] {
       const std::int64_t pace = world.now + stood_ms;
       snapshots.tick(
           sync::sim_time(world.now * kMs), sync::sim_time(pace * kMs), world.source, [](contact_frame_t&) {},
@@ -170,11 +174,11 @@ TEST_CASE(
                 pace * kMs + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(jitter_ns + 1)), m);
           });
     };
-    tell();
-    for (; world.now == 300 && stood_ms < 100; tell()) ++stood_ms;
+    publish();
+    for (; world.now == 300 && stood_ms < 100; publish()) ++stood_ms;
     for (; !wire.empty() && wire.begin()->first <= (world.now + stood_ms) * kMs; wire.erase(wire.begin()))
       history.push(wire.begin()->second, sync::host_time(wire.begin()->first + 1'000 * kMs));
-    // A picture of 40 ms ago, whose pages have all come; and one of now.
+    // A frame 40 ms in the past, for which all pages have arrived, and a frame of now.
     if (world.now < 120) continue;
     for (std::size_t i = 0; i < bodies; ++i) {
       const auto of = [&](std::int64_t ms) {
@@ -188,16 +192,16 @@ TEST_CASE(
   }
   INFO(bodies << " bodies, " << pages << " pages, jitter " << jitter_ns << " ns: " << worst_m << " m, of now "
               << worst_behind_m << " m");
-  // On cubics pictures are exact up to the single precision of velocities; but who joins those ahead is told a
-  // tick after its step has begun, with the velocity of its beginning, 1 ms * 87 m/s^2 off: that is a h^2 / 2 at
-  // the sample and 4/27 * 16 ms * a h between (the most of Hermite's tangent polynomial).
+  // On cubics, frames are exact to the single precision of velocities. But a body that joins those ahead is published
+  // a tick after its step has begun, with the initial velocity, which is 1 ms * 87 m/s^2 off. The error is a h^2 / 2
+  // at the sample and 4/27 * 16 ms * a h between (the maximum of the Hermite tangent polynomial).
   CHECK(worst_m < 2.5e-4);
   CHECK(promoted_late == 0);
   CHECK(promoted.empty());
   CHECK(pages < 1400 + 60);
 }
 
-TEST_CASE("A late visual step holds its bodies at rest, and they go on from there") {
+TEST_CASE("A late visual step holds its bodies at rest, and their motion continues from there") {
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
@@ -226,11 +230,11 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
     ahead.time = sync::sim_time(17 * kMs);
     tick(0, 1, 0.017);
   }
-  // The step that should begin at 17 ms is not ready before 30.
+  // The step due at 17 ms is not ready before 30 ms.
   ahead.fresh = false;
   ahead.held = true;
   while (ms < 30) {
-    tick(0.017, 1, 0);  // as it was when it came to stand
+    tick(0.017, 1, 0);  // the state at which it stopped
     CHECK(x(ms - 1) == Approx(0.017));
     CHECK(x(ms + 20) == Approx(0.017));
   }
@@ -246,14 +250,14 @@ TEST_CASE("A late visual step holds its bodies at rest, and they go on from ther
     CHECK(x(t) == Approx(0.017 + 1e-3 * static_cast<double>(t - 30)).margin(1e-6));
 }
 
-TEST_CASE("A contact that moves between the groups is there once, whenever it is looked for") {
+TEST_CASE("A contact that moves between the groups exists exactly once at any time") {
   const unsigned seed = GENERATE(1, 2, 3, 4);
   Dual world(20, seed);
   world.touching = true;
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
   sync::ContactStream stream(1);
   std::int64_t seq = 0;
-  contact_events_t begins{};  // body 0 touches all others from the beginning
+  contact_events_t begins{};  // body 0 is in contact with all others from the beginning
   for (int i = 1; i < 20; ++i) {
     contact_event_t e{};
     e.event_id = i, e.contact_id = 100 + i, e.body_b = i, e.tool = -1;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius_m = 0.02, kMass_kg = 0.1;
 
-// A ball of triangles, by which the detector "layers" sees gaps, over a floor that is a box.
+// A ball of triangles, for which the detector "layers" reports gaps, over a box as floor.
 WorldDef ball_over_box(double gap_m) {
   WorldDef w = empty_world();
   const int floor = add_body(w, "floor", 0, Eigen::Matrix3d::Identity(), at(0, 0, -0.05));
@@ -48,13 +48,13 @@ Settings settings(const std::string& solver, const std::string& detector) {
 
 }  // namespace
 
-TEST_CASE("Every model of the setting is known, and no other") {
+TEST_CASE("The setting accepts every model and no other") {
   for (const BehaviourModel& m : behaviour_models()) CHECK(behaviour_model(m.name).name == m.name);
   CHECK(behaviour_models().size() == 5);
   CHECK_THROWS_WITH(behaviour_model("jelly"), Contains("jelly") && Contains("choose quick, step"));
 }
 
-TEST_CASE("Impulses and penalty are refused a detector that sees overlap only, and served by every other") {
+TEST_CASE("Impulse and penalty models reject a detector that reports overlap only and accept every other") {
   for (const std::string_view name : detector_names()) {
     const DetectorAbilities abilities = make_detector(name)->abilities();
     for (const BehaviourModel& m : behaviour_models()) {
@@ -62,19 +62,19 @@ TEST_CASE("Impulses and penalty are refused a detector that sees overlap only, a
       const std::string why = refusal(m, abilities);
       CHECK(why.empty() == (abilities.separation || m.name == "quick" || m.name == "step"));
       if (!why.empty())
-        CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that sees gaps"));
+        CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that reports gaps"));
     }
   }
   for (const std::string solver : {"impulse", "penalty", "penalty_explicit"})
     for (const std::string detector : {"ode", "ccd_mpr"})
-      CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not see"));
+      CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not report"));
 }
 
-TEST_CASE("Two groups refuse what one group does: no pairing falls back on another") {
+TEST_CASE("Two groups reject the same pairings as one group, without fallback") {
   Settings s = settings("impulse", GENERATE("ode", "ccd_mpr"));
   s.groups = "dual";
   s.visual_thread = "none";
-  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not see"));
+  CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.detector) && Contains("does not report"));
   s.solver = GENERATE("quick", "step", "penalty");
   CHECK_THROWS_WITH(Simulation(ball_over_box(0.01), s), Contains(s.solver) && Contains("groups = single"));
   s = settings("impulse", "gaps");
@@ -83,8 +83,8 @@ TEST_CASE("Two groups refuse what one group does: no pairing falls back on anoth
   CHECK_NOTHROW(Simulation(ball_over_box(0.01), s));
 }
 
-TEST_CASE("Explicit penalty is refused where step and mass do not bear its stiffness, with what they bear") {
-  // A mesh presses with up to four points: 4 m / (4 h^2) less the damper's 2 d / h.
+TEST_CASE("Explicit penalty is rejected when it is unstable for step and mass, with the stable limit") {
+  // A mesh presses with up to four points: 4 m / (4 h^2) minus the damper's 2 d / h.
   Settings s = settings("penalty_explicit", "layers");
   const double most = kMass_kg / 1e-6 - 2 * s.penalty_damping_Ns_m / 1e-3;
   s.penalty_stiffness_N_m = 0.99 * most;
@@ -93,19 +93,19 @@ TEST_CASE("Explicit penalty is refused where step and mass do not bear its stiff
   CHECK_THAT(refusal(ball_over_box(0.01), s),
              Contains("\"ball\"") && Contains("9e+04 N/m") && Contains("choose \"penalty\""));
   CHECK_THROWS(Solver(ball_over_box(0.01), s));
-  // A sphere with one point bears four times as much of the spring; a fixed body anything.
+  // A sphere with one point allows four times the stiffness; a static body allows any.
   WorldDef w = empty_world();
   add_ball(w, kMass_kg, kRadius_m, {0, 0, 1});
   add_floor(w);
   s.penalty_stiffness_N_m = 3 * most;
   CHECK(refusal(w, s).empty());
-  // The implicit one is stable with any.
+  // The implicit form is stable with any stiffness.
   s.solver = "penalty";
   s.penalty_stiffness_N_m = 1e9;
   CHECK(refusal(ball_over_box(0.01), s).empty());
 }
 
-TEST_CASE("A loop of joints is refused by every model that needs trees, by its own name") {
+TEST_CASE("A loop of joints is rejected by name by every model that needs trees") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0});
   for (const BehaviourModel& m : behaviour_models()) {
@@ -118,7 +118,7 @@ TEST_CASE("A loop of joints is refused by every model that needs trees, by its o
   }
 }
 
-TEST_CASE("A body of a scene rests in the shell where its weight bends the spring, without a blow on arrival") {
+TEST_CASE("A body of a scene rests in the shell where the spring carries its weight, without an impact on arrival") {
   const std::string solver = GENERATE("penalty", "penalty_explicit");
   const Settings s = settings(solver, "layers");
   Solver sim(ball_over_box(0.001), s);
@@ -131,8 +131,8 @@ TEST_CASE("A body of a scene rests in the shell where its weight bends the sprin
     most = std::max(most, last);
   }
   CHECK(last == Approx(kMass_kg * kG).epsilon(1e-3));
-  // After the fall of 0.5 mm to the shell energy gives at most mg (1 + sqrt(1 + 2 k height /
-  // mg)), and the damper at most d v on top of it; a hard contact would strike with m v / h = 10 N.
+  // After the fall of 0.5 mm to the shell, energy gives at most mg (1 + sqrt(1 + 2 k height / mg)), plus at most d v
+  // by the damper. A hard contact would give m v / h = 10 N.
   const double weight = kMass_kg * kG, height = 0.0005, k = s.penalty_stiffness_N_m;
   CHECK(most < weight * (1 + std::sqrt(1 + 2 * k * height / weight)) +
                    s.penalty_damping_Ns_m * std::sqrt(2 * kG * height));

@@ -9,7 +9,7 @@
 
 using namespace tactus::sim;
 
-TEST_CASE("The points that are kept span the patch: the deepest and its corners") {
+TEST_CASE("The kept points span the patch: the deepest and its corners") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(0, 1);
   for (int round = 0; round < 50; ++round) {
@@ -31,7 +31,7 @@ TEST_CASE("The points that are kept span the patch: the deepest and its corners"
   }
 }
 
-TEST_CASE("Duplicates count once, but two normals at one place are a corner") {
+TEST_CASE("Duplicates count once, but two normals at one position are a corner") {
   Manifold m;
   reduce_points(std::vector<ManifoldPoint>(20, ManifoldPoint{{1, 2, 3}, {0, 0, 1}, 1e-3}), m);
   CHECK(m.count == 1);
@@ -41,7 +41,7 @@ TEST_CASE("Duplicates count once, but two normals at one place are a corner") {
   CHECK(m.count == 0);
 }
 
-TEST_CASE("Of points that are still apart a step needs the near ones, and one of every wall") {
+TEST_CASE("For points with gaps, the reduction keeps the near ones and one of every wall") {
   const auto point = [](double x, double y, double gap, const Eigen::Vector3d& n) {
     ManifoldPoint p;
     p.point_m = {x, y, 0};
@@ -51,14 +51,14 @@ TEST_CASE("Of points that are still apart a step needs the near ones, and one of
   };
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), aside = Eigen::Vector3d::UnitX();
   Manifold m;
-  // The four lower corners of a tilted box, and far ones high above.
+  // The four lower corners of a tilted box, and distant ones high above.
   std::vector<ManifoldPoint> found{point(0, 0, 0, up),        point(0.1, 0, 1e-3, up),   point(0, 0.1, 1e-3, up),
                                    point(0.1, 0.1, 2e-3, up), point(0.2, 0, 0.08, up),   point(0.2, 0.2, 0.09, up),
                                    point(0, 0.2, 0.1, up),    point(-0.2, -0.2, 0.2, up)};
   gaps::choose_points(found, m);
   REQUIRE(m.count == 4);
   for (const ManifoldPoint& p : m.used()) CHECK(-p.depth_m < 0.01);
-  // Its corners on a floor, two of them at a wall too.
+  // Its corners on a floor, two of them also at a wall.
   found = {point(0, 0, 0, up),   point(0.1, 0, 0, up),       point(0, 0.1, 0, up),
            point(0.1, 0.1, 0, up), point(0.1, 0, 1e-5, aside), point(0.1, 0.1, 1e-5, aside)};
   gaps::choose_points(found, m);

@@ -1,4 +1,6 @@
-// Measured modes: the attribute of <tactus:material> that names them, and their way into the scene.
+// Measured modes: the attribute of <tactus:material> that refers to them, and their transfer into the scene.
+#include <tactus/material_def_t.hpp>
+
 #include "sim_node/model/measured_modes.h"
 
 #include "tests/sim_node/support/scene_file.h"
@@ -8,7 +10,7 @@ using namespace tactus::sim;
 
 namespace {
 
-// As scripts/analyse_modes writes it; an empty cell where one of its two ways found nothing.
+// Format of tactus analyse-modes; a cell is empty where one of its two methods found no value.
 const std::string kTable =
     "frequency_Hz,damping_1_s,amplitude,decay_frequency_Hz,decay_damping_1_s,agrees\n"
     "900.25,5,0.4,,,0\r\n440.5,3.5,0.2,440.4,3.4,1\n";
@@ -28,7 +30,7 @@ const material_def_t& material(const WorldDef& w, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("A material with measured modes has those of the table, ascending, and hands them on") {
+TEST_CASE("A material with measured modes has those of the table, ascending, and passes them on") {
   SceneFile file = scene(kTable);
   const WorldDef w = file.load();
   for (const char* name : {"bell", "dark"}) {
@@ -43,7 +45,7 @@ TEST_CASE("A material with measured modes has those of the table, ascending, and
   CHECK(material(w, "copper").mode_count == 0);
 }
 
-TEST_CASE("A table of modes that cannot be is refused with the line of the scene and the row") {
+TEST_CASE("An invalid table of modes is rejected with the line of the scene and the row") {
   const auto refused = [](const std::string& table, const std::string& because) {
     SceneFile file = scene(table);
     CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") &&

@@ -10,7 +10,7 @@ using namespace tactus::sim;
 
 namespace {
 
-struct Chance {
+struct Random {
   std::mt19937 random{7};
   double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); }
   Eigen::Vector3d point(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
@@ -21,7 +21,7 @@ struct Chance {
   }
 };
 
-// Smallest distance of the straight ways' centres at the same instant within the horizon.
+// Minimum distance of the centres in linear motion at equal times within the horizon.
 double closest_approach_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
   const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
   const double speed2 = closing.squaredNorm();
@@ -33,8 +33,8 @@ constexpr double kHorizon_s = 0.017;
 
 }  // namespace
 
-TEST_CASE("The closest approach of two straight ways is that of a fine sampling of time") {
-  Chance c;
+TEST_CASE("The closest approach of two linear motions matches a fine sampling of time") {
+  Random c;
   for (int round = 0; round < 300; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
     double least = 1e9;
@@ -47,8 +47,8 @@ TEST_CASE("The closest approach of two straight ways is that of a fine sampling 
   }
 }
 
-TEST_CASE("Two ways first meet when a fine sampling of time says so, or never") {
-  Chance c;
+TEST_CASE("The first contact time of two linear motions matches a fine sampling of time, or there is none") {
+  Random c;
   int met = 0;
   for (int round = 0; round < 1000; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
@@ -67,8 +67,8 @@ TEST_CASE("Two ways first meet when a fine sampling of time says so, or never") 
 }
 
 TEST_CASE(
-    "The axes of two capsules are as close as a fine sampling of both says, never further than the ways in time") {
-  Chance c;
+    "The distance of the axes of two capsules matches a fine sampling and is at most the distance of their motions in time") {
+  Random c;
   for (int round = 0; round < 100; ++round) {
     SweptSphere a = c.sphere(), b = c.sphere();
     if (round % 4 == 0) b.velocity_m_s = a.velocity_m_s * c.between(-2, 2);  // parallel
@@ -79,14 +79,14 @@ TEST_CASE(
                                  b.velocity_m_s * (kHorizon_s * l / 100))
                                     .norm());
     CHECK(closest_axes_m(a, b, kHorizon_s) <= least + 1e-12);
-    CHECK(closest_axes_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s a hundredth of the horizon each
+    CHECK(closest_axes_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s for a hundredth of the horizon each
     CHECK(closest_axes_m(a, b, kHorizon_s) <= closest_approach_m(a, b, kHorizon_s) + 1e-12);
     CHECK(closest_axes_m(a, b, kHorizon_s) == Approx(closest_axes_m(b, a, kHorizon_s)).margin(1e-9));
   }
 }
 
-TEST_CASE("A grid finds just those boxes that meet the query, whatever their sizes") {
-  Chance c;
+TEST_CASE("A grid finds exactly the boxes that overlap the query, for any sizes") {
+  Random c;
   const double spread = GENERATE(0.5, 50.0, 1e7);
   std::vector<Bounds> boxes;
   for (int i = 0; i < 500; ++i) {

@@ -35,7 +35,7 @@ Run run(std::size_t world_pages, std::size_t contact_pages, int ticks, double bu
 
 }  // namespace
 
-TEST_CASE("Small states go out 60 times a second, at ticks ceil(1000 n / 60), at once") {
+TEST_CASE("Small states are sent 60 times a second, at ticks ceil(1000 n / 60), at once") {
   const Run r = run(1, 1, 3000);
   REQUIRE(r.world_taken.size() == 180);
   for (std::size_t n = 0; n < r.world_taken.size(); ++n)
@@ -45,7 +45,7 @@ TEST_CASE("Small states go out 60 times a second, at ticks ceil(1000 n / 60), at
   for (const std::int64_t tick : r.world_taken) CHECK(r.per_tick[static_cast<std::size_t>(tick)] == 2);
 }
 
-TEST_CASE("No second carries more than the budget, whatever there is to send, and no page is lost") {
+TEST_CASE("No second exceeds the budget, for any load, and no page is lost") {
   const std::size_t world = GENERATE(0u, 1u, 5u, 33u, 158u, 1000u);
   const std::size_t contacts = GENERATE(1u, 20u, 500u);
   const double budget = GENERATE(100.0, 2000.0);
@@ -56,26 +56,26 @@ TEST_CASE("No second carries more than the budget, whatever there is to send, an
     in_second += r.per_tick[i] - (i >= 1000 ? r.per_tick[i - 1000] : 0);
     REQUIRE_FALSE(in_second > budget + 1);
   }
-  // Every snapshot that was taken went out, but for what was still going at the end.
+  // Every snapshot was sent completely, except those in progress at the end.
   CHECK(r.world_sent + world >= r.world_taken.size() * world);
   CHECK(r.contacts_sent + contacts >= r.contacts_taken.size() * contacts);
   if (60.0 * static_cast<double>(world + contacts) > 1.2 * budget) {
-    // The budget is used, but for the moments in which only one lane has something to send.
+    // The budget is used, except while only one lane has pages to send.
     CHECK(static_cast<double>(r.world_sent + r.contacts_sent) >= 0.9 * 4 * budget);
-    // Neither lane starves the other: both get half, or all they want.
+    // No lane starves the other: both get half of the budget, or all that they need.
     const double half = 2 * budget;
     CHECK(static_cast<double>(r.world_sent) >= std::min(half, 240.0 * static_cast<double>(world)) * 0.85 - 20);
     CHECK(static_cast<double>(r.contacts_sent) >= std::min(half, 240.0 * static_cast<double>(contacts)) * 0.85 - 20);
   }
 }
 
-TEST_CASE("The rate that is told is the rate that is sent") {
+TEST_CASE("The published rate is the actual rate") {
   CHECK(run(1, 1, 2000).world_rate == Approx(60).epsilon(0.05));
-  // Half of 2,000 pages a second for 158 pages.
+  // Half of 2,000 pages per second for 158 pages.
   CHECK(run(158, 1000, 4000).world_rate == Approx(1000.0 / 158).epsilon(0.05));
 }
 
-TEST_CASE("A newcomer has the whole world within 100 ms, however much else there is") {
+TEST_CASE("A new receiver gets the whole world within 100 ms, under any load") {
   PageScheduler s(60, 2000, sync::Nanoseconds(1'000'000));
   std::size_t world = 0;
   int asked = -1, served = -1;

@@ -4,6 +4,13 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/world_state_t.hpp>
 #include <unordered_map>
 
 #include "sync/resampling/contact_stream.h"
@@ -70,7 +77,7 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
   std::map<std::int64_t, std::unordered_map<int, int>> seen_bodies, seen_contacts;
   std::map<std::int64_t, int> world_of, contacts_of;
   float rate = 0;
-  int wrong = 0, largest = 0, most_slow = 0;
+  int wrong = 0, largest = 0, max_slow = 0;
   for (int i = 0; i < kTicks; ++i) {
     const sync::SimTime now = sync::sim_time(i * std::int64_t{1'000'000});
     publisher.publish({now, &models, &none, &tool, {bodies, contacts}}, {now, sync::host_time(5'000'000'000 + i * std::int64_t{1'000'000}), 1});
@@ -99,17 +106,17 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
       for (const contact_t& c : m->message.contacts) ++seen_contacts[m->message.header.sim_time_ns][static_cast<int>(c.contact_id)];
     }
     while (const auto m = wire.touch.pop()) count(m->message);
-    most_slow = std::max(most_slow, slow);
+    max_slow = std::max(max_slow, slow);
   }
   CHECK(wrong == 0);
-  CHECK(most_slow <= 2);
+  CHECK(max_slow <= 2);
   CHECK(largest <= static_cast<int>(channels::kMaxMessageBytes));
   CHECK(wire.bus.refused() == 0);
   for (const auto* inbox : {static_cast<sync::InboxBase*>(&wire.world), static_cast<sync::InboxBase*>(&wire.contacts)}) {
     CHECK(inbox->count().sequence.gaps() == 0);
     CHECK(inbox->count().bad == 0);
   }
-  // Every snapshot but those on their way at the end is whole.
+  // Every snapshot is complete, except those in progress at the end.
   std::size_t whole_worlds = 0, whole_contacts = 0;
   for (const auto& [time, pages] : world_pages)
     if (static_cast<int>(pages.size()) == world_of[time]) {
@@ -126,11 +133,11 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
   const double seconds = kTicks * 1e-3;
   CHECK(rate == Approx(static_cast<double>(whole_worlds) / seconds).epsilon(0.1));
   std::cout << "3000 bodies, 2000 contacts: " << bytes / seconds / 1e6 << " MB/s in " << datagrams / seconds
-            << " datagrams/s; world " << whole_worlds / seconds << " Hz (told " << rate << "), contacts "
+            << " datagrams/s; world " << whole_worlds / seconds << " Hz (published " << rate << "), contacts "
             << whole_contacts / seconds << " Hz\n";
 }
 
-TEST_CASE("Each step: touch, events, contacts of tools, and only then what is slow") {
+TEST_CASE("Each step publishes touch models, events, contacts of tools, and only then the slow state") {
   Wire wire;
   Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
   const std::vector<BodyMotion> bodies = moving(3);
@@ -150,11 +157,11 @@ TEST_CASE("Each step: touch, events, contacts of tools, and only then what is sl
   std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::string all;
   for (const auto& [time, name] : order) all += name + " ";
-  // The tool's contacts, then world and contacts of the others in turns.
+  // The tool's contacts, then world and contacts between bodies alternately.
   CHECK(all == "touch touch events contacts world contacts ");
 }
 
-TEST_CASE("Every event is repeated each step for 50 ms, and a storm loses none") {
+TEST_CASE("Every event is repeated in each step for 50 ms, and a storm loses none") {
   EventRepeater young(4);
   std::map<std::int64_t, int> sent;
   std::int64_t id = 0;
@@ -177,11 +184,11 @@ TEST_CASE("Every event is repeated each step for 50 ms, and a storm loses none")
     for (const auto& [event_id, times] : sent) CHECK(times == 50);
 }
 
-TEST_CASE("Only what moves is told, its rest once, and everything once a second and to a newcomer") {
+TEST_CASE("Moving bodies are published, coming to rest once, and all bodies once a second and for a new receiver") {
   Snapshots snapshots(60, 2000, sync::Nanoseconds(1'000'000));
   std::vector<BodyMotion> bodies(40);
   bodies[7].velocity_m_s = {0.5, 0, 0};
-  std::map<std::int64_t, std::vector<body_state_t>> told;
+  std::map<std::int64_t, std::vector<body_state_t>> published;
   std::map<std::int64_t, int> full;
   int tick = 0;
   const auto run = [&](int ticks) {
@@ -190,14 +197,14 @@ TEST_CASE("Only what moves is told, its rest once, and everything once a second 
       snapshots.tick(sync::sim_time(tick * std::int64_t{1'000'000}), sync::sim_time(tick * std::int64_t{1'000'000}), {bodies, [](auto& out) { out.clear(); }}, [](contact_frame_t&) {},
                      [&](world_state_t& m) {
                        full[m.header.sim_time_ns] = m.full;
-                       auto& list = told[m.header.sim_time_ns];
+                       auto& list = published[m.header.sim_time_ns];
                        list.insert(list.end(), m.bodies.begin(), m.bodies.end());
                      });
     }
   };
   run(500);
   int all = 0;
-  for (const auto& [time, list] : told) {
+  for (const auto& [time, list] : published) {
     if (full[time]) {
       ++all;
       CHECK(list.size() == 40);
@@ -208,19 +215,19 @@ TEST_CASE("Only what moves is told, its rest once, and everything once a second 
   }
   CHECK(all == 1);
   bodies[7].velocity_m_s.setZero();
-  told.clear();
+  published.clear();
   run(200);
-  int mentioned = 0;
-  for (const auto& [time, list] : told) mentioned += static_cast<int>(list.size());
-  // Where it came to rest, and that it rests.
-  CHECK(mentioned >= 1);
-  CHECK(mentioned <= 2);
-  CHECK(told.begin()->second.back().velocity_m_s.x == 0);
-  told.clear();
+  int times_published = 0;
+  for (const auto& [time, list] : published) times_published += static_cast<int>(list.size());
+  // The final pose, and the state of rest.
+  CHECK(times_published >= 1);
+  CHECK(times_published <= 2);
+  CHECK(published.begin()->second.back().velocity_m_s.x == 0);
+  published.clear();
   snapshots.want_full();
   run(30);
-  CHECK(told.begin()->second.size() == 40);
-  told.clear();
+  CHECK(published.begin()->second.size() == 40);
+  published.clear();
   full.clear();
   run(2000);
   int fulls = 0;
@@ -228,7 +235,7 @@ TEST_CASE("Only what moves is told, its rest once, and everything once a second 
   CHECK(fulls == 2);
 }
 
-TEST_CASE("A world that stands still is told of as often as ever, and its events are not repeated for ever") {
+TEST_CASE("A paused world is published at the usual rate, and its events are not repeated endlessly") {
   Wire wire;
   Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
   const std::vector<BodyMotion> bodies(20);
@@ -253,7 +260,7 @@ TEST_CASE("A world that stands still is told of as often as ever, and its events
   wire.bus.drain({});
   CHECK(count(wire.touch) == 2000);
   CHECK(count(wire.events) <= 50);
-  CHECK(count(wire.contacts) >= 2000 + 110);  // the tool's with each tick, the others 60 times a second
+  CHECK(count(wire.contacts) >= 2000 + 110);  // the tool's in each tick, the others 60 times a second
   std::int64_t full = 0, snapshots = 0;
   while (const auto m = wire.world.pop()) {
     full += m->message.full && m->message.page == 0;

@@ -13,7 +13,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 }  // namespace
 
-TEST_CASE("A loop that keeps its time has an exact map") {
+TEST_CASE("A loop without delays has an exact map") {
   SimPacer pacer;
   for (int i = 1; i < 3000; ++i) {
     const sync::TimeMap map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + i * kMs));
@@ -37,13 +37,13 @@ TEST_CASE("A missed tick is a slew, not a jump") {
   CHECK(last == Approx(kStart + kMs).margin(10));
 }
 
-TEST_CASE("A simulation at half speed says so, and its map keeps up") {
+TEST_CASE("A simulation at half speed publishes its rate, and its map keeps up") {
   SimPacer pacer;
   sync::TimeMap map;
   for (int i = 1; i <= 3000; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + 2 * i * kMs));
   CHECK(map.rate == Approx(0.5).epsilon(1e-6));
   CHECK(pacer.realtime_factor() == Approx(0.5));
-  // Behind by the time in which it follows, 20 ms of the world, at most.
+  // The lag is at most the time constant, 20 ms of simulated time.
   CHECK(std::abs(sync::to_ns(map.host) - (kStart + 6000 * kMs)) <= 20 * kMs);
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("The map never runs backwards, even over a stop") {
   }
 }
 
-TEST_CASE("A world that stands still has a map that stands still, and a new one when it goes on") {
+TEST_CASE("A paused world has a constant map, and a new one after the pause") {
   SimPacer pacer;
   sync::TimeMap map{};
   for (int i = 1; i < 100; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + i * kMs));
@@ -68,7 +68,7 @@ TEST_CASE("A world that stands still has a map that stands still, and a new one 
     map = pacer.hold(before.sim, sync::host_time(kStart + i * kMs));
     CHECK(map.rate == 0);
     CHECK(map.sim == before.sim);
-    CHECK(map.host == before.host);  // what happened just before keeps its instant
+    CHECK(map.host == before.host);  // events just before the pause keep their instants
   }
   CHECK(pacer.realtime_factor() == 0);
   map = pacer.tick(before.sim + sync::Nanoseconds(kMs), sync::host_time(kStart + 5000 * kMs));
@@ -76,7 +76,7 @@ TEST_CASE("A world that stands still has a map that stands still, and a new one 
   CHECK(sync::to_ns(map.host) == kStart + 5000 * kMs);
 }
 
-TEST_CASE("A world that stands still from the first has a map as well") {
+TEST_CASE("A world that is paused from the start has a map as well") {
   SimPacer pacer;
   CHECK(sync::to_ns(pacer.hold(sync::sim_time(5), sync::host_time(kStart)).host) == kStart);
   CHECK(pacer.hold(sync::sim_time(5), sync::host_time(kStart + kMs)).rate == 0);

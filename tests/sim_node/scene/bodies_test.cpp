@@ -27,7 +27,7 @@ TEST_CASE("Poses of nested models and frames resolve as computed by hand") {
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("A static model and all that is nested in it never move") {
+TEST_CASE("A static model and its nested models never move") {
   SceneFile file(world(R"(<model name="a"><static>true</static><link name="l"/>
       <model name="b"><link name="l"/></model></model><model name="c"><link name="l"/></model>)"));
   const WorldDef w = file.load();
@@ -57,7 +57,7 @@ TEST_CASE("Friction and restitution come from SDF, else from the material, else 
   CHECK(w.shapes[2].restitution == 0.5);
 }
 
-TEST_CASE("The nearest surface holds: collision before link before model") {
+TEST_CASE("The innermost surface setting applies: collision before link before model") {
   SceneFile file(model("<tactus:surface material='steel'/><link name='a'>" + kBall +
                        "</link><link name='b'><tactus:surface material='oak'/>" + kBall +
                        "<collision name='d'><tactus:surface material='glass'/><geometry><box><size>1 1 1</size></box>"
@@ -69,7 +69,7 @@ TEST_CASE("The nearest surface holds: collision before link before model") {
   CHECK(name(2) == "glass");
 }
 
-TEST_CASE("A body that is seen and not felt gets the box around what is seen") {
+TEST_CASE("A body with visuals only gets the bounding box of its visuals") {
   SceneFile file(link("<visual name='v'><pose>0 0 1 0 0 0</pose><geometry><sphere><radius>0.5</radius></sphere></geometry>"
                       "</visual><visual name='u'><pose>2 0 0 0 1.5707963267948966 0</pose><geometry><cylinder><radius>0.1"
                       "</radius><length>2</length></cylinder></geometry></visual>"));
@@ -81,7 +81,7 @@ TEST_CASE("A body that is seen and not felt gets the box around what is seen") {
   CHECK(same(w.shapes[0].size_m, {3.5, 1, 1.6}));
 }
 
-TEST_CASE("Links of a model collide with each other only where the model or one of them says so") {
+TEST_CASE("Links of a model collide with each other only where the model or one of them allows it") {
   const auto pairs = [](const std::string& more, const std::string& in_b = "") {
     SceneFile file(model(more + "<link name='a'/><link name='b'>" + in_b + "</link><link name='c'/>"));
     return file.load().no_collision;
@@ -99,7 +99,7 @@ TEST_CASE("Gravity of a link and its velocity decay are read") {
   CHECK(w.bodies[0].angular_damping_1_s == 0.5);
 }
 
-TEST_CASE("Old spellings load: SDF 1.4 as people wrote it") {
+TEST_CASE("Old spellings load: SDF 1.4 as users wrote it") {
   SceneFile file(world("<gravity>0 0 -3.7</gravity><model name='m'><pose>0 0 1 0 3.141592653589793 0</pose><link name='l'>" +
                            kBall + "</link></model>",
                        "1.4"));

@@ -1,7 +1,11 @@
-// Every scene that comes with the project: loads without a warning, runs, is touched, and stays in one piece.
+// Every scene of the project loads without a warning, runs, is touched, and stays in one piece.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/world/simulation.h"
@@ -24,7 +28,7 @@ std::vector<std::filesystem::path> scenes() {
   return found;
 }
 
-// Where the path of a tool is at a time, in straight legs, round and round; one without a path stays where the scene has it.
+// Position of a tool on its path at a time: straight legs, repeated. A tool without a path stays at its initial pose.
 Vector3d along(const WorldDef& w, const tool_def_t& tool, double t) {
   const auto& path = tool.waypoints;
   if (path.empty()) return w.bodies[static_cast<std::size_t>(tool.body)].pose.translation();
@@ -39,14 +43,14 @@ Vector3d along(const WorldDef& w, const tool_def_t& tool, double t) {
 
 Settings settings_of(const WorldDef& world) {
   Settings settings;
-  settings.visual_thread = "none";  // the ticks are not paced: a thread of its own would be late
+  settings.visual_thread = "none";  // the ticks are not paced: a separate thread would be late
   REQUIRE(sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, {}).empty());
   return settings;
 }
 
 }  // namespace
 
-TEST_CASE("Every scene loads without a warning, shows something, and has a hand with something to touch") {
+TEST_CASE("Every scene loads without a warning, shows something, and has a hand that can touch something") {
   REQUIRE(scenes().size() >= 8);
   for (const auto& file : scenes()) {
     INFO(file.filename());
@@ -60,7 +64,7 @@ TEST_CASE("Every scene loads without a warning, shows something, and has a hand 
 }
 
 TEST_CASE(
-    "Every scene runs for two seconds: bodies touch, none falls out of it or flies apart, and no solver "
+    "Every scene runs for two seconds: bodies touch, none falls out or flies apart, and no solver "
     "complains") {
   constexpr double kFastest_m_s = 6, kFarthest_m = 3;  // a fall of 1.8 m; no scene is larger
   for (const auto& file : scenes()) {
@@ -90,13 +94,13 @@ TEST_CASE(
     CHECK(fastest < kFastest_m_s);
     CHECK(farthest < kFarthest_m);
     if (const auto* single = dynamic_cast<const SingleGroup*>(&s.mechanics())) {
-      CHECK(single->solver().complaints() == 0);
+      CHECK(single->solver().solver_failures() == 0);
       CHECK(single->solver().largest_joint_gap_m() < 0.005);
     }
   }
 }
 
-TEST_CASE("A stack stays a stack of numbers in two groups, even by a library that gives contacts no direction") {
+TEST_CASE("The stack scene stays finite in two groups, even with a library that gives contacts no direction") {
   const auto built = detector_names();
   if (std::find(built.begin(), built.end(), "fcl") == built.end()) return;
   std::vector<std::string> warnings;
@@ -111,7 +115,7 @@ TEST_CASE("A stack stays a stack of numbers in two groups, even by a library tha
 }
 
 TEST_CASE(
-    "Whoever pushes each ball of the dark room into its hole has won, and a ball in a wrong hole does not count") {
+    "Pushing each ball of the dark room into its hole wins, and a ball in a wrong hole does not count") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", warnings);
   REQUIRE(w.holes.size() == 3);
@@ -120,7 +124,7 @@ TEST_CASE(
   test::Hand hand{.radius = 0.008, .stiffness = 500, .last = {-0.3, 0, 0.15}};
   Vector3d device(-0.3, 0, 0.15);
   game_state_t game{};
-  // Goes there at 0.25 m/s and says how many holes are filled.
+  // Moves there at 0.25 m/s and returns the number of filled holes.
   const auto move = [&](const Vector3d& to) {
     for (int i = 0; i < 4000 && (device - to).norm() > 1e-4; ++i) {
       device += (to - device).normalized() * std::min(0.00025, (to - device).norm());
@@ -137,7 +141,7 @@ TEST_CASE(
   CHECK(wait(3) == 0);
   int filled = 0;
   for (const HoleDef& hole : w.holes) {
-    // Behind the ball, seen from its hole; then through it, as often as it takes: a hand learns where it rolled.
+    // Behind the ball as seen from its hole; then through it, repeatedly: a hand learns where it rolled.
     for (int tries = 0; tries < 6; ++tries) {
       const Vector3d ball = s.bodies()[static_cast<std::size_t>(hole.ball)].position_m;
       if (ball.z() < 0) break;
@@ -157,7 +161,7 @@ TEST_CASE(
   }
   CHECK(game.won == 1);
   CHECK(game.won_ns > 0);
-  // The right ball in the wrong hole is none.
+  // The right ball in the wrong hole does not count.
   REQUIRE(s.mechanics().set_pose(w.holes[0].ball, Eigen::Isometry3d(Eigen::Translation3d(0.15, 0.3, 0.05))));
   wait(1);
   CHECK(!s.game().won());

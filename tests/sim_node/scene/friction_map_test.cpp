@@ -1,4 +1,7 @@
 // The attributes of <tactus:material> that give a material a friction map.
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
+
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sync/bus/decode.h"
@@ -22,7 +25,7 @@ SceneFile scene(const std::string& attributes, const sync::Bytes& picture = halv
 
 }  // namespace
 
-TEST_CASE("A material with a friction map names its picture by content, with its extents and its factors") {
+TEST_CASE("A material with a friction map names its picture by content, with its size and factors") {
   SceneFile file = scene(kGood);
   const WorldDef w = file.load();
   const auto decoded = sync::decode_asset<scene_t>(make_assets(w)[0].bytes);
@@ -47,7 +50,7 @@ TEST_CASE("A material with a friction map names its picture by content, with its
   CHECK(mapped == 2);  // one inherits it
 }
 
-TEST_CASE("A friction map that cannot be is refused with its line") {
+TEST_CASE("An invalid friction map is refused with its line") {
   const auto refused = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
     SceneFile file = scene(attributes, picture);

@@ -25,7 +25,7 @@ TEST_CASE("Mass and inertia are taken as given, at their own pose") {
   CHECK((b.inertia_kg_m2.diagonal() - Vector3d(2, 1, 2.5)).norm() < 1e-9);  // turned by a quarter about z
 }
 
-TEST_CASE("What is left out is computed from the shapes") {
+TEST_CASE("Missing values are computed from the shapes") {
   CHECK(body(kBall).mass_kg == 1);  // SDF's default
   CHECK(body(kBall).inertia_kg_m2(0, 0) == Approx(0.4 * 0.01));
   CHECK(body(inertial("<mass>3</mass>") + kBall).inertia_kg_m2(1, 1) == Approx(3 * 0.4 * 0.01));
@@ -35,7 +35,7 @@ TEST_CASE("What is left out is computed from the shapes") {
   CHECK(body("").inertia_kg_m2(0, 0) == 1);
 }
 
-TEST_CASE("A mass or an inertia that no body has is refused with its line") {
+TEST_CASE("An impossible mass or inertia is refused with its line") {
   const auto refusal = [](const std::string& inside) {
     SceneFile file(link(inside + kBall));
     return file.refusal();
@@ -49,7 +49,7 @@ TEST_CASE("A mass or an inertia that no body has is refused with its line") {
                                                                           Catch::Contains("not positive definite"));
 }
 
-TEST_CASE("A static model may have any mass: it is not used") {
+TEST_CASE("A static model may have any mass, which is not used") {
   SceneFile file(model("<static>true</static><link name='l'>" + inertial("<mass>0</mass>") + kBall + "</link>"));
   CHECK(file.load().bodies.front().mass_kg == 0);
 }
@@ -58,5 +58,5 @@ TEST_CASE("An inertia that breaks the triangle inequality is used with a warning
   SceneFile file(link(inertial("<mass>1</mass>\n" + inertia(1, 1, 3)) + kBall));
   CHECK(file.load().bodies.front().inertia_kg_m2(2, 2) == 3);
   REQUIRE(file.warnings.size() == 1);
-  CHECK_THAT(file.warnings[0], Catch::Contains("scene.sdf:6: ") && Catch::Contains("no real body"));
+  CHECK_THAT(file.warnings[0], Catch::Contains("scene.sdf:6: ") && Catch::Contains("not physically possible"));
 }

@@ -40,7 +40,7 @@ TEST_CASE("A revolute joint: anchor and axis in the world, limits, damping, fric
   CHECK(j.axes[0].reference == 0.4);
 }
 
-TEST_CASE("Every type of joint that is supported") {
+TEST_CASE("Every supported type of joint") {
   CHECK(joint(jointed("fixed", "")).kind == JointKind::kFixed);
   CHECK(joint(jointed("ball", "")).kind == JointKind::kBall);
   CHECK(joint(jointed("prismatic", kAxis)).kind == JointKind::kPrismatic);
@@ -54,7 +54,7 @@ TEST_CASE("Every type of joint that is supported") {
   CHECK((universal.axes[1].axis + Vector3d::UnitX()).norm() < 1e-9);
 }
 
-TEST_CASE("The pose of a joint is in its child, that of an axis in what it is expressed in") {
+TEST_CASE("The pose of a joint is in its child frame, that of an axis in the frame that it is expressed in") {
   const JointDef j = joint(jointed("revolute", "<pose>0 0 0.5 0 0 1.5707963267948966</pose><axis><xyz>1 0 0</xyz></axis>"));
   CHECK((j.anchor_m - Vector3d(0, 1, 2.5)).norm() < 1e-9);
   CHECK((j.axes[0].axis + Vector3d::UnitX()).norm() < 1e-9);  // two quarter turns
@@ -86,7 +86,7 @@ TEST_CASE("A motor turns an axis with a constant torque") {
   CHECK(u.axes[1].motor_effort == 1);
 }
 
-TEST_CASE("A joint that cannot be is refused with its line") {
+TEST_CASE("An invalid joint is refused with its line") {
   const auto refusal = [](const std::string& type, const std::string& inside) {
     SceneFile file(jointed(type, inside));
     return file.refusal();
@@ -103,7 +103,7 @@ TEST_CASE("A joint that cannot be is refused with its line") {
   CHECK_THAT(refusal("revolute", kAxis + "\n<tactus:motor torque='1' speed='2'/>"), Catch::Contains("no attribute \"speed\""));
 }
 
-TEST_CASE("A type that is not supported is left out with one warning") {
+TEST_CASE("An unsupported type of joint is omitted with one warning") {
   SceneFile file(jointed("screw", kAxis));
   CHECK(file.load().joints.empty());
   REQUIRE(file.warnings.size() == 1);

@@ -31,7 +31,7 @@ bool inside(const ShapeDef& s, const Vector3d& p) {
 }
 }  // namespace
 
-TEST_CASE("Mass and inertia of the primitives are the textbook's") {
+TEST_CASE("Mass and inertia of the primitives match the textbook") {
   WorldDef w = world_of_density(1000);
   bool dense = false;
   const auto of = [&](const ShapeDef& s) { return mass_of(w, std::span(&s, 1), dense); };
@@ -61,14 +61,14 @@ TEST_CASE("Inertia of cylinder and capsule agree with a sum over random points")
     }
     const double dv = 8 * half.prod() / kPoints;
     const MassProperties m = mass_of(w, std::span(&s, 1), dense);
-    // Relative error of a mean over n points is about 1/sqrt(n) = 0.2 %; five of them.
+    // The relative error of a mean over n points is about 1/sqrt(n) = 0.2 %; five times that.
     CHECK(m.mass_kg == Approx(mass * dv).epsilon(0.01));
     CHECK(m.inertia_kg_m2(0, 0) == Approx(xx * dv).epsilon(0.01));
     CHECK(m.inertia_kg_m2(2, 2) == Approx(zz * dv).epsilon(0.01));
   }
 }
 
-TEST_CASE("A box as a mesh weighs what the box weighs, wherever it stands and however it is turned") {
+TEST_CASE("A box as a mesh has the mass of the box, for any position and orientation") {
   WorldDef w = world_of_density(700);
   TriangleMesh cube;
   for (int i = 0; i < 8; ++i) cube.vertices.emplace_back(i & 1 ? 0.3 : 0.1, i & 2 ? 0.5 : 0.1, i & 4 ? 0.2 : 0.1);
@@ -85,7 +85,7 @@ TEST_CASE("A box as a mesh weighs what the box weighs, wherever it stands and ho
   CHECK((a.inertia_kg_m2 - b.inertia_kg_m2).norm() < 1e-9);
 }
 
-TEST_CASE("A body of two boxes is one box of twice the length") {
+TEST_CASE("A body of two boxes equals one box of twice the length") {
   const WorldDef w = world_of_density(500);
   std::vector<ShapeDef> halves(2, shape(ShapeKind::kBox, {0.5, 0.2, 0.1}));
   halves[0].pose.translation() = Vector3d(-0.25, 0, 0), halves[1].pose.translation() = Vector3d(0.25, 0, 0);

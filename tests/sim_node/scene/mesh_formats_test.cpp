@@ -1,4 +1,4 @@
-// What of the formats of geometry files is read, what of them is ignored, and what cannot be read at all.
+// Content of geometry file formats: the parts that are read, those that are ignored, and files that are rejected.
 #include <sys/stat.h>
 
 #include <cstring>
@@ -19,7 +19,7 @@ using Eigen::Vector4f;
 
 namespace {
 
-// A square of two triangles, the picture once across it, with a material and its pictures.
+// A square of two triangles with one picture across it, a material and its pictures.
 const char* kMtl =
     "newmtl paint\nKd 0.5 0.25 1\nKs 0.1 0.2 0.3\nNs 77\nmap_Kd maps\\colour.png\nnorm ./n.png\nunknown_thing 3\n";
 const std::string kObj =
@@ -52,7 +52,7 @@ std::string why(const std::filesystem::path& file) {
   }
 }
 
-// Without what its user may forget.
+// Ignores the data that a user of the mesh may drop.
 bool same_triangles(const MeshParts& a, const MeshParts& b) {
   REQUIRE(a.parts.size() == b.parts.size());
   for (std::size_t i = 0; i < a.parts.size(); ++i)
@@ -85,7 +85,7 @@ TEST_CASE(
     CHECK(mesh.parts[0].texcoords[i] * 2 == mesh.parts[0].positions_m[i].head<2>());
 }
 
-TEST_CASE("A file without materials has none, whatever a library makes up") {
+TEST_CASE("A file without materials has none, even if a library adds one") {
   SceneFile file;
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   file.write("t.stl",
@@ -99,7 +99,7 @@ TEST_CASE("A file without materials has none, whatever a library makes up") {
   }
 }
 
-TEST_CASE("Properties of a PLY that nobody knows are ignored") {
+TEST_CASE("Unknown properties of a PLY are ignored") {
   SceneFile file;
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
@@ -110,7 +110,7 @@ TEST_CASE("Properties of a PLY that nobody knows are ignored") {
   CHECK(same_triangles(read_mesh_parts(file.folder() / "plain.ply"), read_mesh_parts(file.folder() / "more.ply")));
 }
 
-TEST_CASE("An element of a DAE that nobody knows is ignored") {
+TEST_CASE("An unknown element of a DAE is ignored") {
   SceneFile file;
   const auto dae = [](const std::string& extra) {
     return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit
@@ -128,9 +128,9 @@ TEST_CASE("An element of a DAE that nobody knows is ignored") {
   CHECK(same_triangles(read_mesh_parts(file.folder() / "plain.dae"), read_mesh_parts(file.folder() / "more.dae")));
 }
 
-TEST_CASE("Words after the facets of an STL, and chunks of a 3DS that nobody knows, are ignored") {
+TEST_CASE("Words after the facets of an STL, and unknown chunks of a 3DS, are ignored") {
   SceneFile file;
-  // Binary STL: 80 bytes of anything, a count, then 50 bytes a triangle of which the last two mean nothing.
+  // Binary STL: 80 arbitrary bytes, a count, then 50 bytes per triangle, the last two of which have no meaning.
   const auto stl = [](char fill, std::uint16_t attribute) {
     std::string s(80, fill);
     const std::uint32_t count = 1;
@@ -142,7 +142,7 @@ TEST_CASE("Words after the facets of an STL, and chunks of a 3DS that nobody kno
   file.write("more.stl", stl('x', 0x1234));
   CHECK(same_triangles(read_mesh_parts(file.folder() / "plain.stl"), read_mesh_parts(file.folder() / "more.stl")));
 
-  // 3DS: chunks of a number, a length that counts itself, and contents.
+  // 3DS: chunks of a number, a length that includes the header, and contents.
   const auto chunk = [](std::uint16_t number, const std::string& inside) {
     const auto length = static_cast<std::uint32_t>(inside.size() + 6);
     std::string s(reinterpret_cast<const char*>(&number), 2);
@@ -168,7 +168,7 @@ TEST_CASE("Words after the facets of an STL, and chunks of a 3DS that nobody kno
   CHECK(same_triangles(plain, read_mesh_parts(file.folder() / "more.3ds")));
 }
 
-TEST_CASE("Extras, extensions and attributes of a glTF that nobody knows are ignored") {
+TEST_CASE("Unknown extras, extensions and attributes of a glTF are ignored") {
   SceneFile file;
   nlohmann::json document = document_of(square());
   file.write("plain.gltf", document.dump());
@@ -191,7 +191,7 @@ TEST_CASE("Extras, extensions and attributes of a glTF that nobody knows are ign
 }
 
 TEST_CASE(
-    "A glTF stands where its nodes put it, strips and fans are triangles, and a mirror keeps it right side out") {
+    "A glTF is placed by its nodes, strips and fans are triangles, and a mirror keeps it right side out") {
   SceneFile file;
   nlohmann::json document = document_of(square());
   document["nodes"][0]["translation"] = {0, 0, 5};
@@ -212,7 +212,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A glTF without normals gets them round where it bends a little and divided where it bends much") {
+TEST_CASE("A glTF without normals gets smooth ones where it bends a little and split ones where it bends much") {
   SceneFile file;
   for (const double bend_deg : {40.0, 60.0}) {
     MeshParts roof;
@@ -232,7 +232,7 @@ TEST_CASE("A glTF without normals gets them round where it bends a little and di
   }
 }
 
-TEST_CASE("A glTF whose buffers, accessors, indices or nodes lie is refused with a clause") {
+TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is refused with a clause") {
   SceneFile file;
   const auto refused = [&](auto change) {
     nlohmann::json document = document_of(square());
@@ -245,17 +245,17 @@ TEST_CASE("A glTF whose buffers, accessors, indices or nodes lie is refused with
   };
   using J = nlohmann::json;
   CHECK_THAT(refused([](J& d) { d["buffers"][0]["byteLength"] = 1'000'000; }),
-             Catch::Contains("shorter than it says"));
+             Catch::Contains("shorter than its byteLength"));
   CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteLength"] = 1'000'000; }),
              Catch::Contains("beyond its buffer"));
   CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteOffset"] = 4294967295.0; }),
              Catch::Contains("beyond its buffer"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteOffset"] = -4; }), Catch::Contains("no count"));
+  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteOffset"] = -4; }), Catch::Contains("not a count"));
   CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteStride"] = 4; }), Catch::Contains("beyond its view"));
   CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["buffer"] = 7; }), Catch::Contains("beyond its buffer"));
   CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 5; }), Catch::Contains("beyond its view"));
   CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 4'000'000'000.0; }), Catch::Contains("vertices"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 1e300; }), Catch::Contains("no count"));
+  CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 1e300; }), Catch::Contains("not a count"));
   CHECK_THAT(refused([](J& d) { d["accessors"][0]["componentType"] = 1; }), Catch::Contains("component type"));
   CHECK_THAT(refused([](J& d) { d["accessors"][0]["type"] = "MAT4"; }), Catch::Contains("MAT4"));
   CHECK_THAT(refused([](J& d) { d["accessors"][0]["type"] = "VEC2"; }), Catch::Contains("type"));
@@ -265,11 +265,11 @@ TEST_CASE("A glTF whose buffers, accessors, indices or nodes lie is refused with
   CHECK_THAT(refused([](J& d) { d["meshes"][0]["primitives"][0]["indices"] = 0; }), Catch::Contains("type"));
   CHECK_THAT(refused([](J& d) { d["meshes"][0]["primitives"][0]["material"] = 3; }), Catch::Contains("materials"));
   CHECK_THAT(refused([](J& d) { d["nodes"][0]["mesh"] = 12; }), Catch::Contains("meshes"));
-  CHECK_THAT(refused([](J& d) { d["nodes"][0]["children"] = {0}; }), Catch::Contains("no tree"));
+  CHECK_THAT(refused([](J& d) { d["nodes"][0]["children"] = {0}; }), Catch::Contains("not a tree"));
   CHECK_THAT(refused([](J& d) { d["nodes"][0]["children"] = {"x"}; }), Catch::Contains("nodes"));
   CHECK_THAT(refused([](J& d) { d["nodes"][0]["scale"] = {0, "a", 1}; }), Catch::Contains("not finite"));
   CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "no.bin"; }), Catch::Contains("no.bin"));
-  CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "/dev/zero"; }), Catch::Contains("no regular file"));
+  CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "/dev/zero"; }), Catch::Contains("not a regular file"));
   CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "data:x;base64,????"; }), Catch::Contains("base64"));
   CHECK_THAT(refused([](J& d) { d["asset"]["version"] = "1.0"; }), Catch::Contains("2.0"));
   CHECK_THAT(refused([](J& d) { d.erase("scenes"); }), Catch::Contains("no scene"));
@@ -280,7 +280,7 @@ TEST_CASE("A glTF whose buffers, accessors, indices or nodes lie is refused with
   }
 }
 
-TEST_CASE("A .glb cut anywhere, or with any byte changed, is read or refused, and nothing else happens") {
+TEST_CASE("A .glb cut anywhere, or with any byte changed, is read or refused without side effects") {
   SceneFile file;
   MeshParts mesh = square();
   make_tangents(mesh.parts[0]);
@@ -312,13 +312,13 @@ TEST_CASE("JSON that is deep or has millions of values is refused before it fill
 }
 
 TEST_CASE(
-    "A PLY whose head promises thousands of millions of vertices, and an OBJ of millions of triangles, are "
+    "A PLY whose header declares billions of vertices, and an OBJ of millions of triangles, are "
     "refused at once") {
   SceneFile file;
   for (const char* format : {"ascii", "binary_little_endian"}) {
     file.write("t.ply", std::string("ply\nformat ") + format +
                             " 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n0\n");
-    CHECK_THAT(why(file.folder() / "t.ply"), Catch::Contains("its head promises more than 3000000 of vertex"));
+    CHECK_THAT(why(file.folder() / "t.ply"), Catch::Contains("its header declares more than 3000000 of vertex"));
   }
   std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int i = 0; i < 1'000'001; ++i) obj += "f 1 2 3\n";
@@ -326,16 +326,16 @@ TEST_CASE(
   CHECK_THAT(why(file.folder() / "t.obj"), Catch::Contains("more than 1000000 triangles"));
 }
 
-TEST_CASE("What is no regular file, or a very large one, is not read as a mesh") {
+TEST_CASE("A file that is not a regular file or is too large is not read as a mesh") {
   SceneFile file;
   std::filesystem::create_directory(file.folder() / "folder.obj");
   REQUIRE(mkfifo((file.folder() / "pipe.glb").c_str(), 0600) == 0);
   std::filesystem::create_symlink("/dev/zero", file.folder() / "zero.stl");
   file.write("sparse.ply", "ply\n");
   std::filesystem::resize_file(file.folder() / "sparse.ply", std::uintmax_t{4} << 30);
-  CHECK(why(file.folder() / "none.obj") == "it is not there");
+  CHECK(why(file.folder() / "none.obj") == "it does not exist");
   for (const char* name : {"folder.obj", "pipe.glb", "zero.stl"})
-    CHECK(why(file.folder() / name) == "it is no regular file");
+    CHECK(why(file.folder() / name) == "it is not a regular file");
   CHECK(why(file.folder() / "sparse.ply") == "it is larger than 128 MiB");
   SECTION("nor as a part of one") {
     file.write("t.obj", "mtllib zero.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -350,13 +350,13 @@ TEST_CASE("What is no regular file, or a very large one, is not read as a mesh")
   }
 }
 
-TEST_CASE("Tangents follow u, their binormal follows v, and a mirrored picture divides the vertices it shares") {
+TEST_CASE("Tangents follow u, their binormal follows v, and a mirrored picture splits the shared vertices") {
   MeshPart part = square().parts[0];
   make_tangents(part);
   REQUIRE(part.tangents.size() == 4);
   for (const Vector4f& t : part.tangents) CHECK((t - Vector4f(1, 0, 0, 1)).norm() < 1e-6f);
   MeshPart mirrored = square().parts[0];
-  mirrored.texcoords = {{0, 0}, {1, 0}, {1, 1}, {1, 0}};  // the second triangle has it the other way round
+  mirrored.texcoords = {{0, 0}, {1, 0}, {1, 1}, {1, 0}};  // the second triangle has it reversed
   make_tangents(mirrored);
   REQUIRE(mirrored.positions_m.size() == 6);
   REQUIRE(mirrored.indices.size() == 6);
@@ -365,7 +365,7 @@ TEST_CASE("Tangents follow u, their binormal follows v, and a mirrored picture d
     CHECK(mirrored.tangents[v].w() == (c < 3 ? 1 : -1));
     CHECK(mirrored.positions_m[v] ==
           square().parts[0].positions_m[static_cast<std::size_t>(square().parts[0].indices[c])]);
-    // The binormal points where v grows: for the first triangle +y, for the second +x.
+    // The binormal points in the direction of growing v: +y for the first triangle, +x for the second.
     const Vector3f n = mirrored.normals[v], t = mirrored.tangents[v].head<3>();
     const Vector3f b = mirrored.tangents[v].w() * n.cross(t);
     CHECK((b - (c < 3 ? Vector3f(0, 1, 0) : Vector3f(1, 0, 0))).norm() < 1e-6f);

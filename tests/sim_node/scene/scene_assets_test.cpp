@@ -1,6 +1,10 @@
 #include "sim_node/scene/scene_assets.h"
 
 #include <set>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/sim_node/support/scene_file.h"
@@ -16,7 +20,7 @@ WorldDef dark_room(std::vector<std::string>& warnings) {
 }
 }  // namespace
 
-TEST_CASE("The assets of a world decode to what they were made from") {
+TEST_CASE("The assets of a world decode to their sources") {
   std::vector<std::string> warnings;
   WorldDef w = dark_room(warnings);
   Heightfield h;
@@ -66,7 +70,7 @@ TEST_CASE("The assets of a world decode to what they were made from") {
   CHECK(std::string(assets.back().bytes.begin(), assets.back().bytes.end()) == w.source_text);
 }
 
-TEST_CASE("The same world gives the same bytes, so a restarted simulation costs its renderers nothing") {
+TEST_CASE("The same world gives the same bytes, so renderers need not reload after a restart of the simulation") {
   std::vector<std::string> warnings;
   const auto a = make_assets(dark_room(warnings)), b = make_assets(dark_room(warnings));
   REQUIRE(a.size() == b.size());

@@ -1,7 +1,8 @@
-// Whole worlds: the dark room, worlds as users of Gazebo write them, and a file that is damaged in every place.
+// Complete worlds: the dark room, typical Gazebo worlds, and a file with damage at every position.
 #include <iostream>
 #include <random>
 #include <sstream>
+#include <tactus/scene_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
@@ -25,7 +26,7 @@ const BodyDef& body(const WorldDef& w, const std::string& name) {
 }
 }  // namespace
 
-TEST_CASE("The dark room loads without a warning and holds what it promises") {
+TEST_CASE("The dark room loads without a warning and has its documented content") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
   CHECK(warnings == std::vector<std::string>{});
@@ -48,7 +49,7 @@ TEST_CASE("The fan of the dark room settles where its friction balances its torq
     if (j.name == "fan::axle") CHECK((j.axes[0].motor_effort - j.axes[0].friction) / j.axes[0].damping == Approx(3.75));
 }
 
-TEST_CASE("The path of the hand ends where it begins, stays in the room, and no leg is faster than a person moves") {
+TEST_CASE("The path of the hand ends where it begins, stays in the room, and every leg has a human speed") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
   REQUIRE(w.tools.size() == 2);
@@ -79,7 +80,7 @@ TEST_CASE("Every corner of the floor of the dark room is in the picture") {
     }
 }
 
-TEST_CASE("Worlds as users of Gazebo write them load. What is not supported is said") {
+TEST_CASE("Typical Gazebo worlds load, and unsupported elements are reported") {
   std::vector<std::string> warnings;
   const WorldDef shapes = load_sdf(kData + "shapes.sdf", warnings);
   CHECK(shapes.bodies.size() == 6);
@@ -103,7 +104,7 @@ TEST_CASE("Worlds as users of Gazebo write them load. What is not supported is s
   CHECK(warnings.size() == 2);
 }
 
-TEST_CASE("The assets of every world pass the border of the bus") {
+TEST_CASE("The assets of every world pass the validation of the bus") {
   for (const std::string& file : {kRoom, kData + "shapes.sdf", kData + "stack_classic.world", kData + "double_pendulum.sdf"}) {
     INFO(file);
     std::vector<std::string> warnings;

@@ -54,7 +54,7 @@ TEST_CASE("Every kind of geometry becomes its shape") {
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("A size that is not above zero is refused with its line") {
+TEST_CASE("A size of zero or less is refused with its line") {
   SceneFile file;
   const auto refusal = [&](const std::string& geometry) {
     file.write("scene.sdf", link(collision("\n" + geometry)));
@@ -69,7 +69,7 @@ TEST_CASE("A size that is not above zero is refused with its line") {
   CHECK_THAT(refusal("<plane><normal>0 0 0</normal><size>1 1</size></plane>"), Catch::Contains("scene.sdf:6"));
 }
 
-TEST_CASE("A mesh is found beside its file, scaled, and shared by all who name it alike") {
+TEST_CASE("A mesh is found beside its file, scaled, and shared by equal references") {
   SceneFile file(link("<collision name='a'><geometry><mesh><uri>cube.obj</uri><scale>2 1 1</scale></mesh></geometry>"
                       "</collision><visual name='b'><geometry><mesh><uri>model://cube.obj</uri><scale>2 1 1</scale></mesh>"
                       "</geometry></visual><visual name='c'><geometry><mesh><uri>file://cube.obj</uri></mesh></geometry></visual>"));
@@ -92,11 +92,12 @@ TEST_CASE("A mesh that cannot be read is refused with file, line and remedy") {
   file.write("cube.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("cannot be read"));
   file.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-  CHECK_THAT(file.refusal(), Catch::Contains("without area"));
+  CHECK_THAT(file.refusal(), Catch::Contains("zero area"));
 }
 
-TEST_CASE("The bounding box of a turned shape holds all its points and touches them") {
-  // Against points sampled on the surface: the largest of n on a circle falls short by at most r (1 - cos(pi/n)).
+TEST_CASE("The bounding box of a rotated shape contains all its points and touches them") {
+  // Compared with points sampled on the surface: the largest of n on a circle is too small by at most r (1 -
+  // cos(pi/n)).
   WorldDef w;
   ShapeDef s;
   s.pose = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized());

@@ -1,4 +1,7 @@
-// Our own elements: materials, tools, settings.
+// The <tactus:...> elements: materials, tools, settings.
+#include <tactus/material_def_t.hpp>
+#include <tactus/tool_def_t.hpp>
+
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/materials/materials.h"
 #include "sync/degradation/profile.h"
@@ -36,7 +39,7 @@ TEST_CASE("The table of materials is complete, in range, and every figure has a 
   for (const auto& m : materials) CHECK(m.friction_static >= m.friction_dynamic);
 }
 
-TEST_CASE("A row of the table that is wrong is refused with its number") {
+TEST_CASE("An invalid row of the table is refused with its number") {
   const std::string header =
       "name,youngs_modulus_Pa,poissons_ratio,density_kg_m3,rayleigh_alpha_1_s,rayleigh_beta_s,friction_static,friction_dynamic,"
       "restitution,conductivity_W_mK,specific_heat_J_kgK,temperature_degC,any_source\n";
@@ -46,7 +49,7 @@ TEST_CASE("A row of the table that is wrong is refused with its number") {
   CHECK_THROWS_WITH(parse_materials(header + "a,1e9\n"), Catch::Contains("cells"));
 }
 
-TEST_CASE("A scene changes a material, makes one of another, or a new one") {
+TEST_CASE("A scene changes a material, bases one on another, or defines a new one") {
   const WorldDef w = load("<tactus:material name='steel' temperature='45degC'/>"
                           "<tactus:material name='warm_oak' base='oak' temperature='40' density='900kg/m3'/>"
                           "<tactus:material name='new' youngs_modulus='3GPa' poissons_ratio='0.3' density='1200' rayleigh_alpha='1'"
@@ -61,7 +64,7 @@ TEST_CASE("A scene changes a material, makes one of another, or a new one") {
   CHECK(material(w, "new").rayleigh_beta_s == Approx(1e-6));
 }
 
-TEST_CASE("A material that cannot be is refused with its line") {
+TEST_CASE("An invalid material is refused with its line") {
   CHECK_THAT(refusal("\n<tactus:material name='x' density='1200'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("lacks"));
   CHECK_THAT(refusal("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
   CHECK_THAT(refusal("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
@@ -116,7 +119,7 @@ TEST_CASE("A hole names the body that belongs into it, by its own name or that o
   CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='0m' ball='ball'/>"), Catch::Contains("between"));
 }
 
-TEST_CASE("A tool may have a shape, and turns as a solid of that shape does") {
+TEST_CASE("A tool may have a shape, and has the inertia of a solid of that shape") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/></tactus:tool>";
   const auto tool = [&](const std::string& attributes, const auto& check) {
     const WorldDef w = SceneFile(world("<tactus:tool name='h' mass='0.2kg' " + attributes + ">" + point)).load();
@@ -153,7 +156,7 @@ TEST_CASE("A tool may have a shape, and turns as a solid of that shape does") {
   CHECK_THAT(said("shape='box' size='90cm 90cm 2m'"), Catch::Contains("size"));
 }
 
-TEST_CASE("A tool that cannot be is refused with its line") {
+TEST_CASE("An invalid tool is refused with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
   CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
   CHECK_THAT(refusal("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
@@ -166,7 +169,7 @@ TEST_CASE("A tool that cannot be is refused with its line") {
   CHECK_THAT(refusal("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
 }
 
-TEST_CASE("A device that cannot be is refused with its line, before anything starts") {
+TEST_CASE("An invalid device is refused with its line, before anything starts") {
   const auto said = [](const std::string& device) {
     SceneFile file(world("\n<tactus:tool name='h' device='" + device +
                          "'><tactus:waypoint time='1' position='0 0 0'/></tactus:tool>"));
@@ -202,7 +205,7 @@ TEST_CASE("Settings of nodes are passed on as written, after their check") {
   CHECK(w.settings[0].value == "25ms");
 }
 
-TEST_CASE("A setting that a node does not have, or out of range, is refused with its line") {
+TEST_CASE("A setting that is unknown or out of range is refused with its line") {
   CHECK_THAT(refusal("\n<tactus:audio_node presentation_dely='25ms'/>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
@@ -214,7 +217,7 @@ TEST_CASE("A setting that a node does not have, or out of range, is refused with
   CHECK(refusal("<tactus:haptic_node force_limit='3 N'/>").empty());
 }
 
-TEST_CASE("A node that is not built here is warned of and passed on: a sixth sense may live elsewhere") {
+TEST_CASE("Settings of a node that is not in this build are passed on with a warning, for modalities from elsewhere") {
   SceneFile file(world("\n<tactus:smell_node strength='3'/>"));
   const WorldDef w = file.load();
   REQUIRE(w.settings.size() == 1);
@@ -223,7 +226,7 @@ TEST_CASE("A node that is not built here is warned of and passed on: a sixth sen
   CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:4: /sdf/world[@name=\"w\"]/tactus:smell_node "));
 }
 
-TEST_CASE("A scene brings a degradation profile, and a wrong one is refused with its line") {
+TEST_CASE("A scene contains a degradation profile, and a wrong one is refused with its line") {
   const WorldDef w = load("<tactus:profile name='late &amp; sparse' seed='7'>\n"
                           "<tactus:degrade modality='audio' delay='40ms' jitter='3ms normal'/>\n"
                           "<tactus:degrade modality='visual' rate='5Hz'/></tactus:profile>");
@@ -252,13 +255,13 @@ TEST_CASE("A scene names the file of its profile") {
   CHECK_THAT(file.refusal(), Catch::Contains("late.xml:1"));
 }
 
-TEST_CASE("A scene says that nobody here is called like the sense of its profile, with the line") {
+TEST_CASE("A scene whose profile names an unknown modality gets a warning with the line") {
   SceneFile file(world("\n<tactus:profile>\n<tactus:degrade modality='smell' delay='1ms'/>\n</tactus:profile>"));
   CHECK_FALSE(file.load().profile.empty());
   REQUIRE(file.warnings.size() == 1);
   CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:5: ") &&
-                                           Catch::Contains("nobody here is called \"smell\"") &&
-                                           Catch::Contains("one's own may be"));
+                                           Catch::Contains("there is no modality \"smell\"") &&
+                                           Catch::Contains("another program may have it"));
 }
 
 TEST_CASE("A profile in a scene names materials and bodies of this scene, or the scene is refused with the line") {
@@ -281,7 +284,7 @@ TEST_CASE("A profile in a scene names materials and bodies of this scene, or the
   file.write("late.xml", "<profile>\n\n<degrade modality='smell' delay='1ms'/></profile>");
   CHECK_FALSE(file.load().profile.empty());
   REQUIRE(file.warnings.size() == 1);
-  CHECK_THAT(file.warnings[0], Catch::Contains("late.xml:3: nobody here is called \"smell\""));
+  CHECK_THAT(file.warnings[0], Catch::Contains("late.xml:3: there is no modality \"smell\""));
 }
 
 TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its profile, are refused") {
@@ -296,7 +299,7 @@ TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its p
              Catch::Contains("attributes alone"));
 }
 
-TEST_CASE("A map drives a number that can be changed, within its bounds, and not a limit that protects a person beyond them") {
+TEST_CASE("A map drives a number that can be changed, within its bounds, and does not exceed a safety limit") {
   const WorldDef w = load("<tactus:map from='haptic_node.force' to='visual_node.exposure' gain='2' offset='1' high='5'/>"
                           "<tactus:map from='sim_node.world.time' to='haptic_node_left.force_limit' low='500mN'/>");
   REQUIRE(w.maps.size() == 2);
@@ -313,8 +316,8 @@ TEST_CASE("A map drives a number that can be changed, within its bounds, and not
   CHECK_THAT(map("from='force' to='visual_node.exposure'"), Catch::Contains("NODE.NAME"));
   CHECK_THAT(map("from='a.b'"), Catch::Contains("to"));
   CHECK_THAT(map("from='a.b' to='nose_node.exposure'"), Catch::Contains("no such node"));
-  CHECK_THAT(map("from='a.b' to='visual_node.width'"), Catch::Contains("exposure"));  // what there is instead
-  CHECK_THAT(map("from='a.b' to='visual_node.overlay'"), Catch::Contains("no number"));
+  CHECK_THAT(map("from='a.b' to='visual_node.width'"), Catch::Contains("exposure"));  // a possible setting
+  CHECK_THAT(map("from='a.b' to='visual_node.overlay'"), Catch::Contains("not a number"));
   CHECK_THAT(map("from='a.b' to='haptic_node.force_limit' high='20N'"), Catch::Contains("high"));
   CHECK_THAT(map("from='a.b' to='visual_node.exposure' low='3' high='2'"), Catch::Contains("low"));
   CHECK_THAT(map("from='a.b' to='visual_node.exposure' gian='3'"), Catch::Contains("gian"));

@@ -12,7 +12,7 @@ std::vector<std::string> warnings(const std::string& inside) {
 }
 }  // namespace
 
-TEST_CASE("Each element that is not supported gets one warning with its line and path, whatever lies inside it") {
+TEST_CASE("Each unsupported element gets one warning with its line and path, regardless of its content") {
   const auto w = warnings(R"(<plugin name="p" filename="p.so"><a><b>1</b></a></plugin>
 <wind><linear_velocity>1 0 0</linear_velocity></wind>
 <model name="m">
@@ -36,7 +36,7 @@ TEST_CASE("Each element that is not supported gets one warning with its line and
                     expect(12, "/sdf/world[@name=\"w\"]/bogus"), expect(13, "/sdf/world[@name=\"w\"]/tactus:bogus")}));
 }
 
-TEST_CASE("A step size or a rate that does not fit is warned of once") {
+TEST_CASE("A different step size or rate causes one warning") {
   CHECK(warnings("<physics type='ode'><max_step_size>0.001</max_step_size><real_time_factor>1</real_time_factor>"
                  "<real_time_update_rate>1000</real_time_update_rate></physics>")
             .empty());
@@ -45,7 +45,7 @@ TEST_CASE("A step size or a rate that does not fit is warned of once") {
   CHECK_THAT(w[0], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("max_step_size = 0.004"));
 }
 
-TEST_CASE("What says what holds anyway is not warned of, nor what a default made") {
+TEST_CASE("Elements with the fixed values cause no warning, nor do elements created as defaults") {
   CHECK(warnings("<model name='m'><allow_auto_disable>1</allow_auto_disable><link name='l'><enable_wind>false</enable_wind>"
                  "<kinematic>0</kinematic></link></model>")
             .empty());

@@ -1,5 +1,5 @@
-// A small world of balls and a tool that does its worst, to hold grouping against: every tick all pairs between
-// the groups are looked at, as grouping itself never does.
+// A small world of balls and an adversarial tool, to test grouping: in every tick it checks all pairs between the
+// groups, which grouping itself never does.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,21 +16,21 @@ namespace tactus::sim::test {
 struct AdversaryDef {
   int balls = 60;
   double room_m = 0.6;                  // balls and tool stay in a cube of this side
-  double tool_acceleration_m_s2 = 100;  // bang-bang: always this, in a direction that jumps
-  double tool_speed_m_s = 1;            // never faster
+  double tool_acceleration_m_s2 = 100;  // bang-bang: always this magnitude, in a direction that jumps
+  double tool_speed_m_s = 1;            // upper limit
   double gravity_m_s2 = 9.81;
-  double ball_speed_m_s = 1;  // of each, at the start, at most
-  int steps = 60;             // visual ones
+  double ball_speed_m_s = 1;  // maximum speed of each at the start
+  int steps = 60;             // number of visual steps
   unsigned seed = 1;
 };
 
 struct AdversaryResult {
-  long contacts = 0;  // of the group with whatever, in distinct visual steps
-  long missed = 0;    // of them with a ball outside the group
+  long contacts = 0;  // of the group with any body, in distinct visual steps
+  long missed = 0;    // of these, with a ball outside the group
   double deepest_missed_m = 0;
-  double group = 0;  // mean size in a tick
+  double group = 0;  // mean size per tick
   double touched =
-      0;  // balls per step that something of the group really touched: what hindsight would have taken
+      0;  // balls per step that the group really touched: the optimum in hindsight
   long alarms = 0;
 };
 
@@ -72,7 +72,7 @@ class Adversary {
     std::vector<GroupBody> balls;
     for (int i = 0; i < def_.balls; ++i) {
       const double r = between(0.01, 0.05);
-      balls.push_back({r, 1 / (4.0 / 3 * M_PI * r * r * r * 700), -1});  // of wood
+      balls.push_back({r, 1 / (4.0 / 3 * M_PI * r * r * r * 700), -1});  // wood
       BodyMotion m;
       m.centre_m = point();
       m.velocity_m_s = direction() * between(0, def_.ball_speed_m_s);
@@ -82,7 +82,7 @@ class Adversary {
     return balls_ = balls;
   }
 
-  // One tick of free flight between walls that throw back.
+  // One tick of free flight between reflecting walls.
   void fly(Eigen::Vector3d& x, Eigen::Vector3d& v, double radius, double gravity) const {
     v.z() -= gravity * kTick_s;
     x += v * kTick_s;
@@ -99,7 +99,7 @@ class Adversary {
     fly(tool_.centre_m, tool_.velocity_m_s, tool_.radius_m, 0);
   }
 
-  // The ways of the balls through the next 17 ticks, as a visual step would know them.
+  // Trajectories of the balls through the next 17 ticks, as a visual step computes them.
   void look_ahead(int ticks) {
     ways_.assign(motions_.size(), {});
     strays_.assign(motions_.size(), 0);
@@ -114,7 +114,7 @@ class Adversary {
     }
   }
 
-  // A ball of the group is thrown off what it meets, elastically; the tool is as heavy as can be.
+  // A ball of the group bounces elastically off the other body; the tool has infinite mass.
   void bounce(BodyMotion& a, Eigen::Vector3d centre, Eigen::Vector3d& velocity, double inverse_mass) const {
     const Eigen::Vector3d n = (a.centre_m - centre).normalized();
     const double closing = n.dot(a.velocity_m_s - velocity);
@@ -124,7 +124,7 @@ class Adversary {
     velocity -= impulse * inverse_mass * n;
   }
 
-  // Everything against everything.
+  // Checks all pairs.
   void check(std::set<std::pair<int, int>>& met, std::set<int>& touched) {
     const int n = static_cast<int>(motions_.size());
     for (int i = -1; i < n; ++i) {

@@ -26,7 +26,7 @@ inline articulated::LinkDef rod_link(int parent, JointKind joint, const Eigen::V
   return l;
 }
 
-// Along +x from the origin, horizontal; each universal joint turns about y and z.
+// Along +x from the origin, horizontal. Each universal joint rotates about y and z.
 inline std::vector<articulated::LinkDef> horizontal_chain(int n, JointKind joint = JointKind::kUniversal,
                                                           const Eigen::Vector3d& first = {0, 1, 0},
                                                           const Eigen::Vector3d& second = {0, 0, 1}) {
@@ -41,7 +41,7 @@ inline std::vector<articulated::LinkDef> horizontal_chain(int n, JointKind joint
 
 inline double energy_J(articulated::ArticulatedSystem& s) { return s.kinetic_energy_J() + s.potential_energy_J(); }
 
-// A tree of up to n links with joints of every kind, bodies of every shape, at random.
+// A random tree of up to n links with joints of every kind and bodies of every shape.
 inline std::vector<articulated::LinkDef> random_tree(int n, bool is_free, std::mt19937& random) {
   std::uniform_real_distribution<double> u(-1, 1);
   const auto vector = [&] { return Eigen::Vector3d(u(random), u(random), u(random)); };
@@ -59,7 +59,7 @@ inline std::vector<articulated::LinkDef> random_tree(int n, bool is_free, std::m
     for (JointAxis& axis : l.axes) axis.axis = vector();
     l.mass_kg = 0.3 + 0.2 * u(random);
     const Eigen::Matrix3d shape = Eigen::Matrix3d::NullaryExpr([&] { return u(random); });
-    // Of points at random: satisfies what inertias satisfy.
+    // The inertia of random points, so it satisfies the conditions of an inertia.
     const Eigen::Matrix3d second = 1e-3 * (shape * shape.transpose() + 0.1 * Eigen::Matrix3d::Identity());
     l.inertia_kg_m2 = second.trace() * Eigen::Matrix3d::Identity() - second;
     l.gravity_m_s2 = kDown;
@@ -68,8 +68,8 @@ inline std::vector<articulated::LinkDef> random_tree(int n, bool is_free, std::m
   return links;
 }
 
-// Any pose and motion.
-inline void stir(articulated::ArticulatedSystem& s, std::mt19937& random, double rate = 3) {
+// Sets a random pose and motion.
+inline void randomize_state(articulated::ArticulatedSystem& s, std::mt19937& random, double rate = 3) {
   std::uniform_real_distribution<double> u(-1, 1);
   auto state = s.state();
   for (double& q : state.positions) q += u(random);

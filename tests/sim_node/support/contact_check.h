@@ -1,4 +1,4 @@
-// Holds the contact of two soups against the oracle.
+// Compares the contact of two soups with the oracle.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@
 
 namespace tactus::sim::test {
 
-// Points of a pair that has been replaced by its duplicate are off by up to this, m.
+// Position error of a pair that has been replaced by its duplicate, at most this, m.
 inline constexpr double kAfterMerge_m = 2 * kSamePlace_m;
 
 struct Placed {
@@ -30,7 +30,7 @@ struct Placed {
 
 struct Truth {
   int near = 0;          // triangle pairs within the tolerance
-  int silent = 0;        // of these, how many have no point pair on both their triangles
+  int missed = 0;        // of these, the number without a point pair on both triangles
   double least = 1e300;  // m, when within the tolerance
 };
 
@@ -43,7 +43,7 @@ inline bool covered(const Placed& a, std::size_t i, const Placed& b, std::size_t
   return false;
 }
 
-// All triangle pairs against what was found.
+// Compares all triangle pairs with the result.
 inline Truth compare(const Placed& a, const Placed& b, double tolerance_m, const MeshContactResult& found) {
   Truth truth;
   for (std::size_t i = 0; i < a.triangles.size(); ++i)
@@ -53,12 +53,12 @@ inline Truth compare(const Placed& a, const Placed& b, double tolerance_m, const
       if (d > tolerance_m - 1e-9) continue;
       truth.near++;
       truth.least = std::min(truth.least, d);
-      truth.silent += !covered(a, i, b, j, found);
+      truth.missed += !covered(a, i, b, j, found);
     }
   return truth;
 }
 
-// No false pair and no duplicate, whatever the mode.
+// No false pair and no duplicate, in any mode.
 inline void check_sound(const Placed& a, const Placed& b, double tolerance_m, const MeshContactResult& found) {
   for (const PointPair& p : found.pairs) {
     const auto i = static_cast<std::size_t>(p.triangle_a), j = static_cast<std::size_t>(p.triangle_b);
@@ -76,8 +76,8 @@ inline void check_sound(const Placed& a, const Placed& b, double tolerance_m, co
   CHECK(duplicates == 0);
 }
 
-// b from far along a random direction to about `gap_m` of a: each time by what cannot be too far.
-inline Eigen::Isometry3d brought_near(const ContactMesh& a, const ContactMesh& b, Random& random, double from_m,
+// Moves b from far along a random direction to about `gap_m` from a. Each move is a distance that is safe.
+inline Eigen::Isometry3d placed_near(const ContactMesh& a, const ContactMesh& b, Random& random, double from_m,
                                       double gap_m) {
   MeshContact contact;
   Eigen::Isometry3d pose = random_pose(random, 1);
@@ -91,7 +91,7 @@ inline Eigen::Isometry3d brought_near(const ContactMesh& a, const ContactMesh& b
   return pose;
 }
 
-// How many pairs of x have none like them in y, seen from frames of their own.
+// Number of pairs of x without an equal pair in y, each in its own frame.
 inline int missing(const MeshContactResult& x, const MeshContactResult& y, const Eigen::Isometry3d& x_from_y,
                    bool swapped) {
   int count = 0;
@@ -107,8 +107,8 @@ inline int missing(const MeshContactResult& x, const MeshContactResult& y, const
   return count;
 }
 
-// The contact of a and b is the same seen from the other side, from elsewhere, and for any winding and order of
-// a's triangles. Gives the number of its pairs.
+// Checks that the contact of a and b does not depend on the order of the meshes, the frame, or the winding and order
+// of a's triangles. Returns the number of pairs.
 inline int check_invariant(const Soup& a, const Soup& b, const Eigen::Isometry3d& pose_b, const Reach& reach,
                            Random& random) {
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity(), move = random_pose(random, 3);

@@ -1,5 +1,5 @@
-// The distance of convex shapes, proven rather than computed: a pair of points on both bounds it from above, and
-// the gap between the supporting planes along any direction from below. Written from the definition of each shape.
+// Proof of the distance of convex shapes by bounds: a pair of points on both is an upper bound, and the gap between
+// the supporting planes along any direction is a lower bound. Written from the definition of each shape.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,7 +10,7 @@
 
 namespace tactus::sim::test {
 
-// How far the shape reaches along a unit direction of the world.
+// Support distance of the shape along a unit direction of the world.
 inline double reach_along(const ShapeDef& s, const Eigen::Isometry3d& pose, const Eigen::Vector3d& n) {
   const Eigen::Vector3d d = pose.linear().transpose() * n;
   const double middle = n.dot(pose.translation());
@@ -22,13 +22,13 @@ inline double reach_along(const ShapeDef& s, const Eigen::Isometry3d& pose, cons
   }
 }
 
-// Between the supporting planes, a's and then b's along n; negative: they overlap along it.
+// Gap between the supporting planes, a's and then b's along n; negative: overlap.
 inline double gap_along(const ShapeDef& a, const Eigen::Isometry3d& pose_a, const ShapeDef& b,
                         const Eigen::Isometry3d& pose_b, const Eigen::Vector3d& n) {
   return -reach_along(b, pose_b, -n) - reach_along(a, pose_a, n);
 }
 
-// Whether a point of the world lies in the shape, or so near to it.
+// Whether a world point lies in the shape, within a tolerance.
 inline bool lies_in(const ShapeDef& s, const Eigen::Isometry3d& pose, const Eigen::Vector3d& point,
                     double within_m) {
   const Eigen::Vector3d p = pose.inverse() * point;
@@ -43,8 +43,8 @@ inline bool lies_in(const ShapeDef& s, const Eigen::Isometry3d& pose, const Eige
   }
 }
 
-// The widest gap along any of many directions, improved from the best: a lower bound of the distance that is close
-// to it. Slow, and knows nothing of how the library searches.
+// The widest gap over many directions, refined from the best: a tight lower bound of the distance. Slow, and
+// independent of the library's search.
 inline double widest_gap(const ShapeDef& a, const Eigen::Isometry3d& pose_a, const ShapeDef& b,
                          const Eigen::Isometry3d& pose_b, Random& random) {
   Eigen::Vector3d best = Eigen::Vector3d::UnitX();

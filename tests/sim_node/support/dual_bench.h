@@ -1,6 +1,7 @@
-// A world in two groups, one tick at a time, with one tool; the same way every time.
+// A world in two groups with one tool, stepped one tick at a time; repeatable.
 #pragma once
 
+#include <tactus/contact_event_t.hpp>
 #include <vector>
 
 #include "sim_node/dual/dual_groups.h"
@@ -16,7 +17,7 @@ inline Settings dual_settings() {
   return s;
 }
 
-// Both groups, one tick at a time, with one tool.
+// Both groups with one tool, one tick at a time.
 struct Dual {
   Ids ids{7, 0, 2};
   DualGroups groups;

@@ -1,4 +1,4 @@
-// Scenes in which bodies are hard to keep out of each other: fast, thin, spinning, heaped, notched.
+// Scenes that are difficult for penetration avoidance: fast, thin, spinning, stacked and notched bodies.
 #pragma once
 
 #include <random>
@@ -14,7 +14,7 @@ struct HardScene {
   std::string name;
   WorldDef world;
   double seconds = 1;
-  // Bodies that must stay above this height, which is below every floor and wall of the scene; else they went
+  // Bodies must stay above this height, which is below every floor and wall of the scene. A lower body has passed
   // through.
   double floor_m = -0.01;
 };
@@ -34,7 +34,7 @@ inline int add_mesh_body(WorldDef& w, int mesh, double mass, double r, const Eig
   return body;
 }
 
-// A wall of 1 mm that lies, and a floor 20 mm under it, into which nothing may come.
+// A horizontal wall of 1 mm, and a floor 20 mm below, which must stay untouched.
 inline WorldDef thin_wall(double restitution) {
   WorldDef w = empty_world();
   add_box(w, 0, {1, 1, 0.001}, at(0, 0, 0), 0.4, restitution);
@@ -58,7 +58,7 @@ inline HardScene shot_at_wall(double restitution, bool edge_first) {
   return s;
 }
 
-// Hinged in the middle and driven, above a floor that they hit with their ends; and free ones thrown down.
+// Driven rods hinged in the middle above a floor that they hit with their ends, and free ones thrown down.
 inline HardScene rods() {
   HardScene s{"rods that fall and spin", empty_world(), 1.0, -0.01};
   add_floor(s.world, 0.5, 0.3);
@@ -93,7 +93,7 @@ inline HardScene heap(int n) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < n; ++i) {
-    // Four to a layer, none in another: what is longest is 0.11 m.
+    // Four per layer, without initial overlap: the longest is 0.11 m.
     const Eigen::Isometry3d pose =
         at(0.12 * (i % 2) + 0.003 * u(random), 0.12 * (i / 2 % 2) + 0.003 * u(random), 0.1 + 0.12 * (i / 4)) *
         Eigen::AngleAxisd(3 * u(random), Eigen::Vector3d(u(random), u(random), u(random)).normalized());
@@ -116,7 +116,7 @@ inline HardScene cradle(double apart) {
   return s;
 }
 
-// A chain let go beside a post, a loose ball in its way.
+// A chain released beside a post, with a loose ball in its path.
 inline HardScene chain_and_post() {
   HardScene s{"chain that swings into things", chain_world(8, 0.08, 0.03, 1), 1.5, -0.01};
   const Eigen::Isometry3d lie = at(0, 0, 1) * Eigen::AngleAxisd(-1.2, Eigen::Vector3d::UnitY()) * at(0, 0, -1);

@@ -1,5 +1,5 @@
-// Generated meshes for the tests and measurements of collision: lumpy spheres, combs, plates, and all that makes a
-// polygon soup hard.
+// Generated meshes for tests and measurements of collision: lumpy spheres, combs, plates, and difficult polygon
+// soups.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -36,7 +36,7 @@ struct Soup {
 using Random = std::mt19937_64;
 
 inline double uniform(Random& random, double low, double high) {
-  // Not the standard's distribution: that differs between libraries.
+  // Not the standard library's distribution, which differs between implementations.
   return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
 }
 
@@ -84,7 +84,7 @@ inline Soup icosphere(int level, double radius) {
   return s;
 }
 
-// With lumps and 1 % of fine noise: no two triangles alike.
+// With lumps and 1 % of fine noise: no two triangles are equal.
 inline Soup lumpy_sphere(int level, double radius, std::uint64_t seed) {
   Random random(seed);
   std::vector<std::pair<Eigen::Vector3d, double>> waves;
@@ -99,7 +99,7 @@ inline Soup lumpy_sphere(int level, double radius, std::uint64_t seed) {
   return s;
 }
 
-// A rectangle in the plane z = 0 about zero, n by m squares.
+// A rectangle in the plane z = 0 about the origin, n by m squares.
 inline Soup plate(double width, double depth, int n, int m) {
   Soup s;
   for (int i = 0; i <= n; ++i)
@@ -146,7 +146,7 @@ inline Soup slivers(int count, double length, std::uint64_t seed) {
   return s;
 }
 
-// Every third triangle twice, every fourth reversed.
+// Every third triangle duplicated, every fourth reversed.
 inline Soup doubled_and_reversed(const Soup& from) {
   Soup s;
   for (int i = 0; i < from.triangles(); ++i) {
@@ -157,7 +157,7 @@ inline Soup doubled_and_reversed(const Soup& from) {
   return s;
 }
 
-// Some triangles shrunk to a point or a line, beside the whole ones.
+// Some triangles shrunk to a point or a line, beside the complete ones.
 inline Soup with_degenerate(const Soup& from) {
   Soup s = from;
   for (int i = 0; i < from.triangles(); i += 5) {

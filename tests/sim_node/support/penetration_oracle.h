@@ -1,7 +1,7 @@
-// How deep shapes are in each other, by another way than the detectors that see gaps: ODE's closed forms for what
-// is round, flat or a box; for cylinders, which ODE measures along the wrong way, a search over all directions for
-// the one along which the shapes overlap least; for meshes all triangles of one against places all over the other:
-// how far the deepest of those that lie inside is from the surface.
+// Penetration depth by other methods than the detectors with gaps. Round shapes, planes and boxes use ODE's closed
+// forms. Cylinders, for which ODE's depth has a wrong direction, use a search over all directions for the least
+// overlap. Meshes test all triangles of one against points all over the other: the depth is the distance of the
+// deepest inside point from the surface.
 #pragma once
 
 #include <memory>
@@ -36,7 +36,7 @@ class PenetrationOracle {
     double depth_m = 0;
     int shape_a = -1, shape_b = -1;
   };
-  // Of all pairs of shapes of different bodies of which one moves.
+  // Over all pairs of shapes of different bodies of which one moves.
   Deepest deepest(std::span<const BodyMotion> bodies) {
     Deepest out;
     const std::size_t n = world_.shapes.size();
@@ -86,7 +86,7 @@ class PenetrationOracle {
     return shapes_[i].mesh ? of_mesh(i, j) : of_mesh(j, i);
   }
 
-  // How far a convex shape reaches along a direction of the world.
+  // Support distance of a convex shape along a world direction.
   double reach(std::size_t i, const Vector3d& along) const {
     const ShapeDef& s = world_.shapes[i];
     const Vector3d d = poses_[i].linear().transpose() * along;
@@ -98,8 +98,8 @@ class PenetrationOracle {
       default: return at + s.size_m.cwiseProduct(d.cwiseAbs()).sum() / 2;
     }
   }
-  // The least overlap over all directions, from i to j; 0: one separates the two, which proves that they do not
-  // overlap.
+  // The least overlap over all directions, from i to j. 0: a direction separates the two, which proves that they do
+  // not overlap.
   double least_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
     const auto overlap = [&](const Vector3d& n) { return reach(i, n) + reach(j, -n); };
     std::vector<Vector3d> starts{guess, poses_[i].linear().col(2), poses_[j].linear().col(2),
@@ -138,7 +138,7 @@ class PenetrationOracle {
   }
   static std::size_t triangles(const TriangleMesh& m) { return m.indices.size() / 3; }
 
-  // Turns of the surface around a point: 1 inside of a closed one (van Oosterom and Strackee 1983, equation 8).
+  // Winding number of the surface around a point: 1 inside a closed one (van Oosterom and Strackee 1983, equation 8).
   static double winding(const TriangleMesh& m, const Vector3d& p) {
     double sum = 0;
     for (std::size_t t = 0; t < triangles(m); ++t) {
@@ -170,8 +170,8 @@ class PenetrationOracle {
     return best;
   }
 
-  // What of a shape may be inside a mesh: its corners, or places on its edges, in its own frame, with their
-  // roundness.
+  // Test points of a shape that may be inside a mesh: its corners or points on its edges, in its own frame, with
+  // their rounding radius.
   struct Probe {
     Vector3d place;
     double round_m = 0;
@@ -214,7 +214,7 @@ class PenetrationOracle {
     }
   }
 
-  // i is a mesh. j may be one too: then each is probed with the other.
+  // i is a mesh. j may be one too: then each is tested with the other.
   double of_mesh(std::size_t i, std::size_t j) {
     const TriangleMesh& mesh = *shapes_[i].mesh;
     const ShapeDef& other = world_.shapes[j];
@@ -226,7 +226,7 @@ class PenetrationOracle {
     }
     double depth = probe(mesh, j, to_mesh);
     if (shapes_[j].mesh) return std::max(depth, probe(*shapes_[j].mesh, i, to_other));
-    // The mesh's corners inside a shape that is no mesh.
+    // The mesh's vertices inside a shape that is no mesh.
     for (const Vector3d& v : mesh.vertices) depth = std::max(depth, inside(other, to_other * v));
     return depth;
   }
@@ -243,7 +243,7 @@ class PenetrationOracle {
       default: return 0;
     }
   }
-  // Places of shape j inside the mesh.
+  // Points of shape j inside the mesh.
   double probe(const TriangleMesh& mesh, std::size_t j, const Eigen::Isometry3d& to_mesh) {
     probes_of(j, probes_);
     Eigen::AlignedBox3d box;

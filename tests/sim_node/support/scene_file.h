@@ -1,4 +1,4 @@
-// A scene written into a folder of its own for one test, and what the loader makes of it.
+// A scene written into its own temporary folder for one test, and the loader's result.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ class SceneFile {
  public:
   using Files = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>;
 
-  // beside: files beside the scene, by name.
+  // beside: files in the same folder, by name.
   explicit SceneFile(const std::string& text = "", const Files& beside = {}) {
     std::string name = (std::filesystem::temp_directory_path() / "tactus_scene_XXXXXX").string();
     if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
@@ -38,7 +38,7 @@ class SceneFile {
     warnings.clear();
     return load_sdf(folder_ / "scene.sdf", warnings);
   }
-  // The sentence that refuses the scene, without the folder; empty when it is not refused.
+  // The sentence that rejects the scene, without the folder; empty when it loads.
   std::string refusal() {
     try {
       load();

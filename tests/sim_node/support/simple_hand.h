@@ -1,10 +1,13 @@
-// A tool in a world, and a hand that holds it.
+// A tool in a world, and a simulated hand that holds it.
 #pragma once
 
 #include <algorithm>
 #include <map>
+#include <tactus/tool_constraint_t.hpp>
+#include <tactus/tool_def_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/sim_node/support/small_worlds.h"
@@ -25,15 +28,16 @@ inline WorldDef& add_tool(WorldDef& w, const Eigen::Vector3d& place, double radi
   return w;
 }
 
-// A haptic loop as simple as can be: the device goes where it is told, the proxy stays outside the planes (one at
-// a time), spring force between them.
+// Minimal haptic loop: the device follows a given path, the proxy stays outside the planes (one at a time), with a
+// spring force between them.
 struct Hand {
   double radius, stiffness = 1000;
   std::int64_t seq = 0, incarnation = 40;
   Eigen::Vector3d last;
   std::map<std::int64_t, Eigen::Vector3d> impulses{};
 
-  // A ball's, whose centre is its only point; the points of a tool with a shape, which this hand never turns, have none.
+  // Skin radius of a plane's contact point. A ball has its radius, since its centre is its only point. The points of
+  // a tool with a shape, which this hand never rotates, have none.
   double skin(const touch_plane_t& p) const { return to_eigen(p.tool_point_m).isZero(0) ? radius : 0; }
 
   tool_state_t tick(const touch_model_t& model, const Eigen::Vector3d& device, std::int64_t time_ns) {

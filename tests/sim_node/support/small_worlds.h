@@ -87,7 +87,7 @@ inline JointDef& add_joint(WorldDef& w, JointKind kind, int parent, int child, c
   return w.joints.back();
 }
 
-// n links of a chain hanging from the world at (0, 0, top), straight down, joined by universal joints.
+// n links of a chain that hangs from the world at (0, 0, top), straight down, with universal joints.
 inline WorldDef chain_world(int n, double length = 0.1, double mass = 0.05, double top = 2) {
   WorldDef w = empty_world();
   const double r = 0.1 * length;

@@ -1,5 +1,5 @@
-// One number for all that a scene comes to in so many steps without a hand: every event, the contacts at the end,
-// and where each body is and how it moves, to the bit.
+// Hash of the result of a scene after a number of steps without a hand: every event, the contacts at the end, and
+// pose and velocity of each body, bit-exact.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/world/simulation.h"
@@ -17,8 +19,8 @@ namespace tactus::sim::test {
 
 inline constexpr int kGoldenSteps = 500;
 
-// overrides: "setting=value", as on a command line. Throws std::runtime_error with one sentence when the scene
-// cannot be simulated so.
+// overrides: "setting=value", as on a command line. Throws std::runtime_error with one sentence when the scene cannot
+// be simulated with them.
 inline std::uint64_t state_hash(const std::filesystem::path& scene, const std::vector<std::string>& overrides = {},
                                 int steps = kGoldenSteps) {
   std::vector<std::string> warnings;

@@ -1,5 +1,5 @@
-// Balls, boxes and rods whose contacts a few lines of geometry give exactly, for proofs of the impulse solver
-// without a collision detector.
+// Balls, boxes and rods with exact contacts from a few lines of geometry, to test the impulse solver without a
+// collision detector.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class Toys {
 
   impulse::World world;
   Eigen::Vector3d gravity_m_s2{0, 0, -kToyG};
-  double reach_m = 0.02;  // gaps up to this, and up to what a step covers, make contacts
+  double reach_m = 0.02;  // gaps up to this, and up to the motion of a step, create contacts
 
   int plane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, double friction = 0.5,
             double restitution = 0) {
@@ -37,7 +37,7 @@ class Toys {
     return shape({.kind = Kind::kBox, .body = world.add_free(body(mass, inertia, pose)), .size = size}, friction,
                  restitution);
   }
-  // A thin rod of that length along its x axis; it touches with its round ends and side.
+  // A thin rod of this length along its x axis, in contact by its round ends and side.
   int rod(double mass, double length, double r, const Eigen::Isometry3d& pose, double friction = 0.5,
           double restitution = 0) {
     const double across = mass * length * length / 12, about = mass * r * r / 2;
@@ -45,7 +45,7 @@ class Toys {
     return capsule(world.add_free(body(mass, inertia, pose)), length, r, Eigen::Vector3d::UnitX(), friction,
                    restitution);
   }
-  // A capsule about the centre of a body that is there already, along an axis of it.
+  // A capsule about the centre of an existing body, along an axis of it.
   int capsule(int body, double length, double r, const Eigen::Vector3d& along, double friction = 0.5,
               double restitution = 0) {
     return shape(
@@ -63,7 +63,7 @@ class Toys {
     collide(h);
     world.step(contacts_, h);
   }
-  // Of the contacts that collide() found.
+  // Solves the contacts that collide() found.
   void solve(double h) { world.step(contacts_, h); }
   double least_gap_m() {
     collide(0);
@@ -110,7 +110,7 @@ class Toys {
     p.depth_m = -gap;
     m.points[static_cast<std::size_t>(m.count++)] = p;
   }
-  // The corners of a box that are nearest to a plane, and the ends of a rod.
+  // The corners of a box nearest to a plane, and the ends of a rod.
   void against_plane(Manifold& m, const Shape& s, const Eigen::Vector3d& n, const Eigen::Vector3d& on,
                      double reach) const {
     const BodyMotion& b = motion(s.body);
@@ -146,7 +146,7 @@ class Toys {
     if (a.kind == Kind::kPlane) {
       against_plane(m, b, a.to, a.from, reach);
     } else if (a.kind == Kind::kBox && b.kind == Kind::kBox) {
-      // The upper stands on the lower's top.
+      // The upper box rests on top of the lower one.
       const Eigen::Vector3d n = ma.orientation * Eigen::Vector3d::UnitZ();
       const Eigen::Vector3d top = ma.to_world({0, 0, a.size.z() / 2});
       const Eigen::Vector3d between = mb.centre_m - ma.centre_m;

@@ -1,6 +1,6 @@
-// Distance of two triangles, by another way than the library's: every pair of features (corner, edge or face of
-// one, of the other) is solved as a least-squares problem of its own in long double, and the best of those whose
-// solution lies on both features is the answer. Slow, and right for degenerate and intersecting triangles too.
+// Distance of two triangles by another method than the library's. Every pair of features (corner, edge or face of
+// each) is solved as a separate least-squares problem in long double. The answer is the best solution that lies on
+// both features. Slow, and also correct for degenerate and intersecting triangles.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ using Corners = std::array<Eigen::Vector3d, 3>;
 
 namespace detail {
 
-// A feature: its first corner and the ways to its others.
+// A feature: its first corner and the vectors to the others.
 struct Feature {
   Exact at;
   Exact way[2];
@@ -37,7 +37,7 @@ inline Feature feature(const Corners& t, unsigned corners) {
   return f;
 }
 
-// Solves the normal equations by elimination with full pivoting; false when they have no single solution.
+// Solves the normal equations by elimination with full pivoting; false when there is no unique solution.
 inline bool solve(int n, long double m[4][5]) {
   int column[4] = {0, 1, 2, 3};
   long double largest = 0;
@@ -64,7 +64,7 @@ inline bool solve(int n, long double m[4][5]) {
   return true;
 }
 
-// Puts a solution that is off a feature by rounding onto it; false when it is further off.
+// Clamps a solution that is off a feature by rounding; false when it is further off.
 inline bool settle(int ways, long double* x) {
   long double sum = 0;
   for (int i = 0; i < ways; ++i) {
@@ -95,7 +95,7 @@ inline double exact_distance(const Corners& a, const Corners& b) {
         for (int j = 0; j < n; ++j) m[i][j] = way[i].dot(way[j]);
         m[i][4] = -way[i].dot(apart);
       }
-      if (n > 0 && !detail::solve(n, m)) continue;  // a smaller feature is as near
+      if (n > 0 && !detail::solve(n, m)) continue;  // a smaller feature is equally near
       long double x[4] = {};
       for (int i = 0; i < n; ++i) x[i] = m[i][4];
       if (!detail::settle(fa.ways, x) || !detail::settle(fb.ways, x + fa.ways)) continue;

@@ -1,4 +1,4 @@
-// A simulation that is saved and put back goes on as if nothing had been, to the bit.
+// A simulation that is saved and restored continues identically to the bit.
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +9,12 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/scene/load_sdf.h"
@@ -37,7 +43,7 @@ struct Hash {
   }
 };
 
-// All that a step publishes, and the unrounded poses and speeds.
+// All published data of a step, and the unrounded poses and velocities.
 void add_step(Hash& h, Simulation& s) {
   for (const auto& e : s.events()) h.message(e);
   for (const auto& m : s.touch_models()) h.message(m);
@@ -58,16 +64,16 @@ void add_step(Hash& h, Simulation& s) {
 
 using Path = std::function<Vector3d(double)>;
 
-// So many steps of a world with a hand, if it has a tool.
+// Runs a number of steps of a world, with a hand if the world has a tool.
 std::uint64_t run(Simulation& s, Hand& hand, const Path& path, int steps) {
   Hash h;
   for (int i = 0; i < steps; ++i) {
-    std::vector<tool_state_t> news;
+    std::vector<tool_state_t> new_messages;
     if (!s.touch_models().empty()) {
       const std::int64_t now_ns = sync::to_ns(s.now());
-      news.push_back(hand.tick(s.touch_models()[0], path(now_ns * 1e-9), now_ns));
+      new_messages.push_back(hand.tick(s.touch_models()[0], path(now_ns * 1e-9), now_ns));
     }
-    s.step(news);
+    s.step(new_messages);
     add_step(h, s);
   }
   return h.value;
@@ -97,7 +103,7 @@ WorldDef scene(const std::string& name) {
   return load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/" + name + ".sdf", warnings);
 }
 
-// Presses and pushes among the balls and the boxes.
+// Presses and pushes among the balls and boxes.
 Vector3d about_the_room(double t) {
   return {-0.12 + 0.1 * std::sin(3 * t), -0.25 + 0.15 * std::sin(1.7 * t), 0.03 + 0.04 * std::cos(9 * t)};
 }
@@ -154,7 +160,7 @@ std::vector<World> worlds() {
   return all;
 }
 
-// The world that a child process goes on with.
+// The world that the child process continues.
 World world_named(const std::string& name) {
   for (World& w : made_worlds())
     if (w.name == name) return w;
@@ -178,7 +184,7 @@ constexpr int kMore = 250;
 
 }  // namespace
 
-TEST_CASE("What follows a state that is put back is the same to the bit, in the same simulation and in another") {
+TEST_CASE("A restored state continues identically to the bit, in the same simulation and in another") {
   for (const World& w : worlds()) {
     INFO(w.name);
     Simulation s(w.def, w.settings);
@@ -216,7 +222,7 @@ TEST_CASE("continues a state in a process of its own", "[.]") {
   std::ofstream(folder / "hash") << run(s, none, w.path, kMore);
 }
 
-TEST_CASE("Another process goes on with a state as this one does") {
+TEST_CASE("Another process continues a state as this one does") {
   const Folder folder;
   for (const char* name : {"a chain with springs, and a ball", "a motor and bouncing balls"}) {
     INFO(name);
@@ -246,7 +252,7 @@ TEST_CASE("Another process goes on with a state as this one does") {
   }
 }
 
-TEST_CASE("A damaged or foreign state is refused with a sentence, and nothing changes") {
+TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing changes") {
   const WorldDef w = stack();
   Simulation s(w, {});
   s.start(11);
@@ -282,7 +288,7 @@ TEST_CASE("A damaged or foreign state is refused with a sentence, and nothing ch
   CHECK(s.restore(earlier) == "");
 }
 
-TEST_CASE("A state that is whole but says what cannot be is refused, and nothing changes") {
+TEST_CASE("A complete state with impossible values is rejected, and nothing changes") {
   const WorldDef w = stack();
   Simulation s(w, {});
   s.start(11);
@@ -302,13 +308,13 @@ TEST_CASE("A state that is whole but says what cannot be is refused, and nothing
       std::memcpy(poisoned.data() + word, &poison, sizeof poison);
       const std::string why = s.restore(wrap_state(poisoned, fingerprint));
       refusals += !why.empty();
-      if (why.empty()) REQUIRE(s.restore(now) == "");  // a number like any other
+      if (why.empty()) REQUIRE(s.restore(now) == "");  // a valid number
       REQUIRE(s.save() == now);
     }
   CHECK(refusals > 500);
 }
 
-TEST_CASE("A world that is reset does what it did the first time") {
+TEST_CASE("A world that is reset repeats its first run") {
   for (const World& w : worlds()) {
     INFO(w.name);
     Simulation s(w.def, w.settings);
@@ -322,7 +328,7 @@ TEST_CASE("A world that is reset does what it did the first time") {
   }
 }
 
-TEST_CASE("A world that begins a new life names its contacts anew, and owes the hand nothing of the old one") {
+TEST_CASE("A world of a new incarnation renames its contacts, and drops the forces of the old incarnation") {
   WorldDef w = empty_world();
   add_floor(w);
   const int ball = add_ball(w, 0.2, 0.05, {0, 0, 0.05});
@@ -347,7 +353,7 @@ TEST_CASE("A world that begins a new life names its contacts anew, and owes the 
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].contact_id == sync::prefixed_id(12, old_id & mask));
   CHECK(s.tool_contacts()[0].contact_id == sync::prefixed_id(12, old_touch & mask));
-  // Words of the old life push nothing: the hand still speaks of contacts that have another name now.
+  // Messages of the old incarnation push nothing: the hand still uses the old contact ids.
   const Vector3d before = s.bodies()[static_cast<std::size_t>(ball)].position_m;
   touch_model_t old_model = s.touch_models()[0];
   for (touch_plane_t& p : old_model.planes) p.contact_id = old_touch;

@@ -3,6 +3,11 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/bus/identity.h"
@@ -14,7 +19,7 @@ using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
 
-TEST_CASE("A tool that presses on the floor begins and hits at the instant when it meets it, and ends when it leaves") {
+TEST_CASE("A tool that presses on the floor begins and hits at the instant of contact, and ends when it leaves") {
   WorldDef w = empty_world();
   add_floor(w);
   add_tool(w, {0, 0, 0.05});
@@ -38,7 +43,8 @@ TEST_CASE("A tool that presses on the floor begins and hits at the instant when 
   CHECK(events[0].kind == contact_event_t::BEGIN);
   CHECK(events[1].kind == contact_event_t::HIT);
   CHECK(events[2].kind == contact_event_t::END);
-  // The hand moves evenly and its samples carry their instants: met within rounding, plus that of single precision.
+  // The hand moves evenly and its samples carry their instants: the onset is exact within rounding to single
+  // precision.
   const double met_s = (0.05 - 0.01) / speed;
   CHECK(events[1].time_ns * 1e-9 == Approx(met_s).margin(2e-5));
   CHECK(events[0].time_ns == events[1].time_ns);
@@ -49,14 +55,14 @@ TEST_CASE("A tool that presses on the floor begins and hits at the instant when 
   CHECK(events[1].normal.z == Approx(1));
   // It leaves on the way up, once it is the end gap away.
   CHECK(events[2].time_ns * 1e-9 == Approx(0.6 - met_s).margin(0.003));
-  // The plane named the contact before it was touched.
+  // The plane has the contact id before the touch.
   CHECK(contact == events[0].contact_id);
   // The next touch is another contact.
   REQUIRE(s.touch_models()[0].plane_count == 0);
   CHECK(*std::max_element(forces.begin(), forces.end()) == Approx(1000 * (0.3 * speed - 0.04)).epsilon(0.05));
 }
 
-TEST_CASE("Pushing a free ball gives it what the hand feels. Momentum balances") {
+TEST_CASE("A push on a free ball equals the force on the hand. Momentum balances") {
   WorldDef w = empty_world(0);
   const int ball = add_ball(w, 0.3, 0.05, {0, 0, 0});
   add_tool(w, {-0.1, 0, 0});
@@ -66,7 +72,7 @@ TEST_CASE("Pushing a free ball gives it what the hand feels. Momentum balances")
   bool begun = false;
   for (int i = 0; i < 500; ++i) {
     const double t = sync::to_seconds(s.now().time_since_epoch());
-    // Comes, pushes, and stops well before the ball is out of reach of its books.
+    // Approaches, pushes, and stops well before the ball is out of reach.
     const double x = t < 0.25 ? -0.1 + 0.3 * t : -0.1 + 0.3 * 0.25;
     s.step(std::vector{hand.tick(s.touch_models()[0], {x, 0, 0}, sync::to_ns(s.now()))});
     for (const auto& e : s.events()) begun |= e.kind == contact_event_t::BEGIN;
@@ -79,7 +85,7 @@ TEST_CASE("Pushing a free ball gives it what the hand feels. Momentum balances")
   CHECK((momentum + felt).norm() < 1e-3 * momentum.norm());
 }
 
-TEST_CASE("A corner has both its planes, each with a name that stays") {
+TEST_CASE("A corner has both its planes, each with a constant id") {
   WorldDef w = empty_world();
   add_floor(w);
   const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), at(0.1, 0, 0.5));
@@ -104,13 +110,13 @@ TEST_CASE("A corner has both its planes, each with a name that stays") {
   CHECK(names.size() == 2);
 }
 
-TEST_CASE("A plane names the relief of its surface and the axis of the body along which it is laid out, in the world") {
+TEST_CASE("A plane names the height map of its surface and the axis of the body along which the map is laid out, in the world") {
   WorldDef w = empty_world(0);
   material_def_t planks{};
   planks.youngs_modulus_Pa = 1e10, planks.poissons_ratio = 0.3, planks.friction_static = planks.friction_dynamic = 0.5;
   w.materials = {planks, planks};
   w.materials[1].bump_asset = 77;
-  // Turned, so that body and world do not agree.
+  // Turned, so that the body and world frames differ.
   const Eigen::Isometry3d pose(Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.9, Vector3d(1, 2, 3).normalized()));
   const int box = add_body(w, "box", 0, Eigen::Matrix3d::Identity(), pose);
   const auto shape = static_cast<std::size_t>(add_shape(w, box, ShapeKind::kBox, {0.2, 0.2, 0.2}));
@@ -128,12 +134,12 @@ TEST_CASE("A plane names the relief of its surface and the axis of the body alon
   CHECK(plane().bump_asset == 77);
   const Vector3d u = pose.linear() * Vector3d::Unit((across + 1) % 3);
   CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
-  SECTION("also for a map of friction alone") {
+  SECTION("also for a friction map alone") {
     w.materials[1].bump_asset = 0, w.materials[1].friction_asset = 78;
     CHECK(plane().bump_asset == 0);
     CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
   }
-  SECTION("and a smooth one names none") {
+  SECTION("a smooth surface names none") {
     w.shapes[shape].material = 0;
     CHECK(plane().bump_asset == 0);
     CHECK(to_eigen(plane().bump_u) == Vector3d(0, 0, 0));
@@ -213,7 +219,7 @@ TEST_CASE("The same messages give the same world, to the bit") {
   CHECK(digest() == digest());
 }
 
-TEST_CASE("A tool that bears the name of a spot light points through everything and feels nothing") {
+TEST_CASE("A tool with the name of a spot light points through everything and touches nothing") {
   WorldDef w = empty_world();
   add_floor(w);
   add_tool(w, {0, 0, 0.05});
@@ -225,11 +231,11 @@ TEST_CASE("A tool that bears the name of a spot light points through everything 
   Hand hand{.radius = 0.01, .last = {0, 0, 0.05}};
   for (int i = 0; i < 300; ++i) {
     s.step(std::vector{hand.tick(s.touch_models()[0], {0, 0, 0.05 - 0.001 * i}, sync::to_ns(s.now()))});
-    CHECK(s.touch_models()[0].tool == -1);  // is not sent
+    CHECK(s.touch_models()[0].tool == -1);  // is not published
     CHECK(s.touch_models()[0].planes.empty());
     CHECK(s.events().empty());
   }
-  CHECK(s.bodies().back().position_m.z() == Approx(0.05 - 0.298));  // as told the step before
+  CHECK(s.bodies().back().position_m.z() == Approx(0.05 - 0.298));  // as in the message of the previous step
   w.lights[0].kind = light_def_t::POINT;
   WorldDef with_head = w;
   with_head.tools[0].name = "head";

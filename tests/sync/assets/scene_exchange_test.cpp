@@ -1,6 +1,10 @@
 #include "sync/assets/scene_exchange.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/scene_manifest_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "sync/bus/decode.h"
 

@@ -1,6 +1,9 @@
 #include "sync/assets/scene_pictures.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"

@@ -2,6 +2,11 @@
 #include "sync/bus/bus.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/asset_request_t.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/media_clock_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 using namespace tactus;
 

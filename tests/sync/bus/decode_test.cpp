@@ -2,6 +2,9 @@
 #include "sync/bus/decode.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/touch_model_t.hpp>
 
 using namespace tactus;
 

@@ -1,6 +1,9 @@
 #include "sync/bus/health_inputs.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/histogram_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/time/histogram.h"

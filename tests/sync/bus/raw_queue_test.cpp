@@ -1,6 +1,7 @@
 #include "sync/bus/raw_queue.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/media_clock_t.hpp>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/decode.h"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <tactus/header_t.hpp>
 #include <vector>
 
 using namespace tactus;

@@ -1,6 +1,8 @@
 #include "sync/clock_sync/clock_probe.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/clock_probe_t.hpp>
 #include <vector>
 
 #include "lcmtypes/valid.h"

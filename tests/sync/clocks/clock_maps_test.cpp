@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <random>
+#include <tactus/clock_map_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
 

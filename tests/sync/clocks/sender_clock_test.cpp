@@ -1,6 +1,8 @@
 #include "sync/clocks/sender_clock.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/header_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
 

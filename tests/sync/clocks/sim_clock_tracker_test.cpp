@@ -1,6 +1,8 @@
 #include "sync/clocks/sim_clock_tracker.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

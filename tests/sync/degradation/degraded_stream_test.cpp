@@ -4,6 +4,15 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 #include "sync/clocks/sender_clock.h"

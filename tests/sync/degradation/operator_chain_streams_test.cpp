@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <tactus/contact_frame_t.hpp>
 
 #include "sync/degradation/degraded_stream.h"
 

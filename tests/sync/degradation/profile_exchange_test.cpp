@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <tactus/degradation_t.hpp>
 
 #include "sync/bus/identity.h"
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/log/log_feed.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
+#include <tactus/thermal_state_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "sync/resampling/sample_status.h"
 

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <tactus/log_info_t.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
 

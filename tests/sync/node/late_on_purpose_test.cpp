@@ -1,4 +1,8 @@
 #include <catch2/catch.hpp>
+#include <tactus/decision_t.hpp>
+#include <tactus/degraded_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/playout_t.hpp>
 
 #include "sync/presentation/presentation_matcher.h"
 #include "tests/sync/presentation/presentation_matcher_fixture.h"

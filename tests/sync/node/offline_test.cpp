@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <tactus/degradation_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
 

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <tactus/setting_change_t.hpp>
+#include <tactus/setting_reply_t.hpp>
 
 using namespace tactus;
 

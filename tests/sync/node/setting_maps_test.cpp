@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/map_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

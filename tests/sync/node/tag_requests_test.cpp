@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 #include <regex>
+#include <tactus/tag_request_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tactus/tag_def_t.hpp>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_request_t.hpp>
+#include <tactus/tag_values_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/valid.h"

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
+#include <tactus/body_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/body_history.h"
 

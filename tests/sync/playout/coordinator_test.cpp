@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/playout_request_t.hpp>
+#include <tactus/playout_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "sync/playout/exchange.h"

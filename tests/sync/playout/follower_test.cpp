@@ -1,6 +1,7 @@
 #include "sync/playout/follower.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/playout_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -1,6 +1,7 @@
 #include "sync/presentation/late.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/presentation_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -2,6 +2,11 @@
 #pragma once
 
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
 #include <vector>
 
 #include "sync/presentation/presentation_matcher.h"

@@ -1,6 +1,10 @@
 #include "sync/presentation/presentation_matcher.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presented_t.hpp>
 
 #include "tests/sync/presentation/presentation_matcher_fixture.h"
 

@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "tests/sync/presentation/presentation_matcher_fixture.h"
 

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
 
 #include "tests/sync/presentation/presentation_matcher_fixture.h"
 

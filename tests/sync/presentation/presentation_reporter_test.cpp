@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <tactus/presentation_t.hpp>
 #include <tactus/presented_t.hpp>
 
 using namespace tactus;

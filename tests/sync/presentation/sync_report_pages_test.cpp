@@ -1,6 +1,8 @@
 #include "sync/presentation/sync_report_pages.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "tests/sync/presentation/presentation_matcher_fixture.h"

@@ -4,6 +4,9 @@
 #include <deque>
 #include <set>
 #include <tactus/contact_events_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/body_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

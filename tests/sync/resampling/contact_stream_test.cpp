@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/header_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

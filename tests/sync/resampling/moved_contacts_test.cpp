@@ -5,6 +5,10 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

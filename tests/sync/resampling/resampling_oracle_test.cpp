@@ -2,6 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"

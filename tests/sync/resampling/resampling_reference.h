@@ -4,6 +4,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 #include "tests/sync/support/hostile_world.h"

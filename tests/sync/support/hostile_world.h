@@ -11,6 +11,9 @@
 #include <tactus/world_state_t.hpp>
 #include <variant>
 #include <vector>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "sync/clocks/clock_maps.h"

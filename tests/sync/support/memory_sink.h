@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <tactus/header_t.hpp>
 #include <utility>
 #include <vector>
 

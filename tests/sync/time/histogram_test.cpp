@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <tactus/histogram_t.hpp>
 #include <vector>
 
 using namespace tactus;

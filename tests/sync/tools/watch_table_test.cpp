@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <sstream>
+#include <tactus/node_health_t.hpp>
+#include <tactus/sync_report_t.hpp>
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/node/node.h"
 #include "sync/node/background_task.h"

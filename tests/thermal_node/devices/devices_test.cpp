@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <tactus/thermal_device_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "thermal_node/devices/external.h"

@@ -1,6 +1,9 @@
 #include "thermal_node/devices/node_config.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/setting_t.hpp>
+#include <tactus/tool_def_t.hpp>
 
 using namespace tactus;
 

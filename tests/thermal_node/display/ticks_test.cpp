@@ -1,6 +1,10 @@
 #include "thermal_node/display/ticks.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_frame_t.hpp>
+#include <tactus/contact_t.hpp>
 
 using namespace tactus;
 using namespace std::chrono_literals;

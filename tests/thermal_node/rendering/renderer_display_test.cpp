@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tactus/thermal_state_t.hpp>
 
 #include "tests/thermal_node/support/hand.h"
 #include "thermal_node/devices/simulated_peltier.h"

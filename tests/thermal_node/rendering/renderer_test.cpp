@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/thermal_state_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/thermal_node/support/hand.h"

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 using namespace tactus;
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <tactus/material_def_t.hpp>
+#include <tactus/thermal_state_t.hpp>
 #include <utility>
 #include <vector>
 

@@ -6,13 +6,13 @@ using namespace tactus::visual;
 
 namespace {
 
-GamepadStand held(std::initializer_list<Button> buttons) {
-  GamepadStand s;
+GamepadState held(std::initializer_list<Button> buttons) {
+  GamepadState s;
   for (const Button b : buttons) s.held[static_cast<std::size_t>(b)] = true;
   return s;
 }
-GamepadStand pushed(float x, float y, std::size_t stick = 0) {
-  GamepadStand s;
+GamepadState pushed(float x, float y, std::size_t stick = 0) {
+  GamepadState s;
   s.sticks[stick] = {x, y};
   return s;
 }
@@ -20,17 +20,17 @@ using Buttons = std::vector<Button>;
 
 }  // namespace
 
-TEST_CASE("A button of a gamepad counts once, when it goes down") {
+TEST_CASE("A gamepad button is reported once, when it goes down") {
   Gamepad pad;
-  CHECK(pad.pressed(held({Button::kB})).empty());  // was held when the gamepad was found
+  CHECK(pad.pressed(held({Button::kB})).empty());  // held when the gamepad was found
   CHECK(pad.pressed(held({Button::kB, Button::kA})) == Buttons{Button::kA});
   CHECK(pad.pressed(held({Button::kA})).empty());
   CHECK(pad.pressed(held({Button::kA, Button::kB})) == Buttons{Button::kB});
-  pad.forget();
+  pad.reset();
   CHECK(pad.pressed(held({Button::kX})).empty());
 }
 
-TEST_CASE("A stick that is pushed is an arrow, once until it is let go, however it trembles") {
+TEST_CASE("A pushed stick is reported as an arrow once until it is released, despite jitter") {
   for (const std::size_t stick : {0u, 1u}) {
     Gamepad pad;
     pad.pressed({});

@@ -1,4 +1,4 @@
-// The drawn hand moves more or less than the hand, and comes back.
+// The drawn hand moves more or less than the real hand, and returns.
 #include "visual_node/frame/display_gain.h"
 
 #include <catch2/catch.hpp>
@@ -6,12 +6,12 @@
 using tactus::visual::DisplayGain;
 using Eigen::Vector3d;
 
-TEST_CASE("With a gain of one the hand is drawn where it is, to the bit") {
+TEST_CASE("At a gain of one the hand is drawn at its exact position") {
   DisplayGain gain;
   for (int i = 0; i < 100; ++i) CHECK(gain.step(Vector3d(0.013 * i, 0, 1), 1, 1 / 60.) == Vector3d::Zero());
 }
 
-TEST_CASE("What is drawn moves so many times as far as the hand") {
+TEST_CASE("The drawn hand moves by the gain times the motion of the hand") {
   const double g = GENERATE(0.25, 0.5, 2.0);
   DisplayGain gain;
   const Vector3d begin(0.1, 0.2, 0.3);
@@ -25,7 +25,7 @@ TEST_CASE("What is drawn moves so many times as far as the hand") {
   CHECK((drawn - begin - g * moved).norm() < 1e-12);
 }
 
-TEST_CASE("Back at a gain of one the rest dies out with its time constant, and none of it while the hand is slowed") {
+TEST_CASE("Back at a gain of one the offset decays with its time constant, and not while the gain is below one") {
   DisplayGain gain;
   gain.step(Vector3d::Zero(), 0.5, 0.01);
   const double off = gain.step(Vector3d(0.1, 0, 0), 0.5, 0.01).norm();
@@ -36,9 +36,9 @@ TEST_CASE("Back at a gain of one the rest dies out with its time constant, and n
   CHECK(left == Approx(off * std::exp(-1)));
 }
 
-TEST_CASE("However long the gain lasts, the drawn hand comes no further off than a forearm") {
+TEST_CASE("The offset of the drawn hand never exceeds a forearm") {
   DisplayGain gain;
-  for (int i = 0; i < 1000; ++i) CHECK(gain.step(Vector3d(0.1 * i, 0, 0), 10, 0.01).norm() <= DisplayGain::kFarthest_m * 1.000001);
+  for (int i = 0; i < 1000; ++i) CHECK(gain.step(Vector3d(0.1 * i, 0, 0), 10, 0.01).norm() <= DisplayGain::kMaxOffset_m * 1.000001);
   gain.reset();
   CHECK(gain.step(Vector3d(5, 0, 0), 10, 0.01) == Vector3d::Zero());
 }

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/presentation_t.hpp>
 
 #include "visual_node/frame/render_time.h"
 
@@ -20,7 +22,7 @@ contact_event_t event(std::int64_t id, int kind, std::int64_t time_ns) {
 }
 }  // namespace
 
-TEST_CASE("Every begin and hit yields exactly one report, whatever the frames do") {
+TEST_CASE("Every begin and hit yields exactly one report under any frame timing") {
   const Settings settings;
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(5'000'000'000), 1};
   std::mt19937 random(11);
@@ -30,7 +32,7 @@ TEST_CASE("Every begin and hit yields exactly one report, whatever the frames do
     std::map<std::int64_t, std::int64_t> owed_at;
     std::int64_t now = 5'000'000'000, id = 0;
     for (int frame = 0; frame < 100; ++frame) {
-      // Now and then a stall of up to a second.
+      // Occasional stalls of up to a second.
       now += random() % 20 == 0 ? static_cast<std::int64_t>(random() % 1'000'000'000) : 16'666'667;
       std::vector<contact_event_t> due;
       for (unsigned i = random() % 4; i > 0; --i) {
@@ -64,7 +66,7 @@ TEST_CASE("Every begin and hit yields exactly one report, whatever the frames do
   }
 }
 
-TEST_CASE("What becomes of a late event is the rule of the modality") {
+TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
   const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t foretold_ns) {
     EventLedger ledger(Settings{}, rule);
@@ -74,13 +76,13 @@ TEST_CASE("What becomes of a late event is the rule of the modality") {
   CHECK(outcome(sync::Late::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);
   CHECK(outcome(sync::Late::kShowNewest, 50'000'001, 0) == presentation_t::LATE);
   CHECK(outcome(sync::Late::kShowNewest, 260'000'000, 250'000'001) == presentation_t::DROPPED_LATE);
-  // Foretold to be in time, and shown: late, however much.
+  // Predicted to be in time, and shown: late by any amount.
   CHECK(outcome(sync::Late::kShowNewest, 900'000'000, 200'000'000) == presentation_t::LATE);
   CHECK(outcome(sync::Late::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
 }
 
 TEST_CASE(
-    "The time that drawing takes is foretold by the median: one stop in the middle of a frame does not move it") {
+    "Drawing time is predicted by the median, so one stop within a frame does not change it") {
   RenderTime time;
   for (int i = 0; i < 9; ++i) time.add(milliseconds(5));
   CHECK(time.expected() == milliseconds(5));

@@ -4,6 +4,16 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <tactus/body_state_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/sim_clock_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 
@@ -14,7 +24,7 @@ using std::chrono::milliseconds;
 namespace {
 
 constexpr std::int64_t kRun = 3;
-// The world began when the host's clock stood here.
+// Host time at which the world began.
 constexpr std::int64_t kBegan_ns = 10'000'000'000;
 constexpr sync::Nanoseconds kFrame{16'666'667};
 
@@ -76,8 +86,7 @@ struct Fixture {
     test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::SPHERE, {0.1, 0, 0});
     composer.load(scene, {}, Settings{});
   }
-  // One frame at host time `now_ns`: 3 ms for its surfaces, 1 ms for its flashes. meanwhile: what happens in
-  // between.
+  // One frame at host time `now_ns`: 3 ms for its surfaces, 1 ms for its flashes. meanwhile: called in between.
   Frame frame(
       std::int64_t sim_ns, const std::function<void()>& meanwhile = [] {}) {
     const sync::HostTime now = sync::host_time(sim_ns + kBegan_ns);
@@ -91,7 +100,7 @@ struct Fixture {
     }
     return f;
   }
-  void hear(std::int64_t sim_ns) { composer.push(world_at(sim_ns), sync::host_time(sim_ns + kBegan_ns)); }
+  void receive(std::int64_t sim_ns) { composer.push(world_at(sim_ns), sync::host_time(sim_ns + kBegan_ns)); }
 };
 
 float x_of(const Frame& f) { return f.list.instances.at(0).position.x(); }
@@ -102,7 +111,7 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   load();
   std::int64_t t = 0;
   Frame f;
-  for (int i = 0; i < 20; ++i, t += kFrame.count()) hear(t), f = frame(t);
+  for (int i = 0; i < 20; ++i, t += kFrame.count()) receive(t), f = frame(t);
   t -= kFrame.count();
   CHECK(f.state == node_health_t::RUNNING);
   CHECK(f.status == sync::SampleStatus::kExtrapolated);
@@ -110,7 +119,7 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "Before the scene a frame is dark and says that it waits. A late joiner needs no one's restart") {
+                 "Before the scene a frame is dark and shows WAITING, and a late joiner needs no restart") {
   Frame f = frame(0);
   CHECK(f.state == node_health_t::WAITING);
   CHECK(f.list.instances.empty());
@@ -118,16 +127,16 @@ TEST_CASE_METHOD(Fixture,
   load();
   f = frame(16'000'000);
   CHECK(f.state == node_health_t::READY);
-  CHECK(x_of(f) == Approx(2));  // where the scene puts it
-  hear(30'000'000);
+  CHECK(x_of(f) == Approx(2));  // its pose in the scene
+  receive(30'000'000);
   CHECK(frame(32'000'000).state == node_health_t::RUNNING);
 }
 
 TEST_CASE_METHOD(
     Fixture,
-    "Without new state bodies go on for a bounded time, then are held, then lost, and the frame says so") {
+    "Without new state bodies extrapolate for a bounded time, then are held, then lost, and the frame shows it") {
   load();
-  hear(0);
+  receive(0);
   frame(0);
   CHECK(frame(40'000'000).state == node_health_t::RUNNING);
   const Frame held = frame(100'000'000);
@@ -136,32 +145,32 @@ TEST_CASE_METHOD(
   CHECK(frame(250'000'000).state == node_health_t::STALE);
   CHECK(frame(600'000'000).state == node_health_t::INPUT_LOST);
   CHECK(x_of(frame(5'000'000'000)) == Approx(2.05));
-  hear(5'100'000'000);
+  receive(5'100'000'000);
   CHECK(frame(5'100'000'000).state == node_health_t::RUNNING);
 }
 
 TEST_CASE_METHOD(Fixture, "After a stop of two seconds one frame is stale and the next shows now") {
   load();
   std::int64_t t = 0;
-  for (int i = 0; i < 20; ++i, t += kFrame.count()) hear(t), frame(t);
+  for (int i = 0; i < 20; ++i, t += kFrame.count()) receive(t), frame(t);
   t += 2'000'000'000;
   CHECK(frame(t).state == node_health_t::STALE);
   t += kFrame.count();
-  hear(t);
+  receive(t);
   const Frame f = frame(t);
   CHECK(f.state == node_health_t::RUNNING);
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t)).margin(0.01));
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "A contact flashes in the first frame that is presented at or after it, and is reported once") {
+                 "A contact flashes in the first frame presented at or after it, and is reported once") {
   load();
-  for (int i = 0; i < 10; ++i) hear(i * kFrame.count()), frame(i * kFrame.count());
+  for (int i = 0; i < 10; ++i) receive(i * kFrame.count()), frame(i * kFrame.count());
   const std::int64_t t = 10 * kFrame.count();
-  hear(t);
+  receive(t);
   composer.push(event_at(t - 1'000'000, 71), sync::host_time(t + kBegan_ns));
   composer.push(event_at(t + 3'900'000, 72),
-                sync::host_time(t + kBegan_ns));  // within the time that drawing takes
+                sync::host_time(t + kBegan_ns));  // within the drawing time
   composer.push(event_at(t + 4'100'000, 73), sync::host_time(t + kBegan_ns));
   const Frame f = frame(t);
   CHECK_FALSE(f.list.glows.empty());
@@ -174,14 +183,14 @@ TEST_CASE_METHOD(Fixture,
 
 TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn flashes in the same frame") {
   load();
-  for (int i = 0; i < 10; ++i) hear(i * kFrame.count()), frame(i * kFrame.count());
+  for (int i = 0; i < 10; ++i) receive(i * kFrame.count()), frame(i * kFrame.count());
   const std::int64_t t = 10 * kFrame.count();
   const Frame f =
       frame(t, [&] { composer.push(event_at(t + 1'000'000, 71), sync::host_time(t + 2'000'000 + kBegan_ns)); });
   CHECK_FALSE(f.list.glows.empty());
   REQUIRE(reports.count(71) == 1);
   CHECK(reports[71].presented_ns - reports[71].scheduled_ns == 3'000'000);
-  SECTION("and its flash is no older than the frame") {
+  SECTION("and its flash is not older than the frame") {
     const Frame later = frame(t + kFrame.count());
     REQUIRE(later.list.glows.size() == f.list.glows.size());
     CHECK(f.list.glows[0].centre.w() == 0);
@@ -191,14 +200,14 @@ TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn fl
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "With a delay an event is shown in the frame nearest to its instant: at most half a frame off") {
+                 "With a delay an event is shown in the frame nearest to its instant, at most half a frame off") {
   load();
   delay = milliseconds(GENERATE(9, 17, 30, 45));
   std::mt19937 random(7);
   std::int64_t id = 100;
   for (int i = 0; i < 400; ++i) {
     const std::int64_t t = i * kFrame.count();
-    hear(t);
+    receive(t);
     if (i > 10 && i < 390)
       composer.push(event_at(t - static_cast<std::int64_t>(random() % 5'000'000), ++id),
                     sync::host_time(t + kBegan_ns));
@@ -211,7 +220,7 @@ TEST_CASE_METHOD(Fixture,
 
 TEST_CASE_METHOD(
     Fixture,
-    "With few pictures a second an event is shown in the first one at or after its instant, and none is dropped") {
+    "At a low picture rate an event is shown in the first picture at or after its instant, and none is dropped") {
   load();
   const int every = GENERATE(6, 30);  // ticks: 10 and 2 pictures a second
   delay = milliseconds(GENERATE(0, 40));
@@ -222,7 +231,7 @@ TEST_CASE_METHOD(
   std::vector<std::int64_t> fences;
   for (int i = 0; i < 600; ++i) {
     const std::int64_t t = i * kFrame.count();
-    hear(t);
+    receive(t);
     if (i > 60 && i < 500) {
       due[++id] = t - static_cast<std::int64_t>(random() % 1'000'000) + delay.count() + kBegan_ns;
       composer.push(event_at(due[id] - delay.count() - kBegan_ns, id), sync::host_time(t + kBegan_ns));
@@ -238,28 +247,28 @@ TEST_CASE_METHOD(
   }
 }
 
-TEST_CASE_METHOD(Fixture, "A scene's settings of what is late hold for its events") {
+TEST_CASE_METHOD(Fixture, "The lateness settings of a new scene apply to its events") {
   load();
   scene_t scene = test::empty_scene();
   Settings settings;
   settings.late_after_s = 0.01, settings.drop_after_s = 0.1;
   composer.load(scene, {}, settings);
-  hear(0);
+  receive(0);
   frame(0);
-  hear(1'000'000'000);
+  receive(1'000'000'000);
   composer.push(event_at(1'000'000'000 - 20'000'000, 1), sync::host_time(1'000'000'000 + kBegan_ns));
   composer.push(event_at(1'000'000'000 - 120'000'000, 2), sync::host_time(1'000'000'000 + kBegan_ns));
   frame(1'000'000'000);
   CHECK(outcomes == std::map<std::int64_t, int>{{1, presentation_t::LATE}, {2, presentation_t::DROPPED_LATE}});
 }
 
-TEST_CASE_METHOD(Fixture, "Events of a stall are shown late or dropped, each reported") {
+TEST_CASE_METHOD(Fixture, "Events during a stall are shown late or dropped, each with a report") {
   load();
-  hear(0);
+  receive(0);
   frame(0);
   for (std::int64_t i = 1; i <= 20; ++i)
     composer.push(event_at(i * 100'000'000, i), sync::host_time(2'000'000'000 + kBegan_ns));
-  hear(2'000'000'000);
+  receive(2'000'000'000);
   const Frame f = frame(2'000'000'000);
   CHECK_FALSE(f.list.glows.empty());
   REQUIRE(outcomes.size() == 20);
@@ -269,7 +278,7 @@ TEST_CASE_METHOD(Fixture, "Events of a stall are shown late or dropped, each rep
   CHECK(outcomes[20] == presentation_t::PRESENTED);
 }
 
-TEST_CASE_METHOD(Fixture, "Without a scene an event waits, and is dropped when it is too late to show it") {
+TEST_CASE_METHOD(Fixture, "Without a scene an event waits, and is dropped when it is too late") {
   composer.push(event_at(0, 5), sync::host_time(kBegan_ns));
   frame(10'000'000);
   CHECK(outcomes.empty());

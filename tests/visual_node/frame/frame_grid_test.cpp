@@ -6,19 +6,19 @@
 using namespace tactus;
 using namespace tactus::visual;
 
-TEST_CASE("A frame is due at as many periods as its number says, to a nanosecond after a hundred days") {
+TEST_CASE("Frame k is due at k periods, to a nanosecond after a hundred days") {
   for (const double rate_Hz : {60.0, 59.94, 120.0, 7.0}) {
     const FrameGrid grid(rate_Hz);
     INFO(rate_Hz);
     CHECK(sync::to_ns(grid.due(0)) == 0);
     const std::int64_t many = std::llround(100 * 86400 * rate_Hz);
-    // The period is a double, good to 2^-53 of itself: so is the product, and it is rounded to 1 ns.
+    // The period is a double, accurate to 2^-53 relative; so is the product, which is rounded to 1 ns.
     const long double exact = static_cast<long double>(many) * 1e9L / static_cast<long double>(rate_Hz);
     CHECK(std::abs(static_cast<double>(static_cast<long double>(sync::to_ns(grid.due(many))) - exact)) <= 3);
   }
 }
 
-TEST_CASE("The first frame due at or after an instant is due then, and the one before it is not") {
+TEST_CASE("The first frame due at or after an instant is due then, and the previous one is not") {
   std::mt19937_64 random(3);
   for (const double rate_Hz : {60.0, 59.94, 240.0, 1.0}) {
     const FrameGrid grid(rate_Hz);
@@ -32,19 +32,19 @@ TEST_CASE("The first frame due at or after an instant is due then, and the one b
   }
 }
 
-TEST_CASE("No frame is picked twice and none after a later one, however the wall's readiness trembles") {
+TEST_CASE("No frame is picked twice or after a later one when the readiness of a wall jitters") {
   std::mt19937 random(4);
   for (int trial = 0; trial < 50; ++trial) {
     FrameGrid grid(60);
     std::int64_t last = -1, t = 1'000'000'000;
     for (int i = 0; i < 500; ++i) {
-      if (i > 0) t = std::max(t, sync::to_ns(grid.due(last)));  // it was held until then
+      if (i > 0) t = std::max(t, sync::to_ns(grid.due(last)));  // the picture was held until then
       t += static_cast<std::int64_t>(random() % 40'000'000);    // up to two and a half frames
       const std::int64_t tremble = static_cast<std::int64_t>(random() % 30'000'000) - 15'000'000;
       const RoomTime ready = room_time(t + tremble);
       const std::int64_t k = grid.pick(ready);
       REQUIRE(k > last);
-      // Nothing due before the picture is ready, and no later one than needed.
+      // The frame is not due before the picture is ready, nor later than necessary.
       REQUIRE(grid.due(k) >= ready);
       REQUIRE((k == grid.first_due_at_or_after(ready) || k == last + 1));
       last = k;
@@ -52,7 +52,7 @@ TEST_CASE("No frame is picked twice and none after a later one, however the wall
   }
 }
 
-TEST_CASE("A clock that is put back by more than some frames begins anew instead of standing still") {
+TEST_CASE("A clock that is put back by more than a few frames restarts the numbering") {
   FrameGrid grid(60);
   const std::int64_t far = grid.pick(room_time(100'000'000'000));
   CHECK(grid.pick(grid.due(far - 2)) == far + 1);

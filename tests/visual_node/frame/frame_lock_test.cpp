@@ -1,10 +1,18 @@
-// Walls that never talk: the same number is the same instant of the world and the same sample of the head.
+// Walls without communication: equal frame numbers show the same instant of the world and the same sample of the
+// head.
 #include "visual_node/frame/frame_lock.h"
 
 #include <catch2/catch.hpp>
 #include <memory>
 #include <queue>
 #include <random>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/frame_shown_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/playout_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 
@@ -23,7 +31,7 @@ struct Seen {
   std::int64_t world_ns, head_ns, due_ns;
 };
 
-// One wall: its own clock, its own time to draw, what it has heard.
+// One wall: its own clock, drawing time and received messages.
 struct Wall {
   Wall(std::int32_t clock, sync::Nanoseconds ahead_of_room, Settings settings, sync::Nanoseconds draws)
       : maps(kRun), ahead(ahead_of_room), draws(draws), lock({kRun, clock, &maps}, "visual", clock) {
@@ -49,12 +57,12 @@ struct Wall {
   std::optional<AgreedFrame> drawing;
 };
 
-// The bus and the walls on it, in steps of 0.1 ms of the room's clock.
+// A bus and its walls, simulated in steps of 0.1 ms of the room's clock.
 struct Room {
   std::mt19937 random{7};
   std::vector<std::unique_ptr<Wall>> walls;
   double lost = 0;
-  // Simulated time as sim_node's map tells it: sim_ns at host_ns, at this rate; it may change from step to step.
+  // Simulated time by the map of sim_node: sim_ns at host_ns, at this rate; the rate may change with every step.
   std::int64_t sim_ns = 0;
   double rate = 1;
 
@@ -70,7 +78,7 @@ struct Room {
       if (t % 1'000'000 == 0) {
         meanwhile(t);
         sim_ns += static_cast<std::int64_t>(1e6 * rate);
-        tell();
+        publish();
       }
       for (const auto& wall : walls) draw(*wall);
     }
@@ -80,7 +88,7 @@ struct Room {
   template <class Message>
   void send(Message m) {
     for (const auto& wall : walls)
-      if (arrives())  // on its way for 0.1 .. 1.5 ms
+      if (arrives())  // latency 0.1 .. 1.5 ms
         pending.emplace(t + 100'000 + static_cast<std::int64_t>(random() % 1'400'000),
                         [m, w = wall.get()](std::int64_t at) { w->lock.push(m, w->here(at)); });
   }
@@ -90,7 +98,7 @@ struct Room {
     h.seq = seq;
     return h;
   }
-  void tell() {
+  void publish() {
     const std::int64_t ms = t / 1'000'000;
     if (ms % 17 == 0) {
       world_state_t w{};
@@ -113,7 +121,7 @@ struct Room {
     for (; !pending.empty() && pending.begin()->first <= t; pending.erase(pending.begin()))
       pending.begin()->second(t);
   }
-  // As the loop does it: begin when it is best, draw, hold until due.
+  // As in the loop: begin at the best time, draw, hold until due.
   void draw(Wall& w) {
     if (t < w.busy_until_ns) return;
     const auto room_of = [&](sync::HostTime here) { return sync::to_ns(here - w.ahead); };
@@ -127,7 +135,7 @@ struct Room {
       w.lock.drawn(w.draws + jitter, microseconds(800));
       const std::int64_t ready = t + (w.draws + jitter + microseconds(800)).count();
       w.busy_until_ns = std::max(ready, room_of(w.drawing->here));
-      // Never shown before it is due, nor held for longer than a period.
+      // A frame is never shown before it is due, nor held for longer than a period.
       held_ns = std::max(held_ns, w.busy_until_ns - ready);
       return;
     }
@@ -145,8 +153,8 @@ struct Room {
   std::multimap<std::int64_t, std::function<void(std::int64_t)>> pending;
 };
 
-// Frames that both have shown, and of those the share with the same instant and the same head; the first second is
-// left out.
+// Number of frames that both walls have shown, and the shares with the same instant and with the same head; without
+// the first second.
 struct Common {
   int frames = 0, world = 0, head = 0;
 };
@@ -163,7 +171,7 @@ Common common(const Wall& a, const Wall& b) {
 
 }  // namespace
 
-TEST_CASE("Walls on hosts whose clocks differ draw each frame of one instant and one head, and none is left out") {
+TEST_CASE("Walls on hosts with different clocks draw each frame with one instant and one head, and skip none") {
   Room room;
   room.add(kSimClock, {}, milliseconds(5));
   room.add(2, std::chrono::hours(1), milliseconds(9));
@@ -179,7 +187,7 @@ TEST_CASE("Walls on hosts whose clocks differ draw each frame of one instant and
   CHECK(room.held_ns < 4'000'000 + 16'700'000);
 }
 
-TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, of the same instant as the others") {
+TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, with the instant of the others") {
   Settings settings;
   settings.frame_lag_s = 0.12;  // longer than it draws: then the head is the same too
   Room room;
@@ -191,10 +199,10 @@ TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, of t
   CHECK(c.frames < 95);
   CHECK(c.world == c.frames);
   CHECK(c.head == c.frames);
-  CHECK(room.walls[0]->seen.size() > 590);  // the fast one misses nothing
+  CHECK(room.walls[0]->seen.size() > 590);  // the fast wall misses no frame
 }
 
-TEST_CASE("With a lag shorter than it draws, the slow wall has the same instant and an older head, and says so") {
+TEST_CASE("With a lag shorter than its drawing time, the slow wall has the same instant and an older head, and reports it") {
   Room room;
   room.add(kSimClock, {}, milliseconds(5));
   Wall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
@@ -207,7 +215,7 @@ TEST_CASE("With a lag shorter than it draws, the slow wall has the same instant 
   CHECK(room.walls[0]->lock.note(room.walls[0]->here(room.t)).empty());
 }
 
-TEST_CASE("While the simulation slows down, stands still and goes on, the walls stay together") {
+TEST_CASE("While the simulation slows down, pauses and resumes, the walls stay together") {
   Room room;
   room.add(kSimClock, {}, milliseconds(4));
   room.add(2, milliseconds(777), milliseconds(11));
@@ -225,7 +233,7 @@ TEST_CASE("While the simulation slows down, stands still and goes on, the walls 
 }
 
 TEST_CASE(
-    "A delay of presentation that is asked for and changed moves all walls alike, and the world not the head") {
+    "A changed presentation delay moves all walls alike, and moves the world but not the head") {
   Room room;
   Wall& a = room.add(kSimClock, {}, milliseconds(4));
   Wall& b = room.add(2, milliseconds(777), milliseconds(11));
@@ -237,28 +245,28 @@ TEST_CASE(
   CHECK(c.frames >= 298);
   CHECK(c.world == c.frames);
   const Seen& last = a.seen.rbegin()->second;
-  // The world began at kBegin and runs at 1: it is told at the end of each ms, so that it is 1 ms ahead.
+  // The world began at kBegin at rate 1. It is published at the end of each ms, so it is 1 ms ahead.
   CHECK(last.due_ns - kBegin_ns - last.world_ns == 15'000'000 - 1'000'000);
-  // The head is the newest of 1 kHz that is older than the lag.
+  // The head is the newest sample of 1 kHz that is older than the lag.
   CHECK(last.due_ns - last.head_ns >= 25'000'000);
   CHECK(last.due_ns - last.head_ns < 26'000'000);
 }
 
-TEST_CASE("Of a hundred messages one is lost: 99 of 100 frames are the same all the same") {
+TEST_CASE("With one message in a hundred lost, 99 of 100 frames are the same") {
   Room room;
-  room.lost = 0.005;  // on the way to either of two
+  room.lost = 0.005;  // for each of the two walls
   room.add(kSimClock, {}, milliseconds(4));
   room.add(2, milliseconds(777), milliseconds(11));
   room.run(21);
   const Common c = common(*room.walls[0], *room.walls[1]);
   CHECK(c.frames >= 1195);
-  // In real time every map tells the same line; a head is another when just the newest of 1 kHz is lost, or its
-  // border falls between: 1 % and three standard deviations of 1200 trials, 0.9 %.
+  // At real-time rate every map describes the same line. The head differs only when exactly the newest sample of
+  // 1 kHz is lost, or the border falls between: 1 % and three standard deviations of 1200 trials, 0.9 %.
   CHECK(c.world == c.frames);
   CHECK(c.head >= 0.981 * c.frames);
 }
 
-TEST_CASE("A slow wall holds nobody: the other's frames come as if it were alone") {
+TEST_CASE("A slow wall delays no other wall") {
   Room alone, beside;
   alone.add(kSimClock, {}, milliseconds(5));
   beside.add(kSimClock, {}, milliseconds(5));
@@ -267,9 +275,9 @@ TEST_CASE("A slow wall holds nobody: the other's frames come as if it were alone
   CHECK(alone.walls[0]->seen.size() == beside.walls[0]->seen.size());
 }
 
-TEST_CASE("Without a room, when it is off, and before sim_node is heard, there is no lock") {
+TEST_CASE("Without a room, with the lock off, and before the first message of sim_node, there is no lock") {
   sync::ClockMaps maps(kRun);
-  const auto locked = [&](const char* room, const char* mode, bool heard) {
+  const auto locked = [&](const char* room, const char* mode, bool received) {
     FrameLock lock({kRun, kSimClock, &maps}, "visual", 1);
     Settings s;
     s.room = room, s.frame_lock = mode;
@@ -278,7 +286,7 @@ TEST_CASE("Without a room, when it is off, and before sim_node is heard, there i
     w.header.run_id = kRun, w.header.clock = kSimClock, w.header.incarnation = 5,
     w.header.publish_time_ns = kBegin_ns;
     w.clock.host_ns = kBegin_ns, w.clock.rate = 1;
-    if (heard) lock.push(w, sync::host_time(kBegin_ns));
+    if (received) lock.push(w, sync::host_time(kBegin_ns));
     return lock.begin(sync::host_time(kBegin_ns + 50'000'000)).has_value();
   };
   CHECK(locked("cave4", "time", true));
@@ -288,7 +296,7 @@ TEST_CASE("Without a room, when it is off, and before sim_node is heard, there i
   CHECK_FALSE(locked("cave4", "time", false));
 }
 
-TEST_CASE("What is told of a frame is its number, when it is due, its instant and its head") {
+TEST_CASE("FRAME_SHOWN gives the number, due time, instant and head of a frame") {
   Room room;
   Wall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
@@ -302,16 +310,16 @@ TEST_CASE("What is told of a frame is its number, when it is due, its instant an
   CHECK(m.stage == frame_shown_t::SHOWN);
 }
 
-TEST_CASE("A wall that stood still knows that it has not yet heard what its next frame depends on") {
+TEST_CASE("After a stall a wall detects that the inputs of its next frame are missing") {
   Room room;
   Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
-  CHECK(wall.lock.heard_enough(wall.here(room.t)));  // there is no lock before anybody has spoken
+  CHECK(wall.lock.inputs_complete(wall.here(room.t)));  // no lock before the first message
   room.run(1);
-  CHECK(wall.lock.heard_enough(wall.here(room.t)));
-  // Head and clock are those told frame_lag before a frame is due, which is as long as drawing takes after it is
-  // begun.
-  CHECK(wall.lock.heard_enough(wall.here(room.t) + milliseconds(5)));
-  CHECK_FALSE(wall.lock.heard_enough(wall.here(room.t) + milliseconds(200)));
-  room.run(0.205);  // the world tells each 17 ms, the last time 5 ms ago
-  CHECK(wall.lock.heard_enough(wall.here(room.t)));
+  CHECK(wall.lock.inputs_complete(wall.here(room.t)));
+  // Head and clock are those published frame_lag before the due time of the frame, which comes one drawing time
+  // after its begin.
+  CHECK(wall.lock.inputs_complete(wall.here(room.t) + milliseconds(5)));
+  CHECK_FALSE(wall.lock.inputs_complete(wall.here(room.t) + milliseconds(200)));
+  room.run(0.205);  // the world publishes every 17 ms, the last time 5 ms ago
+  CHECK(wall.lock.inputs_complete(wall.here(room.t)));
 }

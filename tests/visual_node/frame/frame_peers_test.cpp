@@ -1,6 +1,7 @@
 #include "visual_node/frame/frame_peers.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/frame_shown_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -16,9 +17,9 @@ struct Room {
   void drawn(std::int64_t wall, std::int64_t frame) {
     frame_shown_t m{};
     m.header.incarnation = wall, m.frame = frame;
-    peers.hear(m, kOwn, now);
+    peers.on_message(m, kOwn, now);
   }
-  // One frame of ours, of which `wall` has drawn `of_it`.
+  // One frame of this wall, of which `wall` has drawn `of_it`.
   bool frame(std::int64_t k, std::int64_t wall, std::int64_t of_it) {
     drawn(wall, of_it);
     const bool ready = peers.ready(k, now);
@@ -30,14 +31,14 @@ struct Room {
 
 }  // namespace
 
-TEST_CASE_METHOD(Room, "Alone nobody is waited for, nor for the echo of oneself") {
+TEST_CASE_METHOD(Room, "A single wall waits for no other wall, nor for its own messages") {
   CHECK(peers.ready(5, now));
   drawn(kOwn, 1);
   CHECK(peers.ready(5, now));
   CHECK(peers.present(now) == 0);
 }
 
-TEST_CASE_METHOD(Room, "A frame is ready when every wall that is there has drawn it or a later one") {
+TEST_CASE_METHOD(Room, "A frame is ready when every present wall has drawn it or a later one") {
   drawn(kLeft, 5);
   drawn(kRight, 4);
   CHECK_FALSE(peers.ready(5, now));
@@ -45,7 +46,7 @@ TEST_CASE_METHOD(Room, "A frame is ready when every wall that is there has drawn
   CHECK(peers.ready(5, now));
 }
 
-TEST_CASE_METHOD(Room, "A wall that was not heard of for a second is not there") {
+TEST_CASE_METHOD(Room, "A wall without messages for a second is absent") {
   drawn(kLeft, 4);
   CHECK_FALSE(peers.ready(5, now + milliseconds(1000)));
   CHECK(peers.ready(5, now + milliseconds(1001)));
@@ -53,27 +54,27 @@ TEST_CASE_METHOD(Room, "A wall that was not heard of for a second is not there")
 }
 
 TEST_CASE_METHOD(
-    Room, "A wall that is always late is given up after a quarter of a second and taken back when it keeps up") {
+    Room, "A wall that is always late is ignored after a quarter of a second and returns when it keeps up") {
   std::int64_t k = 100;
   int waited = 0;
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);
   CHECK(waited == FramePeers::kGiveUp);
-  CHECK(peers.not_waited_for(now) == 1);
+  CHECK(peers.ignored(now) == 1);
   for (int i = 0; i < FramePeers::kReturn; ++i, ++k) CHECK(frame(k, kLeft, k));
-  CHECK(peers.not_waited_for(now) == 0);
+  CHECK(peers.ignored(now) == 0);
   CHECK_FALSE(frame(k, kLeft, k - 1));
 }
 
-TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is given up too, one that misses every third frame is not") {
+TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored too, a wall that misses every third frame is not") {
   std::int64_t k = 100;
   for (int i = 0; i < 60; ++i, ++k) frame(k, kLeft, k / 6 * 6);
-  CHECK(peers.not_waited_for(now) == 1);
+  CHECK(peers.ignored(now) == 1);
   for (int i = 0; i < 300; ++i, ++k) frame(k, kRight, k % 3 == 0 ? k - 1 : k);
-  CHECK(peers.not_waited_for(now) == 0);  // the left one is gone
+  CHECK(peers.ignored(now) == 0);  // the left wall is absent
   CHECK(peers.present(now) == 1);
 }
 
-TEST_CASE_METHOD(Room, "A flood of walls is kept within bounds") {
+TEST_CASE_METHOD(Room, "A flood of walls is bounded") {
   for (std::int64_t wall = 10; wall < 10'000; ++wall) drawn(wall, 1);
   CHECK(peers.present(now) == static_cast<int>(FramePeers::kMax));
 }

@@ -1,6 +1,7 @@
 #include "visual_node/frame/head_samples.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
 
@@ -23,41 +24,41 @@ tool_state_t head(std::int64_t publish_ns, double x_m, double speed_m_s = 0, dou
 
 }  // namespace
 
-TEST_CASE("Of the head the newest sample that was told by then is taken, whatever came since") {
+TEST_CASE("The newest head sample that was published by a time is used, whatever came later") {
   HeadSamples samples;
-  CHECK_FALSE(samples.told_by(kBegin));
+  CHECK_FALSE(samples.published_by(kBegin));
   for (int i = 0; i < 100; ++i) samples.push(head(500 + i, i), kBegin + milliseconds(i));
-  CHECK_FALSE(samples.told_by(kBegin - milliseconds(1)));
-  CHECK(samples.told_by(kBegin + milliseconds(30))->publish_ns == 530);
-  CHECK(samples.told_by(kBegin + milliseconds(31) - sync::Nanoseconds(1))->publish_ns == 530);
-  CHECK(samples.told_by(kBegin + milliseconds(5000))->publish_ns == 599);
+  CHECK_FALSE(samples.published_by(kBegin - milliseconds(1)));
+  CHECK(samples.published_by(kBegin + milliseconds(30))->publish_ns == 530);
+  CHECK(samples.published_by(kBegin + milliseconds(31) - sync::Nanoseconds(1))->publish_ns == 530);
+  CHECK(samples.published_by(kBegin + milliseconds(5000))->publish_ns == 599);
 }
 
-TEST_CASE("A sample is carried on with its velocity and its spin, for a bounded time") {
+TEST_CASE("A sample is extrapolated with its velocity and spin, for a bounded time") {
   HeadSamples samples;
   samples.push(head(1, 2, 0.5, 1.5), kBegin);
-  const HeadSample s = *samples.told_by(kBegin);
-  CHECK(carried(s, kBegin).status == sync::SampleStatus::kExact);
-  const auto soon = carried(s, kBegin + milliseconds(20));
+  const HeadSample s = *samples.published_by(kBegin);
+  CHECK(extrapolate(s, kBegin).status == sync::SampleStatus::kExact);
+  const auto soon = extrapolate(s, kBegin + milliseconds(20));
   CHECK(soon.status == sync::SampleStatus::kExtrapolated);
   CHECK(soon.value.position.x() == Approx(2.01).margin(1e-9));
   CHECK(soon.value.orientation.angularDistance(Eigen::Quaterniond::Identity()) == Approx(0.03).margin(1e-7));
-  const auto later = carried(s, kBegin + milliseconds(150));
+  const auto later = extrapolate(s, kBegin + milliseconds(150));
   CHECK(later.status == sync::SampleStatus::kHeld);
   CHECK(later.value.position.x() == Approx(2.025).margin(1e-9));
-  CHECK(carried(s, kBegin + milliseconds(201)).status == sync::SampleStatus::kStale);
+  CHECK(extrapolate(s, kBegin + milliseconds(201)).status == sync::SampleStatus::kStale);
 }
 
-TEST_CASE("Another process that holds the head, or a clock put back, ends what was known. Memory is bounded") {
+TEST_CASE("A new process for the head, or a clock put back, clears the samples, and memory is bounded") {
   HeadSamples samples;
   for (int i = 0; i < 10'000; ++i) samples.push(head(i, 0), kBegin + sync::Nanoseconds(i * 1000));
   CHECK_FALSE(
-      samples.told_by(kBegin + sync::Nanoseconds(1000 * (10'000 - 1 - static_cast<int>(HeadSamples::kMax)))));
-  CHECK(samples.told_by(kBegin + milliseconds(9)));
+      samples.published_by(kBegin + sync::Nanoseconds(1000 * (10'000 - 1 - static_cast<int>(HeadSamples::kMax)))));
+  CHECK(samples.published_by(kBegin + milliseconds(9)));
   samples.push(head(7, 0), kBegin - milliseconds(2000));
-  CHECK(samples.told_by(kBegin)->publish_ns == 7);
+  CHECK(samples.published_by(kBegin)->publish_ns == 7);
   tool_state_t other = head(8, 0);
   other.header.incarnation = 5;
   samples.push(other, kBegin - milliseconds(3000));
-  CHECK(samples.told_by(kBegin)->publish_ns == 8);
+  CHECK(samples.published_by(kBegin)->publish_ns == 8);
 }

@@ -1,5 +1,8 @@
 // The view follows a tool named "head".
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/pointing.h"
 #include "tests/visual_node/support/test_scene.h"
@@ -13,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kRun = 3;
 
-// A ball 2 m ahead of the scene's camera, which stands 1 m high and looks along +y; and a head.
+// A ball 2 m ahead of the scene's camera, which is 1 m high and looks along +y; and a head.
 scene_t scene_with_head() {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 2, 1}), shape_def_t::SPHERE, {0.1, 0, 0});
@@ -45,14 +48,14 @@ struct Seen {
   Frame frame(sync::Nanoseconds delay = {}, sync::Nanoseconds view_delay = {}) {
     return composer.frame(now, 0, delay, now, view_delay);
   }
-  // A head that is held still for so long.
+  // Publishes a head at rest for a time t.
   void hold(const Eigen::Vector3d& position, double yaw_rad, milliseconds t = milliseconds(100)) {
     for (const sync::HostTime end = now + t; now < end; now += milliseconds(1))
       composer.push(head_at(now, position, yaw_rad), now);
   }
 };
 
-// Where a point of the world is in the picture, -1 .. 1; x to the right.
+// Place of a world point in the picture, -1 .. 1; x to the right.
 Eigen::Vector2f seen_at(const Frame& f, const Eigen::Vector3f& point) {
   const Eigen::Vector4f clip = f.list.camera.clip_from_world() * point.homogeneous();
   return clip.head<2>() / clip.w();
@@ -61,36 +64,36 @@ const Eigen::Vector3f kBall{0, 2, 1};
 
 }  // namespace
 
-TEST_CASE_METHOD(Seen, "Until somebody holds the head the view is the scene's, and the health says so") {
+TEST_CASE_METHOD(Seen, "Without a tracked head the view is the scene's, and the health says so") {
   const Frame f = frame();
   CHECK(seen_at(f, kBall).norm() < 1e-5f);
   CHECK(f.note.find("no head yet") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Seen, "The eye is where the head is, and looks as the scene's camera does, turned by the head") {
+TEST_CASE_METHOD(Seen, "The eye is at the head, with the direction of the scene's camera turned by the head") {
   hold({0, 0.5, 1}, 0);
   Frame f = frame();
   CHECK((f.list.camera.eye - Eigen::Vector3f(0, 0.5f, 1)).norm() < 1e-5f);
   CHECK(seen_at(f, kBall).norm() < 1e-5f);  // straight ahead, only nearer
   CHECK(f.note.find("head") == std::string::npos);
-  hold({-2, 2, 1}, -std::numbers::pi / 2);  // from the left side, turned to the right
+  hold({-2, 2, 1}, -std::numbers::pi / 2);  // on the left side, turned to the right
   f = frame();
   CHECK(seen_at(f, kBall).norm() < 1e-5f);
-  hold({-2, 2, 1}, -std::numbers::pi / 2 + 0.1);  // turned to the left: what was ahead is to the right
+  hold({-2, 2, 1}, -std::numbers::pi / 2 + 0.1);  // turned to the left: the point ahead moves to the right
   CHECK(seen_at(frame(), kBall).x() > 0.05f);
 }
 
-TEST_CASE_METHOD(Seen, "Nobody sees his own head, and its light and its bodies are the scene's") {
+TEST_CASE_METHOD(Seen, "The user's own head is not drawn, and its light and bodies are those of the scene") {
   const std::size_t before = frame().list.instances.size();
   hold({0, 0.5, 1}, 0);
   CHECK(frame().list.instances.size() == before);
 }
 
-TEST_CASE_METHOD(Seen, "A head that is lost leaves the view where it was, and the health says so for as long") {
+TEST_CASE_METHOD(Seen, "A lost head keeps the view, and the health says so until it returns") {
   hold({0, 0.5, 1}, 0.2);
   const Frame there = frame();
   now += milliseconds(100);
-  CHECK(frame().note.find("head") == std::string::npos);  // a stutter is no loss
+  CHECK(frame().note.find("head") == std::string::npos);  // a stutter is not a loss
   for (int i = 0; i < 3; ++i) {
     now += milliseconds(1000);
     const Frame f = frame();
@@ -102,7 +105,7 @@ TEST_CASE_METHOD(Seen, "A head that is lost leaves the view where it was, and th
   CHECK(frame().list.camera.eye.y() == Approx(0.6f));
 }
 
-TEST_CASE_METHOD(Seen, "A profile delays the view, a policy of presentation does not") {
+TEST_CASE_METHOD(Seen, "A profile delays the view, a playout policy does not") {
   hold({0, 0, 1}, 0);
   hold({0, 1, 1}, 0, milliseconds(60));
   CHECK(frame(milliseconds(80)).list.camera.eye.y() == Approx(1).margin(1e-5));
@@ -112,7 +115,7 @@ TEST_CASE_METHOD(Seen, "A profile delays the view, a policy of presentation does
 TEST_CASE("The ear keeps its place beside the eye") {
   scene_t scene = scene_with_head();
   scene.listener = scene.camera;
-  scene.listener.position_m.y += 0.1;  // 0.1 m ahead of it
+  scene.listener.position_m.y += 0.1;  // 0.1 m ahead of the eye
   const Eigen::Isometry3d view = view_of(
       scene, {5, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitZ())));
   CHECK((view.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitX()).norm() <

@@ -20,7 +20,7 @@ std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay, int width, int
 }
 }  // namespace
 
-TEST_CASE("A marker is read back from the picture, also when compression has disturbed it") {
+TEST_CASE("A marker is read back from the picture, also after compression noise") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> noise(-60, 60);
   for (int trial = 0; trial < 300; ++trial) {
@@ -44,7 +44,7 @@ TEST_CASE("A marker is read back from the picture, also when compression has dis
   }
 }
 
-TEST_CASE("A marker with any one or two cells turned is refused") {
+TEST_CASE("A marker with any one or two inverted cells is rejected") {
   const std::vector<bool> good = encode_marker({123456, 0xdeadbeef});
   REQUIRE(decode_marker(good));
   for (std::size_t a = 0; a < good.size(); ++a)
@@ -56,7 +56,7 @@ TEST_CASE("A marker with any one or two cells turned is refused") {
     }
 }
 
-TEST_CASE("Every letter of the words in a picture has a shape of its own") {
+TEST_CASE("Every letter of the status words has a different glyph") {
   for (char a = '!'; a <= '~'; ++a)
     for (char b = '!'; b < a; ++b)
       if (glyph(a) && glyph(b)) CHECK_FALSE(std::equal(glyph(a), glyph(a) + kGlyphHeight, glyph(b)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/media_clock_t.hpp>
 
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/marker.h"
@@ -27,7 +28,7 @@ std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay) {
 }  // namespace
 
 TEST_CASE(
-    "The samples that a frame shows are read back beside its events, also when compression has disturbed it") {
+    "The samples of a frame are read back beside its events, also after compression noise") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> noise(-60, 60);
   for (int trial = 0; trial < 200; ++trial) {
@@ -54,7 +55,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A row of events is no row of motion, nor the other way round") {
+TEST_CASE("A row of events is not read as a row of motion, nor the reverse") {
   std::vector<Rect> overlay;
   append_marker(overlay, 5, std::vector<std::int64_t>(kMarkerRows + 4, 9), kHeight);
   auto luma = paint(overlay);
@@ -63,10 +64,10 @@ TEST_CASE("A row of events is no row of motion, nor the other way round") {
   append_motion_marker(overlay, 5, std::vector<PoseSample>(9), kHeight);
   luma = paint(overlay);
   for (int row = 0; row < 2 * kMarkerRows; ++row) CHECK_FALSE(read_marker(luma, kWidth, kHeight, row));
-  CHECK_FALSE(read_motion_marker(luma, kWidth, kHeight, kMotionRows));  // no more rows than are told
+  CHECK_FALSE(read_motion_marker(luma, kWidth, kHeight, kMotionRows));  // no further rows than samples
 }
 
-TEST_CASE("The parts of a frame have clocks of their own, with the index of the video") {
+TEST_CASE("The stages of a frame have their own clocks, with the index of the video") {
   media_clock_t fence{};
   fence.medium = "video.mp4", fence.index = 12, fence.host_time_ns = 300;
   const auto pairs = stages_of(fence, {sync::host_time(100), sync::host_time(200), sync::host_time(400)});

@@ -1,5 +1,8 @@
-// The steps of the quality ladder and a commanded resolution, in pictures.
+// The steps of the quality ladder and a degraded resolution, compared as pictures.
 #include <catch2/catch.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 #include "visual_node/frame/marker.h"
@@ -20,7 +23,7 @@ scene_t ball_over_floor() {
   return scene;
 }
 
-// In the middle of the picture, of half its height.
+// A flash in the middle of the picture, half as high as the picture.
 Glow flash() {
   Glow glow;
   glow.centre << 0, 0, 0, 0.5f;
@@ -43,21 +46,21 @@ TEST_CASE("Every step shows the same picture, only coarser, and the last one wit
   const auto i = GENERATE(range<std::size_t>(0, 4));
   const Image image = render(scene, {}, {}, {}, step(i));
   CHECK((image.rgba == full.rgba) == (i == 0));
-  // Away from edges the same light; the ball is at x = 0.3 and casts its shadow at 0.95.
+  // The same light away from edges; the ball is at x = 0.3 and casts its shadow at 0.95.
   for (const double x : {-0.6, -0.3, 1.6}) CHECK(floor_at(image, x) == Approx(floor_at(full, x)).margin(2));
   REQUIRE(floor_at(full, 0.95) == 0);
   if (step(i).shadow_divisor > 0)
     CHECK(floor_at(image, 0.95) == 0);
   else
     CHECK(floor_at(image, 0.95) > 20);
-  // No more of it differs than lies at edges, or in the shadow that is missing.
+  // Only pixels at edges, or in the missing shadow, differ.
   int different = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) different += (image.at(x, y) - full.at(x, y)).cwiseAbs().maxCoeff() > 12;
   CHECK(different < kWidth * kHeight / 50);
 }
 
-TEST_CASE("Marker and words keep each of their pixels, at every step and resolution") {
+TEST_CASE("Marker and text keep each of their pixels at every step and resolution") {
   std::vector<Rect> overlay;
   append_marker(overlay, 4711, std::vector<std::int64_t>{17}, kHeight);
   const Image full = render(ball_over_floor(), {}, overlay);
@@ -69,7 +72,7 @@ TEST_CASE("Marker and words keep each of their pixels, at every step and resolut
   }
 }
 
-TEST_CASE("A flash is as sharp in every step, and as coarse as the picture where a profile wants that") {
+TEST_CASE("A flash is equally sharp in every step, and as coarse as the picture when a profile degrades it") {
   display();
   Renderer renderer(kWidth, kHeight, 64);
   DrawList list;
@@ -93,7 +96,7 @@ TEST_CASE("A flash is as sharp in every step, and as coarse as the picture where
   }
 }
 
-TEST_CASE("Scaled up, a picture has its own light up to its last pixel, whatever lay beside it before") {
+TEST_CASE("A scaled picture has its own light up to its last pixel, regardless of earlier content beside it") {
   display();
   scene_t scene = floor_from_above(2);  // fills the picture, on a dark background
   scene.ambient = grey(1);
@@ -125,7 +128,7 @@ TEST_CASE("Warming up changes no picture") {
   CHECK(draw(renderer, list, step(1)).rgba == before.rgba);
 }
 
-TEST_CASE("A resolution is a factor, and never makes a step better") {
+TEST_CASE("A resolution is a factor, and never improves a step") {
   CHECK(degraded(step(2), 0) == step(2));
   CHECK(degraded(step(2), 1) == step(2));
   CHECK(degraded(step(0), 0.25).scale == 0.25);

@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/header_t.hpp>
+#include <tactus/sim_clock_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -33,17 +36,17 @@ clock_map_t between(std::int32_t of, std::int32_t to, std::int64_t offset_ns, do
 
 }  // namespace
 
-TEST_CASE("On sim_node's own host the room's clock is this one") {
+TEST_CASE("On the host of sim_node the room's clock is the host clock") {
   RoomClockReader reader({kRun, kSim});
   CHECK_FALSE(reader.known());
-  reader.hear(stamp(5'000'000'000), map_of(1, 5'000'000'000), sync::host_time(5'000'300'000));
+  reader.on_message(stamp(5'000'000'000), map_of(1, 5'000'000'000), sync::host_time(5'000'300'000));
   const sync::HostTime now = sync::host_time(6'000'000'000);
   CHECK(reader.mapped(now));
   CHECK(sync::to_ns(reader.room(now, now)) == 6'000'000'000);
   CHECK(reader.here(room_time(123), now) == sync::host_time(123));
 }
 
-TEST_CASE("On another host it is read through the map of the two clocks, there and back to 3 ns") {
+TEST_CASE("On another host the room's clock is read through the map of the clocks, both ways, to 3 ns") {
   std::mt19937_64 random(8);
   for (int trial = 0; trial < 200; ++trial) {
     const std::int64_t ahead = static_cast<std::int64_t>(random() % (2 * kHour_ns)) - kHour_ns;
@@ -53,61 +56,61 @@ TEST_CASE("On another host it is read through the map of the two clocks, there a
     maps.observe(other_way ? between(kOwn, kSim, -ahead, drift) : between(kSim, kOwn, ahead, drift), {});
     RoomClockReader reader({kRun, kOwn, &maps});
     const std::int64_t sent = 2 * kHour_ns + ahead;
-    reader.hear(stamp(sent), map_of(1, sent), sync::host_time(2 * kHour_ns + 2'000'000'000));
+    reader.on_message(stamp(sent), map_of(1, sent), sync::host_time(2 * kHour_ns + 2'000'000'000));
     const sync::HostTime now = sync::host_time(2 * kHour_ns + 2'100'000'000);
     INFO(ahead << " ns, " << drift);
     REQUIRE(reader.mapped(now));
     const RoomTime room = reader.room(now, now);
     // Two roundings of the map and one of the search.
     CHECK(std::abs((reader.here(room, now) - now).count()) <= 3);
-    // The drift counts from at_ns, two hours ago at most: 100 ppm of that.
+    // The drift counts from at_ns, at most two hours ago: 100 ppm of that.
     CHECK(std::abs(sync::to_ns(room) - (sync::to_ns(now) + ahead)) <= 1e-4 * 3 * kHour_ns);
   }
 }
 
-TEST_CASE("A clock that nobody maps is read by arrival, which is said") {
+TEST_CASE("A clock without a map is read by arrival, and this is reported") {
   RoomClockReader reader({kRun, kOwn});
   for (int i = 0; i < 100; ++i)
-    reader.hear(stamp(kHour_ns + i * 1'000'000), map_of(i, kHour_ns + i * 1'000'000),
+    reader.on_message(stamp(kHour_ns + i * 1'000'000), map_of(i, kHour_ns + i * 1'000'000),
                 sync::host_time(i * 1'000'000 + 200'000 + (i * 7919) % 500'000));
   const sync::HostTime now = sync::host_time(100'000'000);
   CHECK_FALSE(reader.mapped(now));
-  // Good to the smallest latency, here 0.2 ms, and the drift that two quartz clocks may have in 0.1 s.
+  // Accurate to the smallest latency, here 0.2 ms, and the drift of two quartz clocks in 0.1 s.
   CHECK(std::abs(sync::to_ns(reader.room(now, now)) - (kHour_ns + 100'000'000)) <= 200'000 + 100'000);
 }
 
-TEST_CASE("What was told by an instant does not depend on what came later, nor on the order of arrival") {
+TEST_CASE("The map published by a time does not depend on later maps or on the order of arrival") {
   std::mt19937 random(5);
   std::vector<int> order(200);
   for (int i = 0; i < 200; ++i) order[static_cast<std::size_t>(i)] = i;
   RoomClockReader straight({kRun, kSim}), shuffled({kRun, kSim});
-  const auto hear = [](RoomClockReader& reader, int i, int arrival_ms) {
+  const auto on_message = [](RoomClockReader& reader, int i, int arrival_ms) {
     const std::int64_t sent = 1'000'000'000 + i * 5'000'000;
-    reader.hear(stamp(sent), map_of(i * 5'000'000, sent, 1 + 1e-6 * i),
+    reader.on_message(stamp(sent), map_of(i * 5'000'000, sent, 1 + 1e-6 * i),
                 sync::host_time(sent) + milliseconds(arrival_ms));
   };
-  for (const int i : order) hear(straight, i, 0);
+  for (const int i : order) on_message(straight, i, 0);
   for (std::size_t i = 0; i + 4 <= order.size(); i += 4)  // pages overtake each other by a few
     std::shuffle(order.begin() + static_cast<std::ptrdiff_t>(i),
                  order.begin() + static_cast<std::ptrdiff_t>(i) + 4, random);
-  for (const int i : order) hear(shuffled, i, 20);
+  for (const int i : order) on_message(shuffled, i, 20);
   for (std::int64_t t = 1'000'000'000; t < 1'995'000'000; t += 777'777) {
-    const sim_clock_t a = straight.told_by(room_time(t)), b = shuffled.told_by(room_time(t));
+    const sim_clock_t a = straight.published_by(room_time(t)), b = shuffled.published_by(room_time(t));
     REQUIRE(a.sim_ns == b.sim_ns);
     REQUIRE(a.rate == b.rate);
     REQUIRE(a.host_ns <= t);
     REQUIRE(t - a.host_ns < 5'000'000);
   }
-  CHECK(straight.told_by(room_time(5)).sim_ns == 0);  // of nothing the first
+  CHECK(straight.published_by(room_time(5)).sim_ns == 0);  // before the first map: the first one
 }
 
-TEST_CASE("A stamp of a third host is read on the room's clock through its map, else by its arrival") {
+TEST_CASE("A stamp of a third host is read through its map, otherwise by its arrival") {
   sync::ClockMaps maps(kRun);
   maps.observe(between(kSim, kOwn, kHour_ns), {});
   maps.observe(between(kThird, kSim, 5'000'000'000), {});
   RoomClockReader reader({kRun, kOwn, &maps});
-  reader.hear(stamp(kHour_ns + 7), map_of(1, 7), sync::host_time(1'000'007));
-  // The map's line is rounded twice.
+  reader.on_message(stamp(kHour_ns + 7), map_of(1, 7), sync::host_time(1'000'007));
+  // The map is rounded twice.
   CHECK(std::abs(sync::to_ns(reader.sent(stamp(kHour_ns + 5'000'000'000, kThird), sync::host_time(1))) -
                  kHour_ns) <= 2);
   CHECK(reader.sent(stamp(kHour_ns + 99, kSim), sync::host_time(1)) == room_time(kHour_ns + 99));
@@ -115,21 +118,21 @@ TEST_CASE("A stamp of a third host is read on the room's clock through its map, 
         3);
 }
 
-TEST_CASE("Another simulation on the same host keeps the clock. One on another host brings its own") {
+TEST_CASE("Another simulation on the same host keeps the clock, one on another host changes it") {
   RoomClockReader reader({kRun, kSim});
-  reader.hear(stamp(1'000'000'000), map_of(1, 1'000'000'000), sync::host_time(1'000'000'000));
+  reader.on_message(stamp(1'000'000'000), map_of(1, 1'000'000'000), sync::host_time(1'000'000'000));
   CHECK(reader.clocks() == 1);
-  reader.hear(stamp(2'000'000'000, kSim, 10), map_of(0, 2'000'000'000), sync::host_time(2'000'000'000));
+  reader.on_message(stamp(2'000'000'000, kSim, 10), map_of(0, 2'000'000'000), sync::host_time(2'000'000'000));
   CHECK(reader.clocks() == 1);
-  CHECK(reader.told_by(room_time(1'500'000'000)).sim_ns == 0);  // what the first told is over
-  reader.hear(stamp(9'000'000'000, kThird, 12), map_of(0, 9'000'000'000), sync::host_time(3'000'000'000));
+  CHECK(reader.published_by(room_time(1'500'000'000)).sim_ns == 0);  // the maps of the first simulation are gone
+  reader.on_message(stamp(9'000'000'000, kThird, 12), map_of(0, 9'000'000'000), sync::host_time(3'000'000'000));
   CHECK(reader.clocks() == 2);
 }
 
-TEST_CASE("A flood of maps is kept within bounds") {
+TEST_CASE("A flood of maps is bounded") {
   RoomClockReader reader({kRun, kSim});
   for (int i = 0; i < 100'000; ++i)
-    reader.hear(stamp(1'000'000'000 + i * 1000), map_of(i, 1'000'000'000 + i * 1000),
+    reader.on_message(stamp(1'000'000'000 + i * 1000), map_of(i, 1'000'000'000 + i * 1000),
                 sync::host_time(1'000'000'000 + i * 1000));
-  CHECK(reader.told_by(room_time(0)).sim_ns == 100'000 - static_cast<int>(RoomClockReader::kMaps));
+  CHECK(reader.published_by(room_time(0)).sim_ns == 100'000 - static_cast<int>(RoomClockReader::kMaps));
 }

@@ -1,6 +1,12 @@
-// Lamps and materials, pixel by pixel, against the formulas that they are said to follow.
+// Lamps and materials: each pixel against the published formulas.
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/body_def_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/support/reference.h"
 
@@ -24,7 +30,7 @@ light_def_t lamp_of(int kind) {
   return lamp;
 }
 
-// Something before the eye, coloured in all ways at once, in the light of one lamp.
+// A shape before the eye with all colour components, in the light of one lamp.
 scene_t lit(int shape, int lamp) {
   scene_t scene = empty_scene();
   add_visual(scene, add_body(scene, {2, 0.1, 0}), shape, {0.7, 0.7, 0.7});
@@ -35,7 +41,7 @@ scene_t lit(int shape, int lamp) {
   v.emissive = to_vec3f({0.01, 0, 0.03});
   v.shininess = 20;
   scene.ambient = to_vec3f({0.06, 0.07, 0.08});
-  // Turned, so that no axis of the shape is one of the world.
+  // Rotated, so that no axis of the shape is a world axis.
   scene.visuals[0].shape.pose =
       to_pose(Eigen::Isometry3d(Eigen::AngleAxisd(0.5, Vector3d(1, 2, -1).normalized()) *
                                 Eigen::AngleAxisd(shape == shape_def_t::PLANE ? -1.5 : 0, Vector3d::UnitY())));
@@ -52,8 +58,8 @@ void wear(scene_t& scene, const std::string& shader, std::int64_t colour = 0, st
   scene.looks.push_back(look);
 }
 
-// Draws it and holds pixels all over the first thing in it against `colour` (linear) of what the eye's ray meets
-// there.
+// Draws the scene and compares pixels all over its first shape with `colour` (linear) at the point that the eye's
+// ray hits.
 void compare(const scene_t& scene, const visual::LookFiles& files, double tolerance,
              const std::function<Vector3d(const Hit&, const Vector3d& eye)>& colour,
              const visual::Settings& settings = {}) {
@@ -75,7 +81,7 @@ void compare(const scene_t& scene, const visual::LookFiles& files, double tolera
   for (int y = 10; y < kHeight; y += 14)
     for (int x = 10; x < kWidth; x += 14) {
       const auto here = hit(x, y);
-      // Not where another surface shares the pixel, nor at grazing angles, where a pixel is many places.
+      // Excludes pixels shared by another surface, and grazing angles, where a pixel covers many places.
       if (!here || !hit(x - 1, y) || !hit(x + 1, y) || !hit(x, y - 1) || !hit(x, y + 1)) continue;
       if (std::abs(here->point.normal.dot(ray(scene, x, y))) < 0.35) continue;
       const Vector3d expected = settings.exposure * colour(*here, eye), seen = image.at(x, y);
@@ -88,8 +94,8 @@ void compare(const scene_t& scene, const visual::LookFiles& files, double tolera
   CHECK(held > 100);
 }
 
-// Smooth and small: texels are larger than pixels, and neighbours differ by so little that the eight bits of a
-// sampler's weights stay below half a level.
+// Smooth and small: texels are larger than pixels, and neighbours differ so little that the eight-bit weights of a
+// sampler err by less than half a level.
 Raster smooth_picture() {
   Raster r{16, 16, false, {}};
   for (int j = 0; j < 16; ++j)
@@ -101,7 +107,7 @@ Raster smooth_picture() {
   return r;
 }
 
-// Dents and bumps, different along u and v, so that swapping the two or turning one over shows.
+// Dents and bumps, different along u and v, so that a swap or a sign error of either is detected.
 Raster bumps() {
   Raster r{16, 16, false, {}};
   for (int j = 0; j < 16; ++j)
@@ -119,7 +125,7 @@ double as_direction(double byte) { return byte / 127.5 - 1; }
 
 }  // namespace
 
-TEST_CASE("Each kind of lamp on each kind of surface shades every pixel as Phong's formula says") {
+TEST_CASE("Each kind of lamp on each kind of surface shades every pixel by Phong's formula") {
   const int lamp = GENERATE(light_def_t::POINT, light_def_t::DIRECTIONAL, light_def_t::SPOT);
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE, shape_def_t::CYLINDER);
   const scene_t scene = lit(shape, lamp);
@@ -127,7 +133,7 @@ TEST_CASE("Each kind of lamp on each kind of surface shades every pixel as Phong
           [&](const Hit& hit, const Vector3d& eye) { return phong(scene, scene.visuals[0], hit.point, eye); });
 }
 
-TEST_CASE("Eight lamps add up, and exposure is a factor on all of it before it is encoded") {
+TEST_CASE("Eight lamps add up, and exposure scales all light before encoding") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
   scene.lights.clear();
   for (int i = 0; i < 8; ++i) {
@@ -143,13 +149,13 @@ TEST_CASE("Eight lamps add up, and exposure is a factor on all of it before it i
       settings);
 }
 
-TEST_CASE("Gouraud shades the corners of the triangles and goes evenly from one to the other") {
+TEST_CASE("Gouraud shades the corners of the triangles and interpolates between them") {
   const int lamp = GENERATE(light_def_t::POINT, light_def_t::DIRECTIONAL, light_def_t::SPOT);
   scene_t scene = lit(shape_def_t::SPHERE, lamp);
   wear(scene, "gouraud");
   const visual_def_t& v = scene.visuals[0];
   compare(scene, {}, kTolerance, [&](const Hit& hit, const Vector3d& eye) { return gouraud(scene, v, hit, eye); });
-  // Which Phong's does not: else the test above could not tell them apart.
+  // Phong shading does not match here; otherwise the test above could not distinguish them.
   double largest = 0;
   const visual::Triangles ball = visual::unit_sphere(12);
   visual::Instance at_two;
@@ -163,7 +169,7 @@ TEST_CASE("Gouraud shades the corners of the triangles and goes evenly from one 
   if (lamp != light_def_t::SPOT) CHECK(largest > 0.02);
 }
 
-TEST_CASE("A picture is a factor on what a surface returns, but not on its highlights nor on what glows") {
+TEST_CASE("A colour map is a factor on returned light, but not on highlights or emitted light") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   scene_t scene = lit(shape, light_def_t::POINT);
   wear(scene, "textured", 7);
@@ -178,8 +184,8 @@ TEST_CASE("A normal map turns normals along tangent and binormal") {
   scene_t scene = lit(shape, light_def_t::POINT);
   wear(scene, "normal_mapped", 0, 8);
   const Raster map = bumps();
-  // A weight of eight bits errs by 1/512 of what two texels differ, 0.2 at most: 0.0004 of a direction, a tenth of
-  // a level.
+  // A weight of eight bits errs by 1/512 of the difference of two texels, at most 0.2: 0.0004 of a direction, a
+  // tenth of a level.
   compare(scene, {{{8, map}}, {}}, kTolerance + 0.5, [&](const Hit& hit, const Vector3d& eye) {
     Point bumpy = hit.point;
     bumpy.normal = mapped_normal(hit.point, bilinear(map, hit.point.uv, as_direction));
@@ -214,13 +220,12 @@ Vector3d mirrored(const Point& p, const Vector3d& eye) {
   const Vector3d in = (p.at - eye).normalized(), out = in - 2 * in.dot(p.normal) * p.normal;
   return decoded(around_at(out));
 }
-// The picture is rounded twice to eight bits, half a level each time, before it is seen.
+// The picture is rounded twice to eight bits, half a level each time, before display.
 constexpr double kRounded = 1;
 }  // namespace
 
 TEST_CASE(
-    "A mirror shows what lies around where the ray is thrown back to, more of it at grazing angles as Schlick "
-    "says") {
+    "A mirror shows the environment in the reflected direction, with Schlick's share at grazing angles") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   const float reflectance = GENERATE(0.04f, 0.5f, 1.0f);
   scene_t scene = lit(shape, light_def_t::POINT);
@@ -251,7 +256,7 @@ TEST_CASE("A mirror with a normal map is a bumpy mirror") {
           });
 }
 
-TEST_CASE("Without a picture of what lies around, a mirror shows the background colour") {
+TEST_CASE("Without an environment picture a mirror shows the background colour") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::DIRECTIONAL);
   scene.background = to_vec3f({0.3, 0.1, 0.5});
   wear(scene, "reflecting", 0, 0, 0.3f);
@@ -261,11 +266,11 @@ TEST_CASE("Without a picture of what lies around, a mirror shows the background 
   });
 }
 
-TEST_CASE("What is translucent lets through what it neither returns nor mirrors, in linear light") {
+TEST_CASE("A translucent surface transmits the light that it neither returns nor mirrors, in linear light") {
   const float alpha = GENERATE(0.1f, 0.5f, 0.9f);
   const float reflectance = GENERATE(0.0f, 0.04f);
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
-  scene.lights[0].intensity = GENERATE(0.8f, 4.0f);  // brighter than white, were it opaque
+  scene.lights[0].intensity = GENERATE(0.8f, 4.0f);  // brighter than white, if it were opaque
   scene.background = to_vec3f({0.2, 0.5, 0.3});
   scene.visuals[0].alpha = alpha;
   wear(scene, reflectance > 0 ? "reflecting" : "phong", 0, 0, reflectance);
@@ -274,11 +279,11 @@ TEST_CASE("What is translucent lets through what it neither returns nor mirrors,
         reflectance > 0 ? fresnel(reflectance, hit.point.normal.dot((eye - hit.point.at).normalized())) : 0;
     const Vector3d behind(0.2, 0.5, 0.3);
     const Vector3d through = alpha * phong(scene, scene.visuals[0], hit.point, eye) + (1 - alpha) * behind;
-    return (1 - f) * through + f * behind;  // the background is what lies around
+    return (1 - f) * through + f * behind;  // the background is the environment
   });
 }
 
-TEST_CASE("What lies around is seen where nothing else is, in the direction that it lies in") {
+TEST_CASE("The environment is visible behind everything, in its direction") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
   scene.environment_asset = 9;
   scene.camera =

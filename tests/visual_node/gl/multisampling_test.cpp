@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 #include <set>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 
@@ -9,8 +11,7 @@ using namespace tactus::visual;
 
 namespace {
 
-// The slanting edge of something that glows white, before black; brightnesses that its pixels have, and what was
-// said.
+// The slanted edge of a white emitter on black: the brightness levels of its pixels, and the messages.
 std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Quality& quality = {}) {
   display();
   scene_t scene = empty_scene();
@@ -31,10 +32,10 @@ std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Qua
 }  // namespace
 
 TEST_CASE(
-    "With one sample a pixel an edge is black or white, with four it has the greys between, in linear light") {
+    "With one sample a pixel an edge is black or white, with four it has the levels between, in linear light") {
   CHECK(levels(1).first == std::set<int>{0, 255});
-  const auto [seen, said] = levels(4);
-  if (!said.empty()) return;  // a device that has not so many says so
+  const auto [seen, messages] = levels(4);
+  if (!messages.empty()) return;  // the device supports fewer samples and reports it
   CHECK(seen.size() == 5);
   // Each sample is a quarter of the light.
   for (const int level : seen) {
@@ -45,16 +46,16 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("More samples than the device has are said, and as many as there are are drawn") {
-  const auto [seen, said] = levels(64);
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("anti_aliasing=64"));
+TEST_CASE("A number of samples above that of the device is reported and limited") {
+  const auto [seen, messages] = levels(64);
+  REQUIRE(messages.size() == 1);
+  CHECK_THAT(messages[0], Catch::Contains("anti_aliasing=64"));
   CHECK(seen.size() > 2);
 }
 
-TEST_CASE("Smooth edges stay when the picture is drawn smaller and scaled up") {
+TEST_CASE("Edges stay smooth when the picture is drawn smaller and scaled up") {
   for (const Quality& q : kQualities) {
-    const auto [seen, said] = levels(4, q);
+    const auto [seen, messages] = levels(4, q);
     CHECK(*seen.rbegin() == 255);
     CHECK(*seen.begin() == 0);
     CHECK(seen.size() > 2);

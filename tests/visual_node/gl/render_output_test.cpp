@@ -1,9 +1,10 @@
-// What becomes of the picture when the device that draws it is lost. The loss is injected: a display whose context
-// works, and which says that it does not.
+// Recovery from the loss of the graphics device. The loss is injected by a display that works and reports that it
+// is lost.
 #include "visual_node/gl/render_output.h"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 
@@ -43,81 +44,81 @@ struct Fragile {
       return std::make_unique<Borrowed>(trouble, window);
     };
   }
-  std::vector<std::uint8_t> picture(RenderOutput& stage) {
-    stage.draw_scene(list, {});
-    stage.draw_over(list);
+  std::vector<std::uint8_t> picture(RenderOutput& output) {
+    output.draw_scene(list, {});
+    output.draw_over(list);
     std::vector<std::uint8_t> rgba(
-        static_cast<std::size_t>(stage.picture().width() * stage.picture().height() * 4));
-    stage.picture().read(rgba);
+        static_cast<std::size_t>(output.picture().width() * output.picture().height() * 4));
+    output.picture().read(rgba);
     return rgba;
   }
 };
 
 }  // namespace
 
-TEST_CASE("A device that was lost is opened again, and draws what was loaded as before") {
+TEST_CASE("A lost device is opened again and draws the loaded scene as before") {
   Fragile f;
-  RenderOutput stage(f.settings, false, f.make());
-  stage.load(f.view, f.list, f.settings);
-  const auto before = f.picture(stage);
+  RenderOutput output(f.settings, false, f.make());
+  output.load(f.view, f.list, f.settings);
+  const auto before = f.picture(output);
   REQUIRE(*std::max_element(before.begin(), before.end()) > 0);
-  CHECK(stage.recover(at_s(1), &f.view, f.list).empty());
+  CHECK(output.recover(at_s(1), &f.view, f.list).empty());
   CHECK(f.opened == 1);
 
   f.trouble = "the graphics device was reset";
-  CHECK(stage.recover(at_s(2), &f.view, f.list) == "the graphics device was reset: draws on, with no window");
+  CHECK(output.recover(at_s(2), &f.view, f.list) == "the graphics device was reset; drawing continues with no window");
   CHECK(f.opened == 2);
-  CHECK(f.picture(stage) == before);
-  CHECK(stage.recover(at_s(3), &f.view, f.list).empty());
+  CHECK(f.picture(output) == before);
+  CHECK(output.recover(at_s(3), &f.view, f.list).empty());
 }
 
-TEST_CASE("A device that is lost before there is a scene is opened again too") {
+TEST_CASE("A device that is lost before the first scene is opened again too") {
   Fragile f;
-  RenderOutput stage(f.settings, false, f.make());
+  RenderOutput output(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
-  CHECK_FALSE(stage.recover(at_s(2), nullptr, {}).empty());
-  CHECK(stage.picture().width() == f.settings.width);
+  CHECK_FALSE(output.recover(at_s(2), nullptr, {}).empty());
+  CHECK(output.picture().width() == f.settings.width);
 }
 
-TEST_CASE("A window whose display server is gone is not opened again: its node draws on without it") {
+TEST_CASE("A window without a display server is not opened again, and drawing continues without it") {
   Fragile f;
-  RenderOutput stage(f.settings, true, f.make());
-  REQUIRE(stage.display().has_screen());
+  RenderOutput output(f.settings, true, f.make());
+  REQUIRE(output.display().has_screen());
   f.trouble = "the display server of the window is gone";
-  CHECK_THAT(stage.recover(at_s(1), nullptr, {}),
+  CHECK_THAT(output.recover(at_s(1), nullptr, {}),
              Catch::Contains("display server") && Catch::Contains("no window"));
-  CHECK_FALSE(stage.display().has_screen());
+  CHECK_FALSE(output.display().has_screen());
 }
 
 TEST_CASE(
-    "A device that is lost again and again is given up in one sentence, one that is lost now and then is not") {
+    "A device that is lost repeatedly ends with one sentence, one that is lost rarely does not") {
   Fragile f;
-  RenderOutput stage(f.settings, false, f.make());
+  RenderOutput output(f.settings, false, f.make());
   double now_s = 0;
   for (int i = 0; i < 20; ++i) {
     f.trouble = "the graphics device was reset";
-    CHECK_FALSE(stage.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
+    CHECK_FALSE(output.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
   }
   now_s += 1000;
   for (std::size_t i = 0; i < RenderOutput::kMaxLosses; ++i) {
     f.trouble = "the graphics device was reset";
-    CHECK_FALSE(stage.recover(at_s(now_s += 1), nullptr, {}).empty());
+    CHECK_FALSE(output.recover(at_s(now_s += 1), nullptr, {}).empty());
   }
   f.trouble = "the graphics device was reset";
-  CHECK_THROWS_WITH(stage.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
+  CHECK_THROWS_WITH(output.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
 }
 
-TEST_CASE("A device that cannot be opened again ends the node with why, and with what was tried") {
+TEST_CASE("A device that cannot be opened again ends the node with the reason and the attempts") {
   Fragile f;
   f.may_open = 1;
-  RenderOutput stage(f.settings, false, f.make());
+  RenderOutput output(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
-  CHECK_THROWS_WITH(stage.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
+  CHECK_THROWS_WITH(output.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
                                                              Catch::Contains("cannot be opened again") &&
                                                              Catch::Contains("tried nothing"));
 }
 
-TEST_CASE("A context that draws is not taken for lost, also after an error that is its own") {
+TEST_CASE("A working context does not count as lost, also after an OpenGL error of its own") {
   CHECK(display().lost().empty());
   Settings settings;
   Renderer renderer(64, 64, settings.shadow_size);

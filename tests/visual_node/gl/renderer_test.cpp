@@ -3,6 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tactus/light_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 #include "visual_node/frame/marker.h"
@@ -11,7 +15,7 @@ using namespace tactus;
 using namespace tactus::visual;
 using namespace tactus::test;
 
-TEST_CASE("The middle of a lit sphere has the colour that the formula gives") {
+TEST_CASE("The middle of a lit sphere has the colour of the formula") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::SPHERE, {0.5, 0, 0});
   visual_def_t& v = scene.visuals[0];
@@ -28,10 +32,11 @@ TEST_CASE("The middle of a lit sphere has the colour that the formula gives") {
   scene.lights = {lamp};
   const Eigen::Vector3d colour = render(scene).at(kWidth / 2, kHeight / 2);
 
-  // The surface point nearest to the eye is (1.5, 0, 0), its normal (-1, 0, 0), which is also the way to the eye.
+  // The surface point nearest to the eye is (1.5, 0, 0), its normal (-1, 0, 0), which is also the direction to
+  // the eye.
   const Eigen::Vector3d to(-1.5, 0, 1.5);
   const double d = to.norm(), cosine = 1.5 / d, strength = 1 / (1 + 0.2 * d * d);
-  const double t = cosine;  // of the reflected ray to the eye: 2 (n l) (n v) - l v with v = n
+  const double t = cosine;  // of the reflected ray and the direction to the eye: 2 (n l) (n v) - l v with v = n
   const double lobe = t / (16 - 16 * t + t);
   for (int c = 0; c < 3; ++c) {
     const double diffuse = std::array{0.6, 0.3, 0.1}[static_cast<std::size_t>(c)], emissive = c == 2 ? 0.05 : 0;
@@ -40,7 +45,7 @@ TEST_CASE("The middle of a lit sphere has the colour that the formula gives") {
   }
 }
 
-TEST_CASE("A spot lights its cone and nothing else") {
+TEST_CASE("A spot lights only its cone") {
   scene_t scene = floor_from_above(4);
   scene.lights = {test::spot({0, 0, 2}, 0.6, 0.8)};
   const Image image = render(scene);
@@ -73,7 +78,7 @@ TEST_CASE("Lamps of every kind and number are drawn") {
   CHECK(image.at(x, kHeight / 2).x() == Approx(srgb(linear)).margin(kTolerance));
 }
 
-TEST_CASE("A ball under a spot casts a shadow where the ray through its edge says") {
+TEST_CASE("A ball under a spot casts its shadow at the computed place") {
   scene_t scene = floor_from_above(6);
   test::add_visual(scene, test::add_body(scene, {0.3, 0, 1}), shape_def_t::SPHERE, {0.2, 0, 0});
   scene.lights = {test::spot({-1, 0, 3}, 1.2, 1.4)};
@@ -95,7 +100,7 @@ TEST_CASE("A ball under a spot casts a shadow where the ray through its edge say
 
 TEST_CASE("A lit floor does not shadow itself") {
   scene_t scene = floor_from_above(4);
-  test::add_visual(scene, 0, shape_def_t::BOX, {6, 6, 0.1});  // a box casts, a plane does not
+  test::add_visual(scene, 0, shape_def_t::BOX, {6, 6, 0.1});  // a box casts a shadow, a plane does not
   scene.lights = {test::spot({0, 0, 2}, 1.4, 1.5)};
   const Image image = render(scene);
   for (int x = kWidth / 2 - 100; x < kWidth / 2 + 100; ++x)
@@ -131,15 +136,15 @@ const Eigen::Vector3d kSun(0.6, 0.3, -1);
 constexpr double kWave_m = 1, kHeight_m = 0.08;
 const HeightMaps kSine{{1, test::sine_map(256, 4)}};
 
-// What Lambert says of a grey surface of normal n, in 8 bits.
+// Lambert's value for a grey surface of normal n, in 8 bits.
 double lambert(const Eigen::Vector3d& n) {
   return srgb(0.5 * std::max(0.0, -n.normalized().dot(kSun.normalized())));
 }
-double slope(double u_m) {  // of kHeight_m / 2 sin(2 pi u / kWave_m)
+double slope(double u_m) {  // derivative of kHeight_m / 2 sin(2 pi u / kWave_m)
   return std::numbers::pi * kHeight_m / kWave_m * std::cos(2 * std::numbers::pi * u_m / kWave_m);
 }
 
-// A turned and moved floor, as seen by a camera that turned and moved with it.
+// A rotated and moved floor, seen by a camera that moves with it.
 scene_t rough_floor(const Eigen::Isometry3d& body) {
   scene_t scene = floor_from_above(4);
   scene.lights = {sun(kSun)};
@@ -151,7 +156,7 @@ scene_t rough_floor(const Eigen::Isometry3d& body) {
 }
 }  // namespace
 
-TEST_CASE("A relief of waves is shaded as Lambert says of its slopes") {
+TEST_CASE("A relief of waves is shaded by Lambert's law of its slopes") {
   const double turned_rad = GENERATE(0.0, 0.7);
   const Eigen::Isometry3d body(Eigen::Translation3d(0.3, -0.2, 0) *
                                Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()));
@@ -173,7 +178,7 @@ TEST_CASE("A relief of waves is shaded as Lambert says of its slopes") {
 }
 
 TEST_CASE("Each side of a box is shaded along its own two axes") {
-  // A cube of 2 m whose sides are seen from 3 m away.
+  // A cube of 2 m, its sides seen from a distance of 3 m.
   const int across = GENERATE(0, 1, 2), sign = GENERATE(-1, 1);
   const Eigen::Vector3d outward = sign * Eigen::Vector3d::Unit(across);
   scene_t scene = test::empty_scene();
@@ -194,7 +199,7 @@ TEST_CASE("Each side of a box is shaded along its own two axes") {
   }
 }
 
-TEST_CASE("What has no relief looks as it would without any in the scene") {
+TEST_CASE("A surface without relief looks the same in a scene with reliefs") {
   scene_t scene = rough_floor(Eigen::Isometry3d::Identity());
   scene.materials.push_back(test::rough(0, 0, 0, 0));
   test::add_visual(scene, test::add_body(scene, {0, 0, 0.5}), shape_def_t::SPHERE, {0.4, 0, 0});
@@ -202,14 +207,14 @@ TEST_CASE("What has no relief looks as it would without any in the scene") {
   scene.visuals[1].shape.material = 1;
   scene.visuals[1].specular = scene.visuals[2].specular = test::grey(0.5f);
   const Image with = render(scene, {}, {}, kSine);
-  const Image without = render(scene);  // the height map did not come
+  const Image without = render(scene);  // the height map is missing
   scene.materials[0].bump_asset = 0;
   CHECK(render(scene).rgba == without.rgba);
   int different = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) different += with.at(x, y) != without.at(x, y);
   CHECK(different > kWidth * kHeight / 2);
-  // The ball and the top of the box, to the bit.
+  // The ball and the top of the box are identical to the bit.
   const double ball_px = 0.4 * scale_px(3.5) - 2;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
@@ -229,8 +234,7 @@ TEST_CASE("What has no relief looks as it would without any in the scene") {
 }
 
 TEST_CASE(
-    "Of a shader in pieces the one that is wrong is named with its line, whatever is wrong, and no warning is "
-    "said") {
+    "An error in a piece of a shader is named with its file and line, without warnings") {
   display();
   const std::vector<ShaderPiece> vertex{{"a.vert", "void main() { gl_Position = vec4(0); }"}};
   const auto with = [&](const std::string& mine) {
@@ -242,9 +246,9 @@ TEST_CASE(
   };
   CHECK_NOTHROW(with("vec4 shade() { return vec4(1); }"));
   CHECK_THROWS_WITH(with("\nvec4 shade() { return vec4(1) }"),
-                    Catch::Contains("mine.frag:2: error"));  // of syntax
+                    Catch::Contains("mine.frag:2: error"));  // syntax error
   CHECK_THROWS_WITH(
-      with("\n\nvec4 shade() { return lamp_of_my_own; }"),  // of meaning
+      with("\n\nvec4 shade() { return lamp_of_my_own; }"),  // semantic error
       Catch::Contains("mine.frag:3: error") && Catch::Contains("lamp_of_my_own") && !Catch::Contains("warning"));
   CHECK_THROWS_WITH(with("void main() {}"), Catch::Contains("end.frag:2: error"));
   CHECK_THROWS_WITH(with("vec4 shade() {\n a = 1;\n b = 1;\n c = 1;\n d = 1;\n return vec4(1); }"),

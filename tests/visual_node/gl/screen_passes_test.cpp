@@ -1,5 +1,10 @@
-// Passes over the whole picture against what they say they compute, from the picture without them.
+// Screen passes against their definitions, computed from the picture without them.
 #include <catch2/catch.hpp>
+#include <tactus/body_def_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/uniform_t.hpp>
 
 #include "tests/visual_node/support/reference.h"
 
@@ -72,7 +77,7 @@ void compare(const Image& seen, double tolerance, Expected expected) {
 
 }  // namespace
 
-TEST_CASE("Greyscale takes the colour away that it is told to, and leaves the luminance") {
+TEST_CASE("Greyscale removes the given share of colour and keeps the luminance") {
   const float amount = GENERATE(1.0f, 0.4f, 0.0f);
   const Image before = drawn({});
   compare(drawn({pass("greyscale", "amount", amount)}), kTolerance, [&](int x, int y) -> Vector3d {
@@ -82,7 +87,7 @@ TEST_CASE("Greyscale takes the colour away that it is told to, and leaves the lu
 }
 
 TEST_CASE("Blur is a Gaussian of its radius, in linear light") {
-  // Samples at whole pixels, so that no filter of the sampler comes in between.
+  // Samples at whole pixels, so that the filter of the sampler has no effect.
   const float radius = GENERATE(1.0f, 2.0f);
   const Image before = drawn({});
   compare(drawn({pass("blur", "radius", radius)}), kTolerance, [&](int x, int y) {
@@ -100,8 +105,8 @@ TEST_CASE("Blur is a Gaussian of its radius, in linear light") {
 
 TEST_CASE("Edges are the length of Sobel's gradient of the luminance") {
   const Image before = drawn({});
-  // What is rounded to eight bits is up to 0.004 of linear light off, and eight of them are added: dark edges are
-  // told to within that.
+  // Rounding to eight bits errs by up to 0.004 in linear light, and eight values are added: dark edges are
+  // accurate to that.
   const Image seen = drawn({pass("edges", "gain", 0.5f)});
   for (int y = 3; y < kHeight - 3; y += 5)
     for (int x = 3; x < kWidth - 3; x += 5) {
@@ -116,13 +121,13 @@ TEST_CASE("Edges are the length of Sobel's gradient of the luminance") {
 TEST_CASE("Passes follow one another in their order") {
   const Image grey = drawn({pass("greyscale")}), edges = drawn({pass("edges")});
   CHECK(drawn({pass("greyscale", "amount", 0), pass("greyscale")}).rgba == grey.rgba);
-  // Edges of the grey picture are those of the coloured one, but for rounding; a grey picture of edges is the
-  // picture of edges.
+  // Edges of the grey picture equal those of the coloured one except for rounding; a grey version of an edge
+  // picture is unchanged.
   CHECK(drawn({pass("edges"), pass("greyscale")}).rgba == edges.rgba);
   CHECK(drawn({pass("edges"), pass("blur")}).rgba != drawn({pass("blur"), pass("edges")}).rgba);
 }
 
-TEST_CASE("What lies over the picture, words and marker, is not passed over") {
+TEST_CASE("Text and marker over the picture are not processed by passes") {
   Rect rect;
   rect.x = 10, rect.y = 20, rect.width = 30, rect.height = 30, rect.red = 1, rect.green = 0.5f;
   const Image image = drawn({pass("greyscale"), pass("blur")}, {rect});

@@ -6,7 +6,7 @@
 
 using namespace tactus::visual;
 
-TEST_CASE("A shader is that of the folder before that of the scene before that of the node") {
+TEST_CASE("A shader of the folder precedes that of the scene, which precedes that of the node") {
   ShaderLibrary library({{.name = "stripes",
                           .fragment = "of the scene",
                           .vertex = "",
@@ -17,7 +17,7 @@ TEST_CASE("A shader is that of the folder before that of the scene before that o
   CHECK(library.fragment("stripes")->name == "stripes.frag");
   CHECK(library.fragment("phong")->text == shader_text("phong.frag"));
   library.set({{"stripes.frag", "edited"}, {"phong.frag", "mine"}});
-  // Under the name that the file has in the folder.
+  // By the name of the file in the folder.
   CHECK(library.fragment("stripes")->text == "edited");
   CHECK(library.fragment("stripes")->name == "stripes.frag");
   CHECK(library.fragment("phong")->text == "mine");
@@ -27,7 +27,7 @@ TEST_CASE("A shader is that of the folder before that of the scene before that o
   CHECK(library.fragment("phong")->text == shader_text("phong.frag"));
 }
 
-TEST_CASE("A file of the folder makes a look of its own name") {
+TEST_CASE("A file in the folder defines a look of its own name") {
   ShaderLibrary library;
   CHECK_FALSE(library.fragment("wood"));
   library.set({{"wood.frag", "vec4 shade() { return base; }"}});
@@ -37,7 +37,7 @@ TEST_CASE("A file of the folder makes a look of its own name") {
   CHECK(library.vertex("wood"));
 }
 
-TEST_CASE("Each name that is offered is there, and what is but a piece is no look") {
+TEST_CASE("Every offered name exists, and a mere piece is not a look") {
   const ShaderLibrary library;
   for (const char* name :
        {"phong", "gouraud", "normal_mapped", "textured", "reflecting", "greyscale", "blur", "edges"}) {
@@ -50,7 +50,7 @@ TEST_CASE("Each name that is offered is there, and what is but a piece is no loo
   CHECK_THROWS_WITH(library.own("nowhere.vert"), Catch::Contains("nowhere.vert"));
 }
 
-TEST_CASE("A shader of the scene moves vertices when it has a text for them") {
+TEST_CASE("A shader of the scene moves vertices when it has a vertex source") {
   ShaderText text{
       .name = "waves", .fragment = "f", .vertex = "v", .fragment_file = "a.frag", .vertex_file = "folder/b.vert"};
   ShaderLibrary library({text});

@@ -1,8 +1,11 @@
-// Shaders of a scene and of a folder, in pictures: what does not compile never takes a picture away.
+// Shaders of a scene and of a folder, compared as pictures: a shader that does not compile never removes a picture.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <tactus/look_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
 #include <thread>
 
 #include "tests/visual_node/support/offscreen.h"
@@ -15,7 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A floor that the shader `name` draws, and whatever passes there are.
+// A floor drawn by the shader `name`, with optional passes.
 struct Stand {
   scene_t scene = floor_from_above(4);
   SceneView view;
@@ -61,7 +64,7 @@ const std::string kBroken = "// A colour.\nvec4 shade() {\n  return nothing;\n}\
 
 }  // namespace
 
-TEST_CASE("A shader of the scene draws its surface, and what is edited is seen in the next picture") {
+TEST_CASE("A shader of the scene draws its surface, and an edit is visible in the next picture") {
   Stand stand("mine", own(plain("1, 0, 0")));
   CHECK(stand.renderer.take_trouble().empty());
   CHECK(stand.middle() == kRed);
@@ -69,24 +72,24 @@ TEST_CASE("A shader of the scene draws its surface, and what is edited is seen i
   CHECK(stand.renderer.take_trouble().empty());
   CHECK(stand.middle() == kGreen);
 
-  SECTION("one that does not compile is said with file and line, and the last good one stays") {
+  SECTION("a shader that does not compile is reported with file and line, and the last good one stays") {
     stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-    const auto said = stand.renderer.take_trouble();
-    REQUIRE(said.size() == 1);
-    CHECK_THAT(said[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
-                            Catch::Contains("the one before stays"));
+    const auto messages = stand.renderer.take_trouble();
+    REQUIRE(messages.size() == 1);
+    CHECK_THAT(messages[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
+                            Catch::Contains("the previous shader stays"));
     CHECK(stand.middle() == kGreen);
     stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
     CHECK(stand.renderer.take_trouble().empty());
     CHECK(stand.middle() == kBlue);
   }
-  SECTION("without its file the scene's is there again") {
+  SECTION("without its file the scene's shader returns") {
     stand.renderer.set_shader_folder({});
     CHECK(stand.middle() == kRed);
   }
 }
 
-TEST_CASE("A text of each kind of nonsense is said in one sentence and takes no picture away") {
+TEST_CASE("Every kind of invalid source is reported in one sentence and removes no picture") {
   const std::string nonsense = GENERATE(as<std::string>{}, "", "\0\xff\xfe", "#error no", "void main() {}",
                                         "vec4 shade() { return vec4(1) }", "vec4 other() { return vec4(1); }",
                                         "#version 450 core\nvec4 shade() { return vec4(1) + x; }",
@@ -97,29 +100,29 @@ TEST_CASE("A text of each kind of nonsense is said in one sentence and takes no 
   CHECK(stand.middle() == kRed);
 }
 
-TEST_CASE("A shader that nobody has and one that never compiled are drawn as Phong's, and said once") {
+TEST_CASE("A missing shader and one that never compiled are drawn as Phong and reported once") {
   Stand phong("phong");
   const Image expected = phong.draw();
   Stand unknown("nowhere");
-  auto said = unknown.renderer.take_trouble();
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
+  auto messages = unknown.renderer.take_trouble();
+  REQUIRE(messages.size() == 1);
+  CHECK_THAT(messages[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
                           Catch::Contains("phong is drawn instead"));
   CHECK(unknown.draw().rgba == expected.rgba);
   Stand broken("mine", own(kBroken));
-  said = broken.renderer.take_trouble();
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
+  messages = broken.renderer.take_trouble();
+  REQUIRE(messages.size() == 1);
+  CHECK_THAT(messages[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
   CHECK(broken.draw().rgba == expected.rgba);
-  // Of which no clause is about another file, and none over two lines.
-  CHECK_THAT(said[0], !Catch::Contains("surface.glsl") && !Catch::Contains("warning") && !Catch::Contains("\n"));
-  // It may be mended while it is drawn.
+  // No clause is about another file, and none spans two lines.
+  CHECK_THAT(messages[0], !Catch::Contains("surface.glsl") && !Catch::Contains("warning") && !Catch::Contains("\n"));
+  // It can be repaired while it is drawn.
   broken.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
   CHECK(broken.renderer.take_trouble().empty());
   CHECK(broken.middle() == kBlue);
 }
 
-TEST_CASE("A shader of the node can be edited too, down to its lamps") {
+TEST_CASE("A shader of the node can be replaced too, including its lamps") {
   Stand stand("phong");
   const Vector3d before = stand.middle();
   stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
@@ -131,12 +134,12 @@ TEST_CASE("A shader of the node can be edited too, down to its lamps") {
   CHECK(stand.middle() == before);
 }
 
-TEST_CASE("A shader moves the surface that it is worn by") {
-  // Up by 2 m: seen from 4 m, the floor is twice as large.
+TEST_CASE("A vertex shader moves its surface") {
+  // Moved up by 2 m: from 4 m the floor looks twice as large.
   Stand raised("mine", own(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
   CHECK(raised.renderer.take_trouble().empty());
-  // The floor ended 5 m to the left, at +y; what is seen is 2.2 m to each side. Moved by 3 m its right edge is 2 m
-  // to the right.
+  // The floor ended 5 m to the left, at +y; 2.2 m are visible to each side. Moved by 3 m its right edge is 2 m to
+  // the right.
   const Image image = raised.draw();
   CHECK(image.at(kWidth / 2, kHeight / 2) == kGreen);
   CHECK(image.at(kWidth / 2 + static_cast<int>(1.95 * scale_px(4)), kHeight / 2) == kGreen);
@@ -145,28 +148,28 @@ TEST_CASE("A shader moves the surface that it is worn by") {
   CHECK_THAT(raised.renderer.take_trouble().front(), Catch::Contains("mine.vert:1"));
 }
 
-TEST_CASE("A pass that does not compile stays as it was, and one that nobody has is left out") {
+TEST_CASE("A pass that does not compile keeps its previous version, and a missing one is left out") {
   Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
-  const auto said = stand.renderer.take_trouble();
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
+  const auto messages = stand.renderer.take_trouble();
+  REQUIRE(messages.size() == 1);
+  CHECK_THAT(messages[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
   CHECK(stand.middle() == kBlue);
   stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
   CHECK_THAT(stand.renderer.take_trouble().front(),
-             Catch::Contains("mine.frag:3") && Catch::Contains("the one before stays"));
+             Catch::Contains("mine.frag:3") && Catch::Contains("the previous shader stays"));
   CHECK(stand.middle() == kBlue);
   stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
   CHECK(stand.middle() == kRed);
 }
 
-TEST_CASE("Numbers that a shader is given by name are seen. One that it does not take is said") {
+TEST_CASE("Uniforms set by name take effect, and an unsuitable one is reported") {
   uniform_t tint{};
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
   Stand stand("mine", own(tinted), {}, {tint});
   CHECK(stand.renderer.take_trouble().empty());
   CHECK(stand.middle() == kGreen);
-  SECTION("because it has another form") {
+  SECTION("because it has another type") {
     stand.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
     CHECK_THAT(stand.renderer.take_trouble().at(0),
@@ -178,13 +181,13 @@ TEST_CASE("Numbers that a shader is given by name are seen. One that it does not
     CHECK_THAT(stand.renderer.take_trouble().at(0), Catch::Contains("has no uniform tint"));
     CHECK(stand.middle() == kBlue);
   }
-  SECTION("but not when it merely makes no difference") {
+  SECTION("but not when it only has no effect") {
     stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
     CHECK(stand.renderer.take_trouble().empty());
   }
 }
 
-TEST_CASE("Of a folder shaders alone are read, and not what is too long. One that is not there is empty") {
+TEST_CASE("Only the shaders of a folder are read, and not oversized ones, and a missing folder is empty") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_folder_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder / "folder.frag");
@@ -201,14 +204,14 @@ TEST_CASE("Of a folder shaders alone are read, and not what is too long. One tha
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("A folder is watched: what is in it is told once, and again when it changes") {
+TEST_CASE("A watched folder is delivered once, and again when it changes") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_watch_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "a.frag") << "one";
   ShaderWatch watch(folder);
   const auto next = [&] {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // nothing here is about time
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // generous: this test is not about time
     while (std::chrono::steady_clock::now() < until) {
       if (auto files = watch.take()) return *files;
       std::this_thread::yield();

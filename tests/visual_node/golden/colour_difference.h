@@ -1,4 +1,4 @@
-// How different two pictures look.
+// The perceptual difference of two pictures.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +24,7 @@ inline Eigen::Vector3d lab_of(const std::uint8_t* rgb) {
 }
 
 // CIEDE2000 (CIE 142-2001) as in Sharma, Wu and Dalal (2005), "The CIEDE2000 Color-Difference Formula:
-// Implementation Notes, Supplementary Test Data, and Mathematical Observations"; the numbers of its equations are
-// beside it.
+// Implementation Notes, Supplementary Test Data, and Mathematical Observations"; equation numbers in the comments.
 inline double ciede2000(const Eigen::Vector3d& one, const Eigen::Vector3d& two) {
   constexpr double kTurn = 360, kRadian = std::numbers::pi / 180, k25to7 = 6103515625;
   const auto seventh = [](double c) { return std::sqrt(std::pow(c, 7) / (std::pow(c, 7) + k25to7)); };
@@ -60,13 +59,13 @@ inline double ciede2000(const Eigen::Vector3d& one, const Eigen::Vector3d& two) 
   return std::sqrt(x * x + y * y + z * z + rt * y * z);  // (22)
 }
 
-// Of all pixels.
+// Differences over all pixels.
 struct Difference {
   double mean = 0;
-  double seen = 0;  // share of them that differ by more than what is just noticeable
+  double seen = 0;  // share of pixels with a visible difference
 };
 
-// 1: what CIEDE2000 is scaled to, for surfaces side by side.
+// 1: the just noticeable difference of CIEDE2000, for surfaces side by side.
 inline constexpr double kJustNoticeable = 1;
 
 // Luminance of a lightness, 1: white (CIE 15:2018, the inverse of its equation 8.3).
@@ -75,7 +74,7 @@ inline double luminance_of(double lightness) {
   return lightness > 8 ? f * f * f : lightness * 27 / 24389;
 }
 
-// RGBA of one size. rounding: luminances that differ by no more do not count as seen.
+// RGBA of equal size. rounding: luminance differences up to this value do not count as visible.
 inline Difference difference(std::span<const std::uint8_t> one, std::span<const std::uint8_t> two,
                              double rounding = 0) {
   Difference d;

@@ -1,6 +1,6 @@
-// Small pictures of the shipped scenes against those that were looked at and kept, as an eye would compare them.
+// Small pictures of the shipped scenes, compared perceptually with stored pictures that were inspected.
 //
-// When a picture is meant to look otherwise: bin/visual_golden_test "[rewrite]", and look at what changed.
+// To accept an intended change: bin/visual_golden_test "[rewrite]", then inspect the changed pictures.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +8,12 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <tactus/body_def_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/pass_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/uniform_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/golden/colour_difference.h"
 #include "tests/visual_node/golden/shipped_scene.h"
@@ -22,8 +28,8 @@ namespace {
 constexpr int kWidth = 160, kHeight = 120;
 const std::string kFolder = TACTUS_SOURCE_DIR "/tests/visual_node/golden/";
 
-// What another renderer may make of it: rounding to eight bits is below 0.4 of CIEDE2000, and of the pixels one in
-// a hundred lies on an edge that goes the other way round a sample.
+// Tolerance for other renderers: rounding to eight bits is below 0.4 of CIEDE2000, and one pixel in a hundred lies
+// on an edge that falls on the other side of a sample.
 constexpr double kMean = 0.4, kSeen = 0.01;
 // Up to eight times half a step of eight bits, as in gl/screen_passes_test.cpp.
 constexpr double kEdgesRounding = 0.02;
@@ -31,10 +37,10 @@ bool alike(const Difference& d) { return d.mean <= kMean && d.seen <= kSeen; }
 
 struct Frame {
   std::string name, scene;
-  std::function<void(scene_t&)> change;  // of the scene, as its file has it
+  std::function<void(scene_t&)> change;  // change of the scene as loaded from its file
   visual::Settings settings{};
-  // What a last bit of the picture before the passes may come to in them, of luminance: processors round it
-  // differently, and a gradient makes lines of it where it is dark.
+  // Luminance effect of the last bit of the input of the passes: processors round it differently, and a gradient
+  // amplifies it in dark areas.
   double rounding = 0;
 };
 
@@ -44,7 +50,7 @@ int body_of(const scene_t& scene, const std::string& name) {
   throw std::runtime_error("there is no body " + name);
 }
 
-// From near by, so that it fills the picture.
+// Close-up, so that it fills the picture.
 void look_at_body(scene_t& scene, const std::string& name) {
   const Eigen::Vector3d at =
       to_eigen(scene.bodies[static_cast<std::size_t>(body_of(scene, name))].pose).translation();
@@ -96,7 +102,7 @@ Frame frame(const std::string& name) {
   throw std::runtime_error("there is no frame " + name);
 }
 
-// change: of the scene once it is as the frame has it.
+// change: applied to the scene in the state of the frame.
 Picture draw(const Frame& frame, const std::function<void(scene_t&)>& change = {}) {
   static std::map<std::string, std::unique_ptr<ShippedScene>> scenes;
   auto& shipped = scenes[frame.scene];
@@ -121,7 +127,7 @@ std::vector<std::uint8_t> kept(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("The difference of two colours is that of CIEDE2000's published examples") {
+TEST_CASE("The difference of two colours matches the published examples of CIEDE2000") {
   // Sharma, Wu and Dalal (2005), eight rows of table 1.
   struct Row {
     Eigen::Vector3d one, two;
@@ -140,7 +146,7 @@ TEST_CASE("The difference of two colours is that of CIEDE2000's published exampl
   }
 }
 
-TEST_CASE("Bytes of sRGB are the lightness and colour that they stand for") {
+TEST_CASE("Bytes of sRGB convert to the correct lightness and colour") {
   const std::uint8_t white[]{255, 255, 255}, black[]{0, 0, 0}, red[]{255, 0, 0};
   CHECK((lab_of(white) - Eigen::Vector3d(100, 0, 0)).norm() < 0.03);
   CHECK(lab_of(black).norm() < 1e-9);
@@ -148,7 +154,7 @@ TEST_CASE("Bytes of sRGB are the lightness and colour that they stand for") {
   CHECK((lab_of(red) - Eigen::Vector3d(53.24, 80.09, 67.20)).norm() < 0.05);
 }
 
-TEST_CASE("Shipped scenes look as they did when somebody looked at them") {
+TEST_CASE("Shipped scenes match their stored pictures") {
   for (const Frame& f : frames()) {
     const Picture now = draw(f);
     const Difference d = difference(now.rgba, kept(f.name), f.rounding);
@@ -159,7 +165,7 @@ TEST_CASE("Shipped scenes look as they did when somebody looked at them") {
   }
 }
 
-TEST_CASE("Whatever is drawn wrongly differs from them visibly") {
+TEST_CASE("Every injected drawing error differs visibly") {
   const auto lamp_by_5_cm = [](scene_t& s) { s.lights[0].pose.position_m.y += 0.05; };
   const auto turned_over = [](scene_t& s) {
     for (look_t& l : s.looks) l.normal_map = 0;
@@ -201,7 +207,7 @@ TEST_CASE("Whatever is drawn wrongly differs from them visibly") {
   }
 }
 
-TEST_CASE("The pictures are written anew", "[.rewrite]") {
+TEST_CASE("The pictures are rewritten", "[.rewrite]") {
   for (const Frame& f : frames()) {
     const std::string file = kFolder + f.name + ".png";
     const Picture now = draw(f);

@@ -1,10 +1,12 @@
-// A scene that comes with the system, from its file, through the bus, to a picture.
+// A shipped scene, from its file, over the bus, to a picture.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tactus/body_def_t.hpp>
+#include <tactus/pose_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
 
@@ -41,7 +43,7 @@ class ShippedScene {
     look_files = visual::look_files_of(scenes_, trouble);
   }
 
-  // It and its lamps and looks may be changed; what it names by hash stays. overlay: drawn over it.
+  // The scene, its lamps and looks may be changed; files that it names by hash stay. overlay: drawn over it.
   Picture draw(const scene_t& of, const visual::Settings& settings, std::vector<visual::Rect> overlay = {}) {
     static const auto display = [] {
       visual::quiet_software_renderer();
@@ -50,8 +52,8 @@ class ShippedScene {
     const visual::SceneView view(of, meshes, settings, height_maps, look_files);
     visual::Renderer renderer(view.width(), view.height(), settings.shadow_size, settings.anti_aliasing);
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-    for (const auto& said : {view.trouble(), renderer.take_trouble()})
-      trouble.insert(trouble.end(), said.begin(), said.end());
+    for (const auto& messages : {view.trouble(), renderer.take_trouble()})
+      trouble.insert(trouble.end(), messages.begin(), messages.end());
     std::vector<Eigen::Isometry3d> poses;
     for (const body_def_t& body : of.bodies) poses.push_back(to_eigen(body.pose));
     renderer.draw_scene(view.draw(poses, {}));
@@ -69,7 +71,7 @@ class ShippedScene {
   visual::Meshes meshes;
   visual::HeightMaps height_maps;
   visual::LookFiles look_files;
-  std::vector<std::string> trouble;  // whatever was said of it so far
+  std::vector<std::string> trouble;  // all messages so far
 
  private:
   sync::Bus bus_;

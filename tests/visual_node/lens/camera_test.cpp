@@ -32,7 +32,7 @@ TEST_CASE("An SDF camera looks along its x axis with z up and y to the left") {
   }
 }
 
-TEST_CASE("A camera anywhere sees what one at the origin sees of a world moved the other way") {
+TEST_CASE("A camera at any pose sees the inversely moved world of a camera at the origin") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < 100; ++i) {
@@ -46,7 +46,7 @@ TEST_CASE("A camera anywhere sees what one at the origin sees of a world moved t
   }
 }
 
-TEST_CASE("A lamp's view has its axis in the middle, whichever way it shines") {
+TEST_CASE("The view of a lamp has its axis in the middle for every direction") {
   for (const Eigen::Vector3d& direction :
        {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(1, 2, -3)}) {
     const Eigen::Vector3d lamp(1, 2, 3);

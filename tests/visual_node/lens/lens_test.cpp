@@ -1,6 +1,7 @@
 #include "visual_node/lens/lens.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/lens/off_axis.h"
@@ -12,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Looks along +y from 3 m high, a little down.
+// Looks along +y from 3 m high, slightly down.
 scene_t looking_down() {
   scene_t scene = test::empty_scene();
   scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3) *
@@ -34,7 +35,7 @@ Eigen::Vector2f seen(const Camera& camera, const Vector3d& place) {
 
 }  // namespace
 
-TEST_CASE("A cave stands level around the place of the camera, its front where the camera looks") {
+TEST_CASE("A cave is level around the camera position, its front along the camera's heading") {
   const scene_t scene = looking_down();
   const Lens front(scene, room("cave4", "front"), 512, 512), floor(scene, room("cave4", "floor"), 512, 512);
   REQUIRE(front.trouble().empty());
@@ -48,7 +49,7 @@ TEST_CASE("A cave stands level around the place of the camera, its front where t
   CHECK((seen(front.at(head), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
 }
 
-TEST_CASE("A screen on a desk is upright before the camera, however that looks") {
+TEST_CASE("A screen on a desk is upright before the camera at any camera pose") {
   const scene_t scene = looking_down();
   const Lens lens(scene, room("desk"), 640, 360);
   const Eigen::Isometry3d camera = to_eigen(scene.camera);
@@ -57,7 +58,7 @@ TEST_CASE("A screen on a desk is upright before the camera, however that looks")
   CHECK(seen(lens.at({}), camera * Vector3d(0.6, 0, 0.1494)).y() == Approx(1).margin(1e-4));
 }
 
-TEST_CASE("A room or a wall that is not there is said, and the picture is that of the scene's camera") {
+TEST_CASE("A missing room or wall is reported, and the scene's camera is used") {
   const scene_t scene = looking_down();
   const Lens plain(scene, room("none"), 640, 480);
   const auto [name, wall, sentence] = GENERATE(
@@ -68,7 +69,7 @@ TEST_CASE("A room or a wall that is not there is said, and the picture is that o
   CHECK(lens.at({}).clip_from_world() == plain.at({}).clip_from_world());
 }
 
-TEST_CASE("Halves and colours hold what each eye sees, and both have one head") {
+TEST_CASE("Halves and colours show the views of both eyes, from one head pose") {
   const scene_t scene = looking_down();
   Settings s = room(GENERATE("none", "cave4"), "first");
   const Eigen::Isometry3d head = to_eigen(scene.camera) * Eigen::Translation3d(0, 0.1, 0);
@@ -80,14 +81,15 @@ TEST_CASE("Halves and colours hold what each eye sees, and both have one head") 
   REQUIRE(views.size() == 2);
   const auto expected = eyes(head, s.eye_distance_m);
   for (std::size_t i = 0; i < 2; ++i) CHECK((views[i].camera.eye - expected[i].cast<float>()).norm() < 1e-5f);
-  // Of what each view has nothing is in the other.
+  // The views do not overlap.
   const bool apart = views[0].x + views[0].width <= views[1].x || views[1].y + views[1].height <= views[0].y;
   const bool coloured =
       views[0].red && !views[0].green && !views[0].blue && !views[1].red && views[1].green && views[1].blue;
   CHECK(apart != coloured);
   CHECK(coloured == (s.stereo == "anaglyph"));
   if (s.room != "none") return;
-  // The window that the head carries is as wide as the camera sees at 1 m, and at one place for both.
+  // The window that moves with the head is as wide as the camera's view at 1 m, and both eyes see it at one
+  // place.
   const Camera plain = lens.at(head);
   for (const double y : {-0.3, 0.2})
     for (const View& v : views) {

@@ -39,7 +39,7 @@ const Room& cave() {
 
 }  // namespace
 
-TEST_CASE("The corners of a wall are those of its picture wherever the head is") {
+TEST_CASE("The corners of a wall map to those of its picture for every head position") {
   for (const Wall& wall : cave().walls)
     for (const Vector3d& head : heads()) {
       CAPTURE(wall.name, head.transpose());
@@ -47,7 +47,7 @@ TEST_CASE("The corners of a wall are those of its picture wherever the head is")
       CHECK((seen(camera, wall.lower_left) - Vector2d(-1, -1)).norm() < kRounding);
       CHECK((seen(camera, wall.lower_right) - Vector2d(1, -1)).norm() < kRounding);
       CHECK((seen(camera, wall.upper_left) - Vector2d(-1, 1)).norm() < kRounding);
-      // Depth across the wall: from the near plane to the far one.
+      // Depth along the normal of the wall: from the near plane to the far one.
       const auto depth = [&](double away_m) {
         const Eigen::Vector4d clip =
             camera.clip_from_world().cast<double>() * (head - away_m * wall.normal()).homogeneous();
@@ -58,13 +58,13 @@ TEST_CASE("The corners of a wall are those of its picture wherever the head is")
     }
 }
 
-TEST_CASE("What lies behind an edge of two walls is on matching pixels of both") {
+TEST_CASE("Points behind an edge of two walls lie on matching pixels of both") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(0, 1), far(1, 20);
   int edges = 0;
   for (const Wall& a : cave().walls)
     for (const Wall& b : cave().walls) {
-      // The ends that both have.
+      // The shared ends.
       std::vector<Vector3d> ends;
       for (const Wall* one : {&a})
         for (const Vector3d& corner : {one->lower_left, one->lower_right, one->upper_left,
@@ -79,7 +79,7 @@ TEST_CASE("What lies behind an edge of two walls is on matching pixels of both")
         const Vector3d behind = head + far(random) * (on_edge - head);
         const auto place = [&](const Wall& wall) {
           const Vector2d p = seen(off_axis(wall, head, kWidth, 0.02, 100), behind);
-          // Back on the wall: the same place of the room.
+          // Projected back onto the wall: the same place of the room.
           const Vector3d on_wall = wall.lower_left + 0.5 * (p.x() + 1) * (wall.lower_right - wall.lower_left) +
                                    0.5 * (p.y() + 1) * (wall.upper_left - wall.lower_left);
           return on_wall;
@@ -93,7 +93,7 @@ TEST_CASE("What lies behind an edge of two walls is on matching pixels of both")
   CHECK(edges == 24);  // twelve, from either side
 }
 
-TEST_CASE("The eye in front of the middle of a wall sees as through the ordinary lens") {
+TEST_CASE("An eye in front of the middle of a wall has an ordinary perspective") {
   const Wall wall = *cave().named("front");
   const double away = 1.524, height = 1.524;
   const Camera off = off_axis(wall, {0, 0, height}, kWidth, 0.02, 100);
@@ -105,7 +105,7 @@ TEST_CASE("The eye in front of the middle of a wall sees as through the ordinary
   CHECK(off.focal_px == Approx(plain.focal_px).epsilon(1e-5));
 }
 
-TEST_CASE("Two eyes see what is on the wall at one place, before it crossed, behind it uncrossed") {
+TEST_CASE("Both eyes see a point on the wall at one place, before it crossed, behind it uncrossed") {
   const double apart = 0.064;
   const Wall wall = *cave().named("front");
   std::mt19937 random(7);
@@ -125,8 +125,8 @@ TEST_CASE("Two eyes see what is on the wall at one place, before it crossed, beh
     CHECK(parallax(head.translation() + 0.7 * from_eyes).x() < -1e-4);
     CHECK(parallax(head.translation() + 2 * from_eyes).x() > 1e-4);
   }
-  // A level head that faces the wall, without toe-in: nothing is higher for one eye. Infinitely far, as far apart
-  // on the wall as the eyes.
+  // A level head that faces the wall, without toe-in: no vertical difference between the eyes. A point at
+  // infinity is as far apart on the wall as the eyes.
   const auto [left, right] = eyes(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5)), apart);
   const Vector3d far(1e5, 3e4, 4e4);
   const Vector2d parallax =

@@ -18,13 +18,13 @@ const std::string kHead =
 
 }  // namespace
 
-TEST_CASE("A cave's walls face the person inside and close, edge on edge") {
+TEST_CASE("The walls of a cave face the user inside and meet edge on edge") {
   const auto [name, walls, open_edges] =
       GENERATE(std::tuple("cave4", 4, 6), std::tuple("cave6", 6, 0), std::tuple("desk", 1, 4));
   const Room room = load_room(name);
   REQUIRE(room.walls.size() == static_cast<std::size_t>(walls));
   const Vector3d person = name == std::string("desk") ? Vector3d(-0.6, 0, 0) : Vector3d(0, 0, 1.7);
-  // An edge as its two ends, which another wall has too, or nobody.
+  // An edge as its two ends, shared with another wall or open.
   const auto key = [](const Vector3d& v) {
     const auto mm = [](double m) { return std::to_string(std::lround(1e3 * m)) + " "; };
     return mm(v.x()) + mm(v.y()) + mm(v.z());
@@ -46,7 +46,7 @@ TEST_CASE("A cave's walls face the person inside and close, edge on edge") {
   CHECK(alone == open_edges);
 }
 
-TEST_CASE("A room of one's own is read from a file, and a wrong one is refused with a sentence") {
+TEST_CASE("A user's room is read from a file, and an invalid one is rejected with a sentence") {
   const Room room = parse_room(kHead + "tilted,1,0.5,0,1,-0.5,0,1.6,0.5,0.8\r\n\n", "mine");
   REQUIRE(room.walls.size() == 1);
   CHECK(room.named("tilted") == &room.walls[0]);
@@ -60,19 +60,19 @@ TEST_CASE("A room of one's own is read from a file, and a wrong one is refused w
   };
   refused("", "does not begin with");
   refused(kHead, "has no wall");
-  refused(kHead + "a,1,2,3\n", "not ten columns");
+  refused(kHead + "a,1,2,3\n", "does not have ten columns");
   refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,nan\n", "nine numbers");
   refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1e999\n", "nine numbers");
-  refused(kHead + ",1,0.5,0,1,-0.5,0,1,0.5,1\n", "not a name");
-  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.4,1\n", "no rectangle");
-  refused(kHead + "a,1,0.5,0,1,0.5,0,1,0.5,1\n", "no rectangle");
+  refused(kHead + ",1,0.5,0,1,-0.5,0,1,0.5,1\n", "does not have a name");
+  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.4,1\n", "does not have a rectangle");
+  refused(kHead + "a,1,0.5,0,1,0.5,0,1,0.5,1\n", "does not have a rectangle");
   refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1\na,2,0.5,0,2,-0.5,0,2,0.5,1\n", "two walls a");
-  // Nor what has no end, which a scene might name.
+  // Endless files are rejected too; a scene might name one.
   for (const char* path : {"/no/such/room.csv", "/dev/zero", "/tmp"})
     CHECK_THROWS_WITH(load_room(path), Catch::Contains("cannot be read"));
 }
 
-TEST_CASE("A wall that is moved keeps its size and faces where it is turned") {
+TEST_CASE("A moved wall keeps its size and turns its normal") {
   const Wall front = *load_room("cave4").named("front");
   const Eigen::Isometry3d by = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ());
   const Wall there = moved(front, by);

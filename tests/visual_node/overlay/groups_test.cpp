@@ -1,13 +1,15 @@
 #include "visual_node/overlay/groups.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/body_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
 
 namespace {
 
-world_state_t told(int body, std::int8_t group, std::int64_t seq, std::int64_t incarnation = 1) {
+world_state_t state(int body, std::int8_t group, std::int64_t seq, std::int64_t incarnation = 1) {
   world_state_t m{};
   m.header.seq = seq, m.header.incarnation = incarnation;
   m.group = group;
@@ -20,31 +22,31 @@ world_state_t told(int body, std::int8_t group, std::int64_t seq, std::int64_t i
 
 }  // namespace
 
-TEST_CASE("A body is in the group that was told last, also when messages overtake each other") {
+TEST_CASE("A body is in its last published group, also when messages overtake each other") {
   Groups groups;
-  groups.push(told(1, world_state_t::NOW, 5));
-  groups.push(told(2, world_state_t::AHEAD, 6));
+  groups.push(state(1, world_state_t::NOW, 5));
+  groups.push(state(2, world_state_t::AHEAD, 6));
   const auto tints = groups.tints(4);
   REQUIRE(tints.size() == 4);
   CHECK(tints[0].w() == 0);
   CHECK(tints[1].w() > 0);
   CHECK(tints[2].w() > 0);
   CHECK(tints[1] != tints[2]);
-  groups.push(told(2, world_state_t::PROMOTED, 8));
-  groups.push(told(2, world_state_t::AHEAD, 7));
+  groups.push(state(2, world_state_t::PROMOTED, 8));
+  groups.push(state(2, world_state_t::AHEAD, 7));
   CHECK(groups.tints(4)[2] == tints[1]);
   CHECK(groups.haptic() == 2);
   CHECK(groups.visual() == 0);
 }
 
-TEST_CASE("Another life of the simulation begins with nothing, and a body that cannot be is not kept") {
+TEST_CASE("A new incarnation of the simulation starts empty, and an invalid body is ignored") {
   Groups groups;
-  groups.push(told(1, world_state_t::NOW, 500));
-  groups.push(told(3, world_state_t::AHEAD, 1, 2));
+  groups.push(state(1, world_state_t::NOW, 500));
+  groups.push(state(3, world_state_t::AHEAD, 1, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.visual() == 1);
-  groups.push(told(Groups::kMaxBodies, world_state_t::NOW, 2, 2));
-  groups.push(told(-1, world_state_t::NOW, 3, 2));
+  groups.push(state(Groups::kMaxBodies, world_state_t::NOW, 2, 2));
+  groups.push(state(-1, world_state_t::NOW, 3, 2));
   CHECK(groups.haptic() == 0);
-  CHECK(groups.tints(2).size() == 2);  // fewer than it was told of
+  CHECK(groups.tints(2).size() == 2);  // fewer bodies than it has received
 }

@@ -1,7 +1,8 @@
-// All overlays together, on a bus within this process.
+// All overlays together, on an in-process bus.
 #include "visual_node/overlay/live.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "visual_node/frame/marker.h"
 
@@ -27,7 +28,7 @@ struct Laid {
     s.overlay = overlay, s.plots = plots;
     return overlays.configure(s);
   }
-  // A force on the hand is told, then a frame is drawn over.
+  // Publishes a force on the hand, then draws the overlays of a frame.
   std::vector<Rect> drawn(int width, int height) {
     tool_state_t m{};
     m.device.orientation.w = m.proxy.orientation.w = 1;
@@ -46,7 +47,7 @@ bool meet(const Rect& a, const Rect& b) {
 
 }  // namespace
 
-TEST_CASE("Whatever is laid over a picture, plates lie beside one another and the marker stays free") {
+TEST_CASE("In every combination of overlays, plates do not overlap and the marker stays free") {
   Laid c;
   REQUIRE(c.configure("all,help",
                       "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
@@ -65,7 +66,7 @@ TEST_CASE("Whatever is laid over a picture, plates lie beside one another and th
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const Rect marker{0, h - kMarkerRows * kMarkerCell_px, w, kMarkerRows * kMarkerCell_px};
     for (const Rect& r : rects) {
-      // Of what is written no pixel leaves the picture, or what it is written on.
+      // No pixel of the text leaves the picture or its plate.
       CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !meet(r, marker)));
       CHECK(std::any_of(plates.begin(), plates.end(), [&](const Rect& p) {
         return r.x >= p.x && r.y >= p.y && r.x + r.width <= p.x + p.width && r.y + r.height <= p.y + p.height;
@@ -74,7 +75,7 @@ TEST_CASE("Whatever is laid over a picture, plates lie beside one another and th
   }
 }
 
-TEST_CASE("What is off is not heard, and what is switched on by a key is") {
+TEST_CASE("An overlay that is off subscribes to nothing, and a key that switches it on subscribes") {
   Laid c;
   CHECK(c.configure("none").empty());
   CHECK(c.bus.inboxes().empty());
@@ -84,13 +85,13 @@ TEST_CASE("What is off is not heard, and what is switched on by a key is") {
   CHECK_FALSE(c.drawn(640, 480).empty());
   c.overlays.toggle(Overlay::kReport);
   CHECK(c.drawn(640, 480).empty());
-  // A plot that is asked for is shown, whatever the overlays are.
+  // A configured plot is shown whatever overlays are on.
   CHECK(c.configure("none", "text TOOL_STATE.force_N.z").empty());
   CHECK(c.overlays.on().on(Overlay::kPlots));
   CHECK_FALSE(c.drawn(640, 480).empty());
 }
 
-TEST_CASE("A change that cannot be is refused before anything has changed") {
+TEST_CASE("An invalid change is rejected before anything has changed") {
   Settings s;
   s.overlay = "report,plot";
   CHECK_THROWS_WITH(LiveOverlays::check(s), Catch::Contains("\"plot\"") && Catch::Contains("plots"));

@@ -1,6 +1,7 @@
 #include "visual_node/overlay/panel.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/node_health_t.hpp>
 
 #include "sync/time/histogram.h"
 #include "visual_node/frame/text.h"
@@ -24,7 +25,7 @@ node_health_t health(std::int64_t seq, const sync::Histogram& ticks, std::int64_
 
 }  // namespace
 
-TEST_CASE("The setting names overlays. A word that is none is refused with those that are near") {
+TEST_CASE("The setting names overlays, and an unknown word is rejected with similar names") {
   CHECK_FALSE(parse_overlays("none").any());
   CHECK_FALSE(parse_overlays("").any());
   const OverlaySet set = parse_overlays(" contacts,report tools ");
@@ -37,19 +38,19 @@ TEST_CASE("The setting names overlays. A word that is none is refused with those
                     Catch::Contains("\"contract\"") && Catch::Contains("contacts"));
 }
 
-TEST_CASE("Every overlay has a key, and every key is told by the help") {
+TEST_CASE("Every overlay has a key, and the help lists every key") {
   std::size_t reached = 0;
   for (std::size_t i = 0; i < kOverlayNames.size(); ++i)
-    for (int key = 0; key < 400; ++key) reached += wish_of(key) == Wish{Act::kOverlay, static_cast<Overlay>(i)};
+    for (int key = 0; key < 400; ++key) reached += action_of(key) == KeyAction{Act::kOverlay, static_cast<Overlay>(i)};
   CHECK(reached == kOverlayNames.size());
   std::size_t keys = 0;
-  for (int key = 0; key < 400; ++key) keys += wish_of(key).has_value();
+  for (int key = 0; key < 400; ++key) keys += action_of(key).has_value();
   CHECK(help_lines().size() == keys + 1);  // and the mouse
-  CHECK(wish_of(' ') == Wish{Act::kPauseOrResume});
-  CHECK_FALSE(wish_of('Q'));
+  CHECK(action_of(' ') == KeyAction{Act::kPauseOrResume});
+  CHECK_FALSE(action_of('Q'));
 }
 
-TEST_CASE("The time of a tick is that of the last interval, not of all since the start") {
+TEST_CASE("The tick time is that of the last interval, not of all since the start") {
   TickTimes times;
   sync::Histogram ticks;
   for (int i = 0; i < 1000; ++i) ticks.add(microseconds(100));
@@ -58,15 +59,15 @@ TEST_CASE("The time of a tick is that of the last interval, not of all since the
   for (int i = 0; i < 100; ++i) ticks.add(microseconds(800));
   times.push(health(1, ticks));
   REQUIRE(times.median());
-  // Bins are logarithmic: within one of them.
+  // Bins are logarithmic: accurate to one of them.
   CHECK(sync::to_seconds(*times.median()) == Approx(800e-6).epsilon(0.35));
-  times.push(health(2, ticks));  // no tick: the last time stays
+  times.push(health(2, ticks));  // no tick: the last value stays
   CHECK(times.median());
-  times.push(health(0, ticks, 2));  // another life
+  times.push(health(0, ticks, 2));  // another incarnation
   CHECK_FALSE(times.median());
 }
 
-TEST_CASE("What is off has no line, and what is on has its figures") {
+TEST_CASE("An overlay that is off has no line, and one that is on shows its figures") {
   PanelFacts facts;
   facts.contacts = 12;
   facts.rendering = microseconds(8200), facts.period = microseconds(16667);
@@ -82,13 +83,13 @@ TEST_CASE("What is off has no line, and what is on has its figures") {
     for (const std::string& line : panel_lines(on, facts)) all += line + "\n";
     return all;
   };
-  CHECK(text(Overlay::kReport) == "contacts  12\nphysics   not heard of\nrendering 8.2 of 16.7 ms\n");
+  CHECK(text(Overlay::kReport) == "contacts  12\nphysics   no messages\nrendering 8.2 of 16.7 ms\n");
   CHECK(text(Overlay::kAges) == "WORLD_STATE 12.3 ms interpolated\nTOOL_STATE nothing yet\n");
   CHECK_THAT(text(Overlay::kDegradation), Catch::Contains("late sound") && Catch::Contains("step 1 of 0 to 3"));
   CHECK(text(Overlay::kContacts).empty());
 }
 
-TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
+TEST_CASE("Every character that a line can hold is drawn within the picture") {
   for (char c = '!'; c <= '~'; ++c) CHECK(glyph(c));
   CHECK_FALSE(glyph(' '));
   std::vector<Rect> overlay;
@@ -106,7 +107,7 @@ TEST_CASE("Every letter that a line can hold is drawn, within the picture") {
   CHECK(none.empty());
 }
 
-TEST_CASE("A line that is too long goes on in the next, and letters get smaller before lines are left out") {
+TEST_CASE("A long line wraps, and letters get smaller before lines are left out") {
   const float wide = (kGlyphWidth + 1) * 2;
   const TextRoom room{0, 0, 20 * wide + 8, 480};  // 20 letters of size 2
   const auto lowest = [&](const std::vector<std::string>& lines, float bottom = 480) {
@@ -120,13 +121,13 @@ TEST_CASE("A line that is too long goes on in the next, and letters get smaller 
   CHECK(lowest({"twenty letters, no 1 more"}) == two);
   CHECK(lowest({std::string(21, 'M')}) == two);
   CHECK(two - one == (kGlyphHeight + 3) * 2);
-  // Ten lines of size 2 are 200 pixels high, of size 1 half of it.
+  // Ten lines of size 2 are 200 pixels high, of size 1 half of that.
   const std::vector<std::string> ten(10, "line");
   CHECK(lowest(ten, 240) == 206);
   CHECK(lowest(ten, 120) == 103);
 }
 
-TEST_CASE("All lines of all overlays are read at 640 x 480, beside the plots and above what programs read") {
+TEST_CASE("All lines of all overlays fit at 640 x 480, beside the plots and above the markers") {
   PanelFacts facts;
   facts.haptic_bodies = 3000, facts.visual_bodies = 3000, facts.contacts = 10000;
   facts.physics.push(health(0, {}));
@@ -141,7 +142,7 @@ TEST_CASE("All lines of all overlays are read at 640 x 480, beside the plots and
   std::vector<Rect> overlay;
   append_lines(overlay, panel_lines(on, facts), {8, 36, left, bottom}, text_size(480));
   REQUIRE(!overlay.empty());
-  // The plate is as high as all lines are: none was left out, nor cut.
+  // The plate is as high as all lines: none was left out or cut.
   const std::size_t lines = panel_lines(on, facts).size();
   CHECK(overlay.front().height >= static_cast<float>(lines) * (kGlyphHeight + 3));
   for (const Rect& r : overlay) {
@@ -150,7 +151,7 @@ TEST_CASE("All lines of all overlays are read at 640 x 480, beside the plots and
   }
 }
 
-TEST_CASE("A letter is drawn pixel for pixel as its rows say") {
+TEST_CASE("A letter is drawn pixel by pixel from its glyph") {
   std::vector<Rect> overlay;
   append_letters(overlay, "B", 10, 20, 1);
   int pixels = 0, wanted = 0;

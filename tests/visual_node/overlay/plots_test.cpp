@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <tactus/node_health_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
@@ -32,7 +34,7 @@ std::string sentence(const char* text) {
 
 }  // namespace
 
-TEST_CASE("A plot names a variable of a channel, of one process and one tool when that is said") {
+TEST_CASE("A plot names a variable of a channel, optionally of one process and one tool") {
   std::vector<std::string> trouble;
   const auto specs = parse_plots(
       "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", trouble);
@@ -52,16 +54,16 @@ TEST_CASE("A plot names a variable of a channel, of one process and one tool whe
   CHECK(trouble.empty());
 }
 
-TEST_CASE("A plot of what there is not is refused in one sentence with the names that are near") {
+TEST_CASE("A plot with an unknown name is rejected in one sentence with similar names") {
   CHECK_THAT(sentence("graph TOOL_STAT.force_N.z"),
              Catch::Contains("there is no channel \"TOOL_STAT\"; nearest: TOOL_STATE"));
   CHECK_THAT(sentence("graph TOOL_STATE.farce_N.z"), Catch::Contains("nearest: force_N"));
   CHECK_THAT(sentence("graph TOOL_STATE"), Catch::Contains("which field"));
   CHECK_THAT(sentence("pie TOOL_STATE.tool"), Catch::Contains("graph, bar, text"));
-  CHECK_THAT(sentence("graph NODE_HEALTH.note"), Catch::Contains("text and no number"));
-  CHECK_THAT(sentence("graph TOOL_STATE.fade@tool=x"), Catch::Contains("is no number"));
+  CHECK_THAT(sentence("graph NODE_HEALTH.note"), Catch::Contains("text, not a number"));
+  CHECK_THAT(sentence("graph TOOL_STATE.fade@tool=x"), Catch::Contains("is not a number"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@tolo=1"), Catch::Contains("nearest: tool"));
-  CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("@ is followed by"));
+  CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("field=number after @"));
   std::string many;
   for (int i = 0; i < 40; ++i) many += "text TOOL_STATE.tool;";
   std::vector<std::string> trouble;
@@ -69,7 +71,7 @@ TEST_CASE("A plot of what there is not is refused in one sentence with the names
   CHECK(trouble.size() == 1);
 }
 
-TEST_CASE("A course keeps the lowest and highest value of each slice of time, and forgets what is past its span") {
+TEST_CASE("A course keeps the lowest and highest value of each time slice and drops slices beyond its span") {
   Course course(kSpan);
   for (int ms = 0; ms < 3000; ++ms) course.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
   const auto slices = course.slices(at_ms(2999));
@@ -83,17 +85,17 @@ TEST_CASE("A course keeps the lowest and highest value of each slice of time, an
   CHECK_FALSE(course.range(at_ms(9000)));
 }
 
-TEST_CASE("A course takes late and impossible values without harm") {
+TEST_CASE("A course accepts late and invalid values without harm") {
   Course course(kSpan);
   course.add(1, at_ms(100));
-  course.add(9, at_ms(50));  // late: with the newest
+  course.add(9, at_ms(50));  // late: added to the newest slice
   course.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
   course.add(std::numeric_limits<double>::infinity(), at_ms(200));
   REQUIRE(course.slices(at_ms(100)).size() == 1);
   CHECK(course.slices(at_ms(100)).front().highest == 9);
 }
 
-TEST_CASE("Numbers are labelled with what is worth reading") {
+TEST_CASE("Numbers are labelled with useful precision") {
   CHECK(label(0) == "0");
   CHECK(label(1000) == "1000");
   CHECK(label(-12.3456) == "-12.35");
@@ -101,7 +103,7 @@ TEST_CASE("Numbers are labelled with what is worth reading") {
   CHECK(label(123456789) == "1.235e+08");
 }
 
-TEST_CASE("Plots stay within the picture, and hear each channel once") {
+TEST_CASE("Plots stay within the picture, and each channel is listed once") {
   std::vector<std::string> trouble;
   Plots plots(
       parse_plots(
@@ -128,7 +130,7 @@ TEST_CASE("Plots stay within the picture, and hear each channel once") {
   }
 }
 
-TEST_CASE("A bar has its value below it, and text that is empty is not taken for text that never came") {
+TEST_CASE("A bar has its value below it, and empty text differs from missing text") {
   std::vector<std::string> trouble;
   const auto drawn = [&](const char* plot, const char* channel, std::vector<std::uint8_t> bytes) {
     Plots plots(parse_plots(plot, trouble), kSpan);
@@ -138,7 +140,7 @@ TEST_CASE("A bar has its value below it, and text that is empty is not taken for
     return overlay;
   };
   const auto bar = drawn("bar TOOL_STATE.force_N.z", "TOOL_STATE", tool_state(0, 2));
-  // The bar is the one rectangle of its colour that is as wide as the plot: at its most.
+  // The bar is the one rectangle of its colour with the width of the plot: at its maximum.
   float bottom = 0, lowest = 0;
   for (const Rect& r : bar) {
     if (r.width > 100 && r.alpha == 1) bottom = std::max(bottom, r.y + r.height);
@@ -158,7 +160,7 @@ TEST_CASE("A bar has its value below it, and text that is empty is not taken for
         pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
 }
 
-TEST_CASE("Values that are none, and those at the ends of what a number holds, are drawn within their plot") {
+TEST_CASE("Values that are not finite, and those at the limits of a number, are drawn within their plot") {
   std::vector<std::string> trouble;
   const double values[] = {1,
                            -1e308,

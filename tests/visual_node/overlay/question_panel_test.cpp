@@ -1,6 +1,7 @@
 #include "visual_node/overlay/question_panel.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/question_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/question_messages.h"
@@ -41,7 +42,7 @@ std::size_t pixels(std::string_view text, float size) {
   return area(letters, 1, 1, 1);
 }
 
-// As long as the message may be.
+// As long as the message allows.
 question_t longest() {
   question_t m = choice(1, std::vector<std::string>(9, std::string(40, 'W')));
   m.text.clear();
@@ -55,7 +56,7 @@ question_t longest() {
 
 }  // namespace
 
-TEST_CASE("Words go on in the next line at a blank, and one that is too long where the line ends") {
+TEST_CASE("Text wraps at a blank, and a long word breaks at the end of the line") {
   using Lines = std::vector<std::string>;
   CHECK(words_in_lines("", 10).empty());
   CHECK(words_in_lines("ten letter", 10) == Lines{"ten letter"});
@@ -76,7 +77,7 @@ TEST_CASE("A number has as many decimals as its step") {
 }
 
 TEST_CASE(
-    "A question of usual length is in the lower two thirds, in large letters, and every letter of it is there") {
+    "A question of usual length is in the lower two thirds, in large letters, with every letter") {
   question_t yes_no = choice(1, {"yes", "no"}), stiff = number(2, 0, 100, 1), read = question(3, question_t::READ);
   stiff.count = 2, stiff.choices = {"very soft", "very hard"};
   for (question_t* m : {&yes_no, &stiff, &read}) {
@@ -88,7 +89,7 @@ TEST_CASE(
       const Rect& plate = rects.front();
       CHECK(plate.alpha < 1);
       CHECK(plate.y >= (p.height - kMarkers_px) / 3 - 1);
-      // No pixel leaves the plate, or lies where programs read.
+      // No pixel leaves the plate or covers the markers.
       for (const Rect& r : rects) {
         CHECK(r.x >= plate.x);
         CHECK(r.y >= plate.y);
@@ -105,7 +106,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("The longest question that there can be is there whole, within the picture") {
+TEST_CASE("The longest possible question is drawn whole, within the picture") {
   const question_t m = longest();
   for (const Picture& p : kPictures) {
     CAPTURE(p.width, p.height);
@@ -117,7 +118,7 @@ TEST_CASE("The longest question that there can be is there whole, within the pic
     std::size_t wanted = 0;
     const float size = finest(rects);
     for (const std::string& c : m.choices) wanted += pixels(c, size);
-    CHECK(area(rects, 1, 1, 1) >= wanted);  // whatever is left out, no choice is
+    CHECK(area(rects, 1, 1, 1) >= wanted);  // choices are never left out
     if (p.height >= 480) {
       for (const char c : m.text) wanted += pixels(std::string(1, c), size);
       CHECK(area(rects, 1, 1, 1) >= wanted);
@@ -125,11 +126,11 @@ TEST_CASE("The longest question that there can be is there whole, within the pic
   }
 }
 
-TEST_CASE("The mark of a number is where its share of the way is, and never off its slider") {
+TEST_CASE("The mark of a number is at its share of the slider, and never beyond it") {
   const question_t m = number(1, -1, 1, 0.1);
   const auto mark_x = [&](double at) {
     const auto rects = drawn(m, at, {640, 480});
-    const Rect* mark = nullptr;  // the highest of its colour
+    const Rect* mark = nullptr;  // the highest rectangle of its colour
     for (const Rect& r : rects)
       if (r.green == 0.78f && (!mark || r.height > mark->height)) mark = &r;
     REQUIRE(mark);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 
@@ -38,11 +39,11 @@ int count_red(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("A line lies where its ends are seen, as wide as it was asked for") {
+TEST_CASE("A line joins the places of its ends, with the given width") {
   std::vector<Stroke> strokes;
   append_line(strokes, {0, 0.3f, 0}, {0, -0.3f, 0}, kRed);
   const Image image = drawn(strokes);
-  // World y is to the left of the picture.
+  // World y points to the left of the picture.
   const int half = static_cast<int>(0.3 * scale_px(2));
   CHECK(red(image.at(kWidth / 2 - half + 2, kHeight / 2)));
   CHECK(red(image.at(kWidth / 2 + half - 2, kHeight / 2)));
@@ -53,7 +54,7 @@ TEST_CASE("A line lies where its ends are seen, as wide as it was asked for") {
   CHECK(wide == 4);
 }
 
-TEST_CASE("A line that begins behind the eye is cut off there, one that is all behind it is not drawn") {
+TEST_CASE("A line that begins behind the eye is clipped, one entirely behind it is not drawn") {
   std::vector<Stroke> strokes;
   append_line(strokes, {0, 0, 5}, {0.5f, 0, 0}, kRed);  // the eye is at 2 m and looks down; picture up is +x
   CHECK(red(drawn(strokes).at(kWidth / 2, kHeight / 2 - static_cast<int>(0.5 * scale_px(2)) - 4)));
@@ -73,7 +74,7 @@ TEST_CASE("Each eye sees a line in its own half of the picture") {
   CHECK(std::abs(left - right) <= left / 5);
 }
 
-TEST_CASE("An arrow ends where it points, and is none when it has no length or is not finite") {
+TEST_CASE("An arrow ends at its tip, and is not drawn when it has no length or is not finite") {
   std::vector<Stroke> strokes;
   append_arrow(strokes, {1, 2, 3}, {0, 0, 0.5f}, kRed);
   REQUIRE(strokes.size() == 5);
@@ -83,12 +84,12 @@ TEST_CASE("An arrow ends where it points, and is none when it has no length or i
   append_arrow(strokes, {0, 0, 0}, {0, 0, 0}, kRed);
   append_arrow(strokes, {0, 0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, kRed);
   append_arrow(strokes, {std::numeric_limits<float>::infinity(), 0, 0}, {1, 0, 0}, kRed);
-  append_line(strokes, {2 * kFarthest_m, 0, 0}, {1, 0, 0}, kRed);
+  append_line(strokes, {2 * kMaxCoordinate_m, 0, 0}, {1, 0, 0}, kRed);
   append_spring(strokes, {0, 0, 0}, {0, 0, 0}, 0.1f, kRed);
   CHECK(strokes.empty());
 }
 
-TEST_CASE("A spring goes from one end to the other without a gap") {
+TEST_CASE("A spring joins both ends without a gap") {
   std::vector<Stroke> strokes;
   append_spring(strokes, {0, 0, 0}, {1, 0, 0}, 0.1f, kRed);
   REQUIRE(strokes.size() == 2 * kSpringTurns + 1);

@@ -1,6 +1,9 @@
 #include "visual_node/overlay/touches.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
+#include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -36,7 +39,7 @@ TEST_CASE("A contact is a cross and a normal at each of its points, midway betwe
   CHECK(of_tool[0].colour != strokes[0].colour);
 }
 
-TEST_CASE("The arrow of a force is as long as its newtons by the scale, from the middle of the contact") {
+TEST_CASE("The arrow of a force is its newtons times the scale, from the middle of the contact") {
   std::vector<Stroke> strokes;
   append_contact_forces(strokes, std::vector{contact(3, -1)}, 0.02f);
   REQUIRE(!strokes.empty());
@@ -47,7 +50,7 @@ TEST_CASE("The arrow of a force is as long as its newtons by the scale, from the
   state.force_N.y = -2;
   ToolPose pose;
   append_hand_force(strokes, pose, state, 0.02f);
-  CHECK(strokes.empty());  // nobody knows where it is
+  CHECK(strokes.empty());  // its place is unknown
   pose.known = true;
   pose.proxy.translation() = Eigen::Vector3d(1, 2, 3);
   append_hand_force(strokes, pose, state, 0.02f);
@@ -69,7 +72,7 @@ TEST_CASE("A spring joins proxy and device when they are apart") {
   CHECK(strokes.size() == 6 + 2 * kSpringTurns + 1);
 }
 
-TEST_CASE("However many contacts there are, so many lines are drawn") {
+TEST_CASE("The number of lines is bounded for any number of contacts") {
   std::vector<Stroke> strokes;
   append_contacts(strokes, std::vector(kMaxContactsDrawn + 500, contact(4, -1)));
   CHECK(strokes.size() == kMaxContactsDrawn * 16);

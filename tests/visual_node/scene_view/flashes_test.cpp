@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/contact_event_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -23,7 +24,7 @@ Camera camera() { return make_camera(Eigen::Isometry3d::Identity(), 1, 640, 480,
 
 }  // namespace
 
-TEST_CASE("A contact flashes for at least three frames and the duration set, at any rate of frames") {
+TEST_CASE("A contact flashes for at least three frames and the set duration, at any frame rate") {
   Settings settings;
   settings.flash_duration_s = 0.08;
   std::mt19937 random(3);
@@ -46,7 +47,7 @@ TEST_CASE("A contact flashes for at least three frames and the duration set, at 
   }
 }
 
-TEST_CASE("A flash grows and fades, is stronger for a faster hit, and is never smaller than some pixels") {
+TEST_CASE("A flash grows and fades, is brighter for a faster hit, and has a minimum size in pixels") {
   const Settings settings;
   Flashes flashes(settings);
   const sync::HostTime t = sync::host_time(0);
@@ -63,7 +64,7 @@ TEST_CASE("A flash grows and fades, is stronger for a faster hit, and is never s
     slow.add(e, t);
     CHECK(slow.frame(t, camera()).front().colour.norm() < young.colour.norm());
   }
-  SECTION("a distant one covers the least number of pixels when grown") {
+  SECTION("a distant one covers the minimum number of pixels when grown") {
     Flashes far(settings);
     far.add(hit(3, 50), t);
     const Glow glow = far.frame(t + sync::from_seconds(settings.flash_duration_s), camera()).front();
@@ -82,7 +83,7 @@ TEST_CASE("The ring of a flash lies in the plane of contact") {
   CHECK(std::abs(ring.v.head<3>().dot(normal)) < 1e-6f);
 }
 
-TEST_CASE("What the last frame showed is told newest first") {
+TEST_CASE("The events of the last frame are reported newest first") {
   Flashes flashes{Settings{}};
   for (const int id : {4, 5, 6}) flashes.add(hit(id), sync::host_time(0));
   flashes.frame(sync::host_time(0), camera());

@@ -1,6 +1,11 @@
 #include "visual_node/scene_view/look.h"
 
 #include <catch2/catch.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shader_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/scene_view.h"
@@ -20,7 +25,7 @@ Raster dot(bool translucent) {
 }
 }  // namespace
 
-TEST_CASE("Look i of a scene is look i + 1 of its appearance, and the first is Phong's without anything") {
+TEST_CASE("Look i of a scene is look i + 1 of its appearance, and the first is plain Phong") {
   scene_t scene = test::empty_scene();
   scene.looks = {look("a", ""), look("b", "gouraud", 5), look("c", "normal_mapped", 5, 6), look("d", "phong", 7)};
   scene.environment_asset = 6;
@@ -30,17 +35,17 @@ TEST_CASE("Look i of a scene is look i + 1 of its appearance, and the first is P
   CHECK_FALSE(made.looks[0].mapped());
   CHECK(made.looks[1].shader == "phong");
   CHECK(made.looks[2].shader == "gouraud");
-  // A picture is there once, however many wear it.
+  // A picture is stored once, whatever the number of looks that use it.
   CHECK(made.pictures.size() == 2);
   CHECK(made.looks[2].colour_map == made.looks[3].colour_map);
   CHECK(made.environment == made.looks[3].normal_map);
-  // One that did not come is left out.
+  // A missing picture is left out.
   CHECK(made.looks[4].colour_map == -1);
-  // Only the opacity of colours counts.
+  // Only the opacity of colour maps counts.
   for (const Look& l : made.looks) CHECK_FALSE(l.translucent);
 }
 
-TEST_CASE("What a look says that it reflects is what it reflects, and a mirror that says nothing is of glass") {
+TEST_CASE("A look has its reflectance, and a mirror without one has that of glass") {
   scene_t scene = test::empty_scene();
   scene.looks = {look("a", "reflecting"), look("b", "reflecting", 0, 0, 0.5f), look("c", "phong", 0, 0, 0.2f),
                  look("d", "phong")};
@@ -52,7 +57,7 @@ TEST_CASE("What a look says that it reflects is what it reflects, and a mirror t
   CHECK(made.looks[4].reflectance == 0);
 }
 
-TEST_CASE("A surface with a translucent picture is drawn after what is opaque") {
+TEST_CASE("A surface with a translucent picture is drawn after opaque ones") {
   scene_t scene = test::empty_scene();
   for (int i = 0; i < 2; ++i) {
     test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::BOX, {0.1, 0.1, 0.1});
@@ -68,7 +73,7 @@ TEST_CASE("A surface with a translucent picture is drawn after what is opaque") 
   CHECK(list.opaque[0].look == 2);
 }
 
-TEST_CASE("Shaders and passes of a scene bring their texts and names. One whose text did not come has none") {
+TEST_CASE("Shaders and passes of a scene have their sources and names, and a missing source is empty") {
   scene_t scene = test::empty_scene();
   shader_t shader{};
   shader.name = "stripes", shader.fragment_asset = 8, shader.vertex_asset = 9, shader.fragment_file = "s.frag";
@@ -83,7 +88,7 @@ TEST_CASE("Shaders and passes of a scene bring their texts and names. One whose 
   CHECK(made.passes[0].shader == "greyscale");
 }
 
-TEST_CASE("A look whose number no scene has is drawn as if it had none") {
+TEST_CASE("A look index beyond the scene's looks is drawn without a look") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::BOX, {0.1, 0.1, 0.1});
   scene.visuals[0].look = GENERATE(-1, -7, 0, 3, 2147483647);
@@ -92,7 +97,7 @@ TEST_CASE("A look whose number no scene has is drawn as if it had none") {
   CHECK(view.draw(poses, {}).opaque.at(0).look == 0);
 }
 
-TEST_CASE("A picture on a mesh that cannot bear it is said") {
+TEST_CASE("A picture on a mesh without texture coordinates is reported") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::MESH, {1, 1, 1});
   scene.visuals[0].shape.mesh_hash = 3, scene.visuals[0].shape.name = "kettle", scene.visuals[0].look = 0;
@@ -101,13 +106,13 @@ TEST_CASE("A picture on a mesh that cannot bear it is said") {
   mesh.positions_m = {0, 0, 0, 1, 0, 0, 0, 1, 0}, mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1},
   mesh.indices = {0, 1, 2};
   const LookFiles files{{{5, dot(false)}, {6, dot(false)}}, {}};
-  const auto said = [&] { return SceneView(scene, {{3, mesh}}, Settings{}, {}, files).trouble(); };
-  REQUIRE(said().size() == 1);
-  CHECK_THAT(said()[0],
+  const auto trouble = [&] { return SceneView(scene, {{3, mesh}}, Settings{}, {}, files).trouble(); };
+  REQUIRE(trouble().size() == 1);
+  CHECK_THAT(trouble()[0],
              Catch::Contains("tiles") && Catch::Contains("kettle") && Catch::Contains("no texture coordinates"));
   mesh.texcoords = {0, 0, 1, 0, 0, 1};
-  REQUIRE(said().size() == 1);
-  CHECK_THAT(said()[0], Catch::Contains("tangents"));
+  REQUIRE(trouble().size() == 1);
+  CHECK_THAT(trouble()[0], Catch::Contains("tangents"));
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  CHECK(said().empty());
+  CHECK(trouble().empty());
 }

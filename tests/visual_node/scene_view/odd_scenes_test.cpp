@@ -1,7 +1,12 @@
-// Scenes that no author means: empty, crowded, with bodies of no size or of any, with poses that are none.
+// Unusual scenes: empty, crowded, with bodies of zero or extreme size, with invalid poses.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
+#include <tactus/tool_state_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/valid.h"
 #include "tests/visual_node/support/offscreen.h"
@@ -41,7 +46,7 @@ scene_t lit_floor() {
 
 }  // namespace
 
-TEST_CASE("A scene with nothing in it is a picture of its background") {
+TEST_CASE("An empty scene is a picture of its background") {
   scene_t scene = empty_scene();
   scene.background = grey(0.25f);
   REQUIRE(valid(scene));
@@ -51,9 +56,9 @@ TEST_CASE("A scene with nothing in it is a picture of its background") {
     CHECK((image.at(x, y) - Eigen::Vector3d::Constant(srgb(0.25))).cwiseAbs().maxCoeff() <= kTolerance);
 }
 
-TEST_CASE("Three thousand bodies are all drawn, each where it is") {
+TEST_CASE("Three thousand bodies are all drawn in their places") {
   scene_t scene = floor_from_above(2);
-  scene.visuals.clear();  // no floor: what is lit is a body
+  scene.visuals.clear();  // no floor: every lit pixel is a body
   scene.ambient = grey(1);
   // A grid of 60 x 50 balls of 4 mm, 30 mm apart; picture up is +x, and picture left +y.
   constexpr int kColumns = 60, kRows = 50;
@@ -74,7 +79,7 @@ TEST_CASE("Three thousand bodies are all drawn, each where it is") {
   CHECK(missing == 0);
 }
 
-TEST_CASE("A body whose pose is none of a room is not seen, and changes nothing of what is") {
+TEST_CASE("A body with an extreme pose is not visible and changes nothing else") {
   scene_t with = lit_floor();
   const scene_t without = with;
   const int body = add_body(with, {0, 0, 0.2});
@@ -91,7 +96,7 @@ TEST_CASE("A body whose pose is none of a room is not seen, and changes nothing 
   }
 }
 
-TEST_CASE("Bodies of any size and at any place are drawn without harm to the renderer") {
+TEST_CASE("Bodies of any size at any place do no harm to the renderer") {
   std::mt19937 random(7);
   const double sizes[] = {0, 1e-12, 1e-3, 1, 1e6, 1e9}, places[] = {0, -1e-9, 0.3, -5, 1e6, -1e9};
   const auto any = [&](const auto& list) { return list[random() % std::size(list)]; };
@@ -106,12 +111,12 @@ TEST_CASE("Bodies of any size and at any place are drawn without harm to the ren
     const Image odd = render_at(scene, poses_of(scene));
     CHECK(odd.rgba.size() == static_cast<std::size_t>(kWidth * kHeight * 4));
   }
-  // And the one after them is as ever.
+  // The next picture is as usual.
   const Image a = render(lit_floor());
   CHECK(a.at(kWidth / 2, kHeight / 2).maxCoeff() > 20);
 }
 
-TEST_CASE("What is not a number or infinite does not come over the border") {
+TEST_CASE("Numbers that are not finite are rejected at the border") {
   scene_t scene = lit_floor();
   scene.body_count = static_cast<int>(scene.bodies.size());
   scene.visual_count = static_cast<int>(scene.visuals.size());
@@ -144,7 +149,7 @@ TEST_CASE("What is not a number or infinite does not come over the border") {
   }
 }
 
-TEST_CASE("A picture is drawn in the smallest and in the largest size that the settings allow") {
+TEST_CASE("The smallest and the largest picture size of the settings are drawn") {
   display();
   const scene_t scene = lit_floor();
   for (const auto& [width, height] : {std::pair(320, 240), std::pair(4096, 240), std::pair(320, 4096)}) {

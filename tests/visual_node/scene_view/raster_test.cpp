@@ -45,7 +45,7 @@ Bytes jpeg_bytes(unsigned width, unsigned height, const Bytes& rgb) {
   return bytes;
 }
 
-// Left half of one colour over right half of another, so that the loss of JPEG is small.
+// Left half of one colour and right half of another, so that the loss of JPEG is small.
 Bytes halves(unsigned side) {
   Bytes rgb;
   for (unsigned y = 0; y < side; ++y)
@@ -55,7 +55,7 @@ Bytes halves(unsigned side) {
   return rgb;
 }
 
-// Either it throws one clause or it is a picture of some size with all of its pixels.
+// Either it throws one clause, or it returns a picture with all of its pixels.
 void survives(const Bytes& bytes) {
   try {
     const Raster r = read_raster(bytes);
@@ -70,7 +70,7 @@ void survives(const Bytes& bytes) {
 
 }  // namespace
 
-TEST_CASE("A PNG is read with its lowest row first, and says whether it is translucent") {
+TEST_CASE("A PNG is read with its lowest row first, with its translucency") {
   const Raster r = read_raster(test::png_bytes(3, 2, 8, kColours, PNG_COLOR_TYPE_RGB));
   CHECK(r.width == 3);
   CHECK(r.height == 2);
@@ -102,15 +102,15 @@ TEST_CASE("A JPEG is read with its lowest row first") {
   CHECK(near(20, 27, 200, 40, 60));
 }
 
-TEST_CASE("What is no picture is refused with one clause") {
+TEST_CASE("Data that is not a picture is rejected with one clause") {
   CHECK_THROWS_WITH(read_raster({}), Catch::Contains("neither a PNG nor a JPEG"));
   const Bytes text{'h', 'e', 'l', 'l', 'o', ' ', 'w', 'o', 'r', 'l', 'd'};
   CHECK_THROWS_WITH(read_raster(text), Catch::Contains("neither a PNG nor a JPEG"));
 }
 
-TEST_CASE("A picture that is cut off is refused wherever it ends, and so is a mangled one or it is a picture") {
+TEST_CASE("A picture cut off at any byte is rejected, and a corrupted one is rejected or decoded") {
   const Bytes png = test::png_bytes(3, 2, 8, kColours, PNG_COLOR_TYPE_RGB), jpeg = jpeg_bytes(16, 16, halves(16));
-  // Without the last chunk of a PNG, which says nothing, or the end mark of a JPEG the picture may be whole.
+  // Without the empty last chunk of a PNG or the end marker of a JPEG the picture may be complete.
   for (std::size_t length = 0; length < png.size() - 12; ++length) {
     INFO(length << " of " << png.size() << " bytes of PNG");
     CHECK_THROWS(read_raster(std::span(png).first(length)));
@@ -128,8 +128,8 @@ TEST_CASE("A picture that is cut off is refused wherever it ends, and so is a ma
     }
 }
 
-TEST_CASE("A picture of too many pixels is refused before it takes memory") {
-  // A row of 4097 pixels, and a header alone that claims 65,000 each way.
+TEST_CASE("A picture of too many pixels is rejected before memory is allocated") {
+  // A row of 4097 pixels, and a header that claims 65,000 each way.
   CHECK_THROWS_WITH(read_raster(test::png_bytes(4097, 1, 8, Bytes(4097, 9))), Catch::Contains("4096"));
   CHECK(read_raster(test::png_bytes(4096, 1, 8, Bytes(4096, 9))).width == 4096);
   Bytes jpeg = jpeg_bytes(16, 16, halves(16));

@@ -1,5 +1,5 @@
-// The normals with which a picture is lit against those that lcmtypes/relief.h gives to every other sense: the
-// shader of the surfaces itself is drawn, unchanged, with one lamp that shows the normal instead of light.
+// Compares the normals of the drawn picture with those of lcmtypes/relief.h, which all other modalities use. The
+// surface shader is drawn unchanged, with one lamp that outputs the normal instead of light.
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/relief.h"
 #include "tests/visual_node/support/offscreen.h"
@@ -92,12 +93,12 @@ struct Angles {
   double mean_deg = 0, max_deg = 0, steepest_deg = 0;
 };
 
-// Between the two normals at every point of a grid finer than the map, over all of it.
+// Angle between the two normals at every point of a grid finer than the map, over all of it.
 Angles compare(const Program& program, const Relief& relief, const Vector3d& normal_body, const Vector3d& turn) {
-  constexpr int kPerPixel = 3;  // two of three points lie off the middles of the pixels
+  constexpr int kPerPixel = 3;  // two of three points lie off the pixel centres
   const int width = kPerPixel * relief.columns, height = kPerPixel * relief.rows;
   const BumpAxes axes = bump_axes(normal_body);
-  // Not from the corner of the map: the seam lies within.
+  // Offset from the corner of the map, so that the seam lies within.
   Vector3d corner = Vector3d::Zero(), x = Vector3d::Zero(), y = Vector3d::Zero();
   corner[axes.across] = 0.07;
   corner[axes.u] = -0.3 * static_cast<double>(relief.size_m.x()),
@@ -151,7 +152,7 @@ HeightMap planks() {
   return read_height_map(bytes);
 }
 
-// As rough as a map can be: no pixel knows its neighbour.
+// As rough as a map can be: neighbouring pixels are independent.
 HeightMap noise() {
   std::mt19937 random(5);
   HeightMap map{47, 33, 65535, {}};
@@ -161,7 +162,7 @@ HeightMap noise() {
 
 }  // namespace
 
-TEST_CASE("The normal that the hand feels is the picture's, within 1 degree over the whole map") {
+TEST_CASE("The normal of the haptic surface equals that of the picture within 1 degree over the whole map") {
   test::display();
   const ShaderLibrary library;
   const Program program({{"quad.vert", kQuad}},

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <tactus/material_def_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "tests/grey_png.h"
@@ -28,7 +30,7 @@ TEST_CASE("The slopes of a sine are its derivative") {
     }
 }
 
-TEST_CASE("Upwards in the picture is along v") {
+TEST_CASE("Up in the picture is along v") {
   HeightMap map;
   map.columns = map.rows = 4, map.white = 255;
   map.levels = {0, 0, 0, 0, 51, 51, 51, 51, 102, 102, 102, 102, 153, 153, 153, 153};
@@ -40,7 +42,7 @@ TEST_CASE("Upwards in the picture is along v") {
   }
 }
 
-TEST_CASE("A damaged or missing height map is said once and leaves the others") {
+TEST_CASE("A damaged or missing height map is reported once and does not affect others") {
   scene_t scene = test::empty_scene();
   const std::vector<std::uint8_t> good = test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   for (const std::int64_t asset : {1, 2, 2, 12345, 0}) scene.materials.push_back(test::rough(asset, 1, 1, 0.001));

@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <tactus/light_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/lighting.h"
@@ -19,7 +22,7 @@ int instances(const std::vector<Batch>& batches) {
 }
 }  // namespace
 
-TEST_CASE("A scene becomes one instance per visible shape, where its body is") {
+TEST_CASE("A scene becomes one instance for each visible shape, at its body") {
   scene_t scene = test::empty_scene();
   const int ball = test::add_body(scene, {1, 2, 3});
   test::add_visual(scene, ball, shape_def_t::SPHERE, {0.1, 0, 0});
@@ -31,13 +34,13 @@ TEST_CASE("A scene becomes one instance per visible shape, where its body is") {
   CHECK(list.instances[0].scale.head<3>().isApprox(Eigen::Vector3f(0.1f, 0.1f, 0.1f)));
   CHECK(instances(list.opaque) == 1);
 
-  SECTION("a shape off its body's centre turns with it") {
+  SECTION("a shape with an offset in its body turns with it") {
     scene.visuals[0].shape.pose.position_m.x = 1;
     poses[0].rotate(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()));
     const DrawList turned = SceneView(scene, {}, Settings{}).draw(poses, {});
     CHECK(turned.instances[0].position.head<3>().isApprox(Eigen::Vector3f(4, 6, 6)));
   }
-  SECTION("the same kind of shape is one batch, however many there are") {
+  SECTION("the same kind of shape is one batch for any number of shapes") {
     for (int i = 0; i < 50; ++i) test::add_visual(scene, ball, shape_def_t::BOX, {1, 1, 1});
     const DrawList many = SceneView(scene, {}, Settings{}).draw(poses, {});
     CHECK(many.opaque.size() == 2);
@@ -45,7 +48,7 @@ TEST_CASE("A scene becomes one instance per visible shape, where its body is") {
   }
 }
 
-TEST_CASE("Batches name every instance exactly once and only geometries that exist") {
+TEST_CASE("Batches contain every instance exactly once and only existing geometries") {
   scene_t scene = test::empty_scene();
   for (int i = 0; i < 40; ++i) {
     const int body = test::add_body(scene, {2.0 + i, 0.1 * i, 0});
@@ -65,7 +68,7 @@ TEST_CASE("Batches name every instance exactly once and only geometries that exi
   REQUIRE(named.size() == 40);
   for (int i = 0; i < 40; ++i) CHECK(named.count(i) == 1);
 
-  SECTION("what is translucent comes last and from far to near") {
+  SECTION("translucent shapes come last and from far to near") {
     float before = 1e9f;
     for (const Batch& b : list.translucent)
       for (int i = b.first; i < b.first + b.count; ++i) {
@@ -77,7 +80,7 @@ TEST_CASE("Batches name every instance exactly once and only geometries that exi
   }
 }
 
-TEST_CASE("A round shape has as many edges as its size on the screen asks for") {
+TEST_CASE("A round shape has a number of edges that follows its size on the screen") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::SPHERE, {0.1, 0, 0});
   const SceneView view(scene, {}, Settings{});
@@ -106,7 +109,7 @@ TEST_CASE("A tool is drawn solid at its proxy and as a ghost at its device") {
   CHECK(list.instances[static_cast<std::size_t>(list.opaque[0].first)].scale.x() == Approx(0.02f));
   CHECK(list.instances[static_cast<std::size_t>(list.translucent[0].first)].position.z() == Approx(-0.1f));
 
-  SECTION("a hand that is not heard of is drawn where the simulation holds it, without a ghost") {
+  SECTION("a tool without messages is drawn where the simulation holds it, without a ghost") {
     tool.known = false;
     list = view.draw(poses, std::span(&tool, 1));
     CHECK(instances(list.opaque) == 1);
@@ -115,7 +118,7 @@ TEST_CASE("A tool is drawn solid at its proxy and as a ghost at its device") {
   }
 }
 
-TEST_CASE("A shape whose mesh is missing is a magenta box where it is, counted and said once") {
+TEST_CASE("A shape whose mesh is missing is a magenta box in its place, counted and reported once") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::MESH, {1, 1, 1});
   scene.visuals[0].shape.mesh_hash = 42;
@@ -129,11 +132,11 @@ TEST_CASE("A shape whose mesh is missing is a magenta box where it is, counted a
   REQUIRE(list.instances.size() == 1);
   CHECK(list.opaque[0].geometry == 1);  // the box
   CHECK(list.instances[0].position.head<3>().isApprox(Eigen::Vector3f(2, 1, 0)));
-  // It glows, so that it is seen in the dark.
+  // It glows, so that it is visible in the dark.
   CHECK(list.instances[0].emissive.head<3>() == Eigen::Vector3f(1, 0, 1));
 }
 
-TEST_CASE("geometry=physics draws what touches, each body in a colour of its own") {
+TEST_CASE("geometry=physics draws the collision shapes, each body in its own colour") {
   scene_t scene = test::empty_scene();
   for (int i = 0; i < 3; ++i) {
     const int body = test::add_body(scene, {2, 0.3 * i, 0});
@@ -167,8 +170,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "A spot of the name of a tool shines at where the tool is, with its shadow. While nobody holds it as the "
-    "scene says") {
+    "A spot light with the name of a tool shines at the tool, with its shadow, and without a device as the scene defines") {
   scene_t scene = test::empty_scene();
   scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};
   scene.lights[0].casts_shadow = 0;
@@ -210,12 +212,12 @@ TEST_CASE("The first spot that casts shadows gets the shadow map, and a map cove
   CHECK(on_map(2 * std::tan(0.5)) < 1);  // the edge of the outer cone
   CHECK(on_map(2 * std::tan(0.53)) > 1);
 
-  SECTION("not when shadows are switched off") {
+  SECTION("not when shadows are off") {
     Settings settings;
     settings.shadows = false;
     CHECK(make_lighting(scene, settings).shadow_light == -1);
   }
-  SECTION("no more lamps than the shader can have") {
+  SECTION("no more lamps than the shader supports") {
     scene.lights.resize(20, sun);
     CHECK(make_lighting(scene, Settings{}).lights.size() == kMaxLights);
   }

@@ -1,5 +1,7 @@
-// What the device draws for two eyes.
+// Stereo pictures as drawn by the device.
 #include <catch2/catch.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
 
@@ -17,7 +19,7 @@ scene_t ball() {
   return scene;
 }
 
-// Mean column of what is bright in a channel, between two columns; and of the rows, -1: nothing is.
+// Mean column of the bright pixels of a channel between two columns, and mean row; -1: none.
 Eigen::Vector2d middle(const Image& image, int channel, int from, int to, int top = 0, int bottom = kHeight) {
   double n = 0;
   Eigen::Vector2d sum(0, 0);
@@ -32,7 +34,7 @@ Eigen::Vector2d middle(const Image& image, int channel, int from, int to, int to
 TEST_CASE("Each eye's part of the picture has the ball where that eye sees it") {
   visual::Settings settings;
   settings.event_marker = "off";
-  // Infinitely far is as far apart as the eyes on the window at 1 m, at 2 m half of that.
+  // A point at infinity has the distance of the eyes on the window at 1 m; at 2 m half of that.
   const double half_px = kWidth / 2.0, window_m = std::tan(0.5), parallax_px = 0.064 / 2 / window_m * half_px;
   settings.stereo = "anaglyph";
   const Image coloured = render(ball(), settings);
@@ -54,7 +56,7 @@ TEST_CASE("Each eye's part of the picture has the ball where that eye sees it") 
   CHECK(middle(above, 1, 0, kWidth, 0, kHeight / 2).y() == Approx(0.5 * red.y()).margin(0.5));
 }
 
-TEST_CASE("Coarser pictures for two eyes show the same, and flashes are where each eye sees them") {
+TEST_CASE("Coarser stereo pictures show the same, and flashes are where each eye sees them") {
   visual::Settings settings;
   settings.stereo = "side_by_side";
   const Image fine = render(ball(), settings),
@@ -68,7 +70,7 @@ TEST_CASE("Coarser pictures for two eyes show the same, and flashes are where ea
   visual::Renderer renderer(kWidth, kHeight, settings.shadow_size);
   renderer.load(view.geometries(), view.lighting());
   visual::DrawList list = view.draw({}, {});
-  // As large as the ball and where it is, facing the head.
+  // As large as the ball and in its place, facing the head.
   list.glows.push_back({{2, 0, 0, 0.5f}, {0, -0.1f, 0, 0}, {0, 0, 0.1f, 0}, {1, 1, 1, 0}});
   const Image flashed = draw(renderer, list);
   for (const int from : {0, kWidth / 2})

@@ -21,7 +21,7 @@ double volume(const Triangles& t) {
   return sum;
 }
 
-// Every edge is passed once in each direction: no hole, no face turned over.
+// Every edge is used once in each direction: no hole, no flipped face.
 bool closed(const Triangles& t) {
   const auto key = [](const Vector3f& p) {
     return std::array<long, 3>{std::lround(p.x() * 1e5), std::lround(p.y() * 1e5), std::lround(p.z() * 1e5)};
@@ -51,11 +51,11 @@ double inscribed(int n) { return n / (2 * std::numbers::pi) * std::sin(2 * std::
 
 }  // namespace
 
-TEST_CASE("Solid shapes are closed, face outwards and hold the volume they should") {
+TEST_CASE("Solid shapes are closed, face outwards and have the right volume") {
   const double pi = std::numbers::pi;
   SECTION("box") { CHECK(volume(unit_box()) == Approx(1)); }
   SECTION("cylinder") { CHECK(volume(unit_cylinder(24)) == Approx(pi * inscribed(24)).epsilon(1e-5)); }
-  // Rings of 15 degrees leave out less than (pi / 24)^2 of each dimension's share: 3 %.
+  // Rings of 15 degrees lose less than (pi / 24)^2 of the share of each dimension: 3 %.
   SECTION("sphere") { CHECK(volume(unit_sphere(24)) == Approx(4.0 / 3 * pi).epsilon(0.03)); }
   SECTION("capsule") {
     CHECK(volume(capsule(0.5, 2, 24)) == Approx(pi * 0.25 * 2 + 4.0 / 3 * pi * 0.125).epsilon(0.03));
@@ -67,7 +67,7 @@ TEST_CASE("Solid shapes are closed, face outwards and hold the volume they shoul
   }
 }
 
-TEST_CASE("A plane faces +z and is seen from below too") {
+TEST_CASE("A plane faces +z and is also visible from below") {
   const Triangles t = unit_plane();
   CHECK(normals_face_outwards(t));
   CHECK(t.normals[0].isApprox(Vector3f::UnitZ()));
@@ -75,8 +75,8 @@ TEST_CASE("A plane faces +z and is seen from below too") {
 }
 
 TEST_CASE("Tangents lie in the surface along growing u, and binormals along growing v, on every shape") {
-  // Around a ring of n segments what is between two corners turns by up to a turn / n away from the tangent at
-  // either, and by half of it from the one in the middle.
+  // Around a ring of n segments, points between two corners differ by up to a turn / n from the tangent at either
+  // corner, and by half of it from the tangent in the middle.
   for (const auto& [t, turn] :
        std::vector<std::pair<Triangles, double>>{{unit_box(), 0},
                                                  {unit_plane(), 0},

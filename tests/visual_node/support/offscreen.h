@@ -1,8 +1,11 @@
-// Pictures drawn without a display server, for the tests of this folder.
+// Offscreen pictures for the tests of this folder.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <tactus/body_def_t.hpp>
+#include <tactus/scene_t.hpp>
+#include <tactus/shape_def_t.hpp>
 #include <vector>
 
 #include "tests/visual_node/support/test_scene.h"
@@ -75,7 +78,7 @@ inline scene_t floor_from_above(double height_m) {
 // Pixels per metre on that floor.
 inline double scale_px(double height_m) { return kWidth / 2 / std::tan(0.5) / height_m; }
 
-// 8 bits, and what the device's own encoding as sRGB errs.
+// Tolerance: 8 bits, and the error of the device's own sRGB encoding.
 inline constexpr double kTolerance = 2;
 
 }  // namespace tactus::test

@@ -1,4 +1,4 @@
-// Questions as somebody who leads a study would ask them.
+// Question messages as a trial runner sends them.
 #pragma once
 
 #include <chrono>

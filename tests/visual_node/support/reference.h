@@ -1,5 +1,5 @@
-// What a pixel should show, from the published formulas in double precision: it shares no line with shaders/ and
-// takes lamps and materials as the message says them.
+// Reference values of pixels, from the published formulas in double precision. Shares no code with shaders/ and
+// takes lamps and materials from the message.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,9 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <tactus/light_def_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
 #include "tests/visual_node/support/offscreen.h"
@@ -18,7 +20,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-// Of a point of a surface.
+// Properties of a point of a surface.
 struct Point {
   Vector3d at = Vector3d::Zero(), normal = Vector3d::UnitZ();
   Vector3d tangent = Vector3d::UnitX();
@@ -26,7 +28,7 @@ struct Point {
   Vector2d uv = Vector2d::Zero();
 };
 
-// What the eye's ray meets, with the three corners of the triangle and their shares.
+// The hit of the eye's ray, with the three corners of the triangle and their weights.
 struct Hit {
   Point point;
   std::array<Point, 3> corners;
@@ -40,14 +42,14 @@ inline double linear(double encoded) {
   return e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4);
 }
 
-// Through the middle of a pixel: x from the left, y from the top.
+// The ray through the middle of a pixel: x from the left, y from the top.
 inline Vector3d ray(const scene_t& scene, double x, double y) {
   const double focal_px = kWidth / 2 / std::tan(scene.camera_fov_rad / 2);
   const Vector3d along(1, -(x + 0.5 - kWidth / 2) / focal_px, -(y + 0.5 - kHeight / 2) / focal_px);
   return (to_eigen(scene.camera).linear() * along).normalized();
 }
 
-// The triangles of one instance; what the device interpolates, interpolated here (Moeller and Trumbore 1997).
+// The triangles of one instance; attributes are interpolated here as the device does (Moeller and Trumbore 1997).
 inline std::optional<Hit> meet(const visual::Triangles& t, const visual::Instance& instance, const Vector3d& eye,
                                const Vector3d& along) {
   const Eigen::Quaterniond q(Eigen::Quaternionf(instance.orientation).cast<double>());
@@ -89,8 +91,9 @@ inline std::optional<Hit> meet(const visual::Triangles& t, const visual::Instanc
   return nearest;
 }
 
-// Irradiance of a lamp over its full one, and the way to it: the law of distance of SDFormat 1.9 (<attenuation>),
-// and the cone of a spot between its two angles, whose falloff is an exponent (OGRE 1.9 manual, "Spotlight").
+// Irradiance of a lamp relative to its maximum, and the direction to it: the distance law of SDFormat 1.9
+// (<attenuation>), and the cone of a spot between its two angles, whose falloff is an exponent (OGRE 1.9 manual,
+// "Spotlight").
 inline std::pair<Vector3d, double> towards(const light_def_t& lamp, const Vector3d& at) {
   if (lamp.kind == light_def_t::DIRECTIONAL) return {-to_eigen(lamp.direction), 1};
   const Vector3d to = to_eigen(lamp.pose.position_m) - at, l = to.normalized();
@@ -108,9 +111,9 @@ inline std::pair<Vector3d, double> towards(const light_def_t& lamp, const Vector
   return {l, strength};
 }
 
-// Phong's model (1975, "Illumination for Computer Generated Pictures") without shadows, his power of the cosine t
-// replaced by t / (n - n t + t) (Schlick 1994, "A fast alternative to Phong's specular model"); ambient light from
-// a hemisphere whose lower half is half as bright. texture: factor on what is diffuse.
+// Phong's model (1975, "Illumination for Computer Generated Pictures") without shadows. The power of the cosine t
+// is replaced by t / (n - n t + t) (Schlick 1994, "A fast alternative to Phong's specular model"). Ambient light
+// comes from a hemisphere whose lower half is half as bright. texture: factor on diffuse light.
 inline Vector3d phong(const scene_t& scene, const visual_def_t& m, const Point& p, const Vector3d& eye,
                       const Vector3d& texture = Vector3d::Ones()) {
   const Vector3d n = p.normal, v = (eye - p.at).normalized();
@@ -129,7 +132,7 @@ inline Vector3d phong(const scene_t& scene, const visual_def_t& m, const Point& 
   return sum;
 }
 
-// Evaluated at the corners, in between linear (Gouraud 1971, "Continuous Shading of Curved Surfaces").
+// Evaluated at the corners and interpolated linearly (Gouraud 1971, "Continuous Shading of Curved Surfaces").
 inline Vector3d gouraud(const scene_t& scene, const visual_def_t& m, const Hit& hit, const Vector3d& eye) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < 3; ++k)
@@ -137,7 +140,7 @@ inline Vector3d gouraud(const scene_t& scene, const visual_def_t& m, const Hit& 
   return sum;
 }
 
-// Bilinear between the middles of texels, repeated (OpenGL 3.3, 3.8.11); value(column, row), rows from the lowest.
+// Bilinear between texel centres, repeated (OpenGL 3.3, 3.8.11); value(column, row), rows from the lowest.
 inline Vector3d bilinear(const visual::Raster& r, const Vector2d& uv, double (*decode)(double)) {
   const double x = uv.x() * r.width - 0.5, y = uv.y() * r.height - 0.5;
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
@@ -151,7 +154,7 @@ inline Vector3d bilinear(const visual::Raster& r, const Vector2d& uv, double (*d
          b * ((1 - a) * texel(i, j + 1) + a * texel(i + 1, j + 1));
 }
 
-// The normal that a normal map says (glTF 2.0, 3.9.3), its tangent made upright on the normal of the surface.
+// The normal of a normal map (glTF 2.0, 3.9.3), with its tangent orthogonal to the normal of the surface.
 inline Vector3d mapped_normal(const Point& p, const Vector3d& m) {
   const Vector3d n = p.normal, t = (p.tangent - n * n.dot(p.tangent)).normalized();
   return (m.x() * t + m.y() * p.binormal_sign * n.cross(t) + m.z() * n).normalized();

@@ -4,7 +4,14 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tactus/body_def_t.hpp>
+#include <tactus/light_def_t.hpp>
+#include <tactus/material_def_t.hpp>
+#include <tactus/pose_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/vec3f_t.hpp>
+#include <tactus/visual_def_t.hpp>
 
 #include "lcmtypes/height_map.h"
 #include "lcmtypes/vectors.h"
@@ -17,7 +24,7 @@ inline pose_t at(double x, double y, double z) {
   return to_pose(Eigen::Isometry3d(Eigen::Translation3d(x, y, z)));
 }
 
-// Nothing in it; a camera at the origin that looks along +x.
+// An empty scene; a camera at the origin that looks along +x.
 inline scene_t empty_scene() {
   scene_t scene{};
   scene.step_ns = 1'000'000;
@@ -81,7 +88,7 @@ inline material_def_t rough(std::int64_t asset, double size_u_m, double size_v_m
   return m;
 }
 
-// Shines straight down, white, without attenuation; full angles of the cone.
+// A spot that shines straight down, white, without attenuation; full angles of the cone.
 inline light_def_t spot(const Eigen::Vector3d& position, double inner_rad, double outer_rad) {
   light_def_t lamp{};
   lamp.kind = light_def_t::SPOT;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <tactus/picture_chunk_t.hpp>
 #include <thread>
 
 extern "C" {
@@ -17,7 +18,7 @@ using namespace tactus::visual;
 
 namespace {
 
-// Upper half of a colour, lower half black; the lowest row first.
+// Upper half of one colour, lower half black; the lowest row first.
 std::vector<std::uint8_t> picture(int width, int height, int red, int green, int blue) {
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width * height * 4), 255);
   for (int y = 0; y < height; ++y)
@@ -77,13 +78,13 @@ TEST_CASE("A picture becomes a JPEG file that shows the same, upright and smalle
   const auto at = [&](int x, int y, int c) {
     return int{d.rgb[static_cast<std::size_t>((y * d.width + x) * 3 + c)]};
   };
-  // Flat colour: what quantisation at this quality errs in it.
+  // Flat colour: the quantisation error at this quality.
   CHECK(std::abs(at(160, 40, 0) - 250) <= 6);
   CHECK(std::abs(at(160, 40, 1) - 40) <= 6);
   CHECK(at(160, 200, 0) <= 6);
 }
 
-TEST_CASE("Pictures are never enlarged, keep their shape, and absurd sizes give none") {
+TEST_CASE("Pictures are never enlarged, keep their aspect ratio, and absurd sizes give none") {
   const Jpeg jpeg = encode_jpeg(picture(64, 32, 9, 9, 9), 64, 32, 4096, 75);
   CHECK(jpeg.width == 64);
   CHECK(jpeg.height == 32);
@@ -93,7 +94,7 @@ TEST_CASE("Pictures are never enlarged, keep their shape, and absurd sizes give 
   CHECK(encode_jpeg(picture(64, 2, 9, 9, 9), 64, 2, 16, 75).height == 1);
 }
 
-TEST_CASE("Pieces are valid messages, and a reader makes the same bytes of them in any order") {
+TEST_CASE("Pieces are valid messages, and a reader assembles them in any order") {
   for (const std::size_t bytes : {1u, 1024u, 1025u, 40000u}) {
     auto chunks = sent(bytes, 3);
     CHECK(chunks.size() == (bytes + 1023) / 1024);
@@ -114,7 +115,7 @@ TEST_CASE("Pieces are valid messages, and a reader makes the same bytes of them 
   }
 }
 
-TEST_CASE("A picture with a piece missing is skipped, and the next is whole") {
+TEST_CASE("A picture with a missing piece is skipped, and the next is complete") {
   sync::PictureReader reader;
   auto first = sent(5000, 0), second = sent(5000, 1);
   first.erase(first.begin() + 2);
@@ -126,7 +127,7 @@ TEST_CASE("A picture with a piece missing is skipped, and the next is whole") {
   CHECK_FALSE(reader.take(sent(5000, 0)[2]));  // too late
 }
 
-TEST_CASE("Two walls stream side by side, and a node that was started anew begins again") {
+TEST_CASE("Two walls stream in parallel, and a restarted node is read again") {
   sync::PictureReader reader;
   const auto a = sent(3000, 9, 1), b = sent(3000, 2, 2);
   int whole = 0;
@@ -138,7 +139,7 @@ TEST_CASE("Two walls stream side by side, and a node that was started anew begin
   CHECK(whole == 3);
 }
 
-TEST_CASE("Pieces that lie about themselves are refused, and no flood of sources fills the memory") {
+TEST_CASE("Inconsistent pieces are rejected, and a flood of sources does not fill memory") {
   sync::PictureReader reader;
   auto bad = sent(3000, 1);
   bad[0].chunks = 1 << 30;
@@ -156,7 +157,7 @@ TEST_CASE("Pieces that lie about themselves are refused, and no flood of sources
   CHECK(whole == 1);
 }
 
-TEST_CASE("A stream sends a bounded number of pieces a tick, and leaves pictures out rather than wait") {
+TEST_CASE("A stream sends a bounded number of pieces a tick, and drops pictures instead of waiting") {
   Settings settings;
   settings.stream_Hz = 30;
   settings.stream_width = 640;
@@ -193,7 +194,7 @@ TEST_CASE("A stream sends a bounded number of pieces a tick, and leaves pictures
   CHECK(reads >= 2);
 }
 
-TEST_CASE("A stream reads no more pictures than it was asked for, and none when it is off") {
+TEST_CASE("A stream reads no more pictures than requested, and none when it is off") {
   Settings settings;
   PictureStream stream;
   int reads = 0;

@@ -24,7 +24,7 @@ struct Folder {
 };
 }  // namespace
 
-TEST_CASE("A video has one picture per period from its first frame to its last, a missed one repeated") {
+TEST_CASE("A video has one picture per period from its first frame to its last, with a missed one repeated") {
   std::mt19937 random(17);
   for (int trial = 0; trial < 200; ++trial) {
     SlotFiller slots;
@@ -47,7 +47,7 @@ TEST_CASE("A video has one picture per period from its first frame to its last, 
   }
 }
 
-TEST_CASE("A slot that is filled is not filled again") {
+TEST_CASE("A filled slot is not filled again") {
   SlotFiller slots;
   CHECK(slots.repeats_before(10) == 0);
   CHECK_FALSE(slots.repeats_before(10));
@@ -55,7 +55,7 @@ TEST_CASE("A slot that is filled is not filled again") {
   CHECK(slots.repeats_before(12) == 1);
 }
 
-TEST_CASE("The clock of a video is told for every frame") {
+TEST_CASE("The clock of a video is published for every frame") {
   SlotClock clock;
   const auto start = clock.frame(100);
   CHECK(start.index == 0);
@@ -90,7 +90,7 @@ TEST_CASE("Colours become those of BT.709 and the lowest row becomes the last") 
   CHECK(v[3] == Approx(128).margin(1.5));
 }
 
-TEST_CASE("A restarted node does not touch the video before") {
+TEST_CASE("A restarted node does not overwrite the previous video") {
   const Folder folder;
   CHECK(next_video(folder.path.string()) == (folder.path / "video.mp4").string());
   std::ofstream(folder.path / "video.mp4") << "x";
@@ -99,7 +99,7 @@ TEST_CASE("A restarted node does not touch the video before") {
   CHECK(next_video(folder.path.string()) == (folder.path / "video.3.mp4").string());
 }
 
-TEST_CASE("An encoder gets every byte and has finished when its owner is done with it") {
+TEST_CASE("An encoder receives every byte and has finished when its owner is destroyed") {
   const Folder folder;
   const std::string file = (folder.path / "bytes").string();
   const std::vector<std::uint8_t> bytes(3'000'000, 7);
@@ -110,20 +110,20 @@ TEST_CASE("An encoder gets every byte and has finished when its owner is done wi
   }
   CHECK(std::filesystem::file_size(file) == 6'000'000);
 
-  SECTION("one that dies is noticed") {
+  SECTION("an encoder that dies is detected") {
     signal(SIGPIPE, SIG_IGN);  // as sync::Node does
     Encoder dead({"true"});
     bool written = true;
     for (int i = 0; i < 100 && written; ++i) written = dead.write(bytes);
     CHECK_FALSE(written);
   }
-  SECTION("one that is not installed is named") {
+  SECTION("an encoder that is not installed is named") {
     CHECK_THROWS_WITH(Encoder({"no-such-encoder"}),
                       Catch::Contains("no-such-encoder") && Catch::Contains("install ffmpeg"));
   }
 }
 
-TEST_CASE("A video is written and ends with its owner. A snapshot too") {
+TEST_CASE("A video and a snapshot are written and end with their owner") {
   const Folder folder;
   Settings settings;
   int reads = 0, pairs = 0;

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/waypoint_t.hpp>
 
 using namespace tactus;
 using namespace tactus::haptic;

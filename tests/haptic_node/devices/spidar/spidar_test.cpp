@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <tactus/tool_def_t.hpp>
+#include <tactus/waypoint_t.hpp>
 
 #include "haptic_node/devices/selection/make_device.h"
 #include "haptic_node/devices/spidar/simulated_strings.h"

@@ -21,7 +21,7 @@ impulse::Law law(double k, double d, bool is_explicit) {
   return law;
 }
 
-// A ball so deep in the shell of a floor.
+// A ball at a given depth in the shell of a floor.
 struct Pressed {
   Toys toys;
   int ball;
@@ -39,7 +39,7 @@ struct Pressed {
   }
 };
 
-// Largest depth about the resting one, of its first, within so many steps.
+// Largest amplitude about the resting depth, relative to the first, within a number of steps.
 double growth(double k, double d, bool is_explicit, double h, double g, int steps) {
   const double rest = kMass_kg * g / k, first = 0.01 * rest;
   Pressed p(k, d, is_explicit, rest + first, h, g);
@@ -50,23 +50,23 @@ double growth(double k, double d, bool is_explicit, double h, double g, int step
 
 }  // namespace
 
-TEST_CASE("A ball in the shell swings with the square root of k over m") {
+TEST_CASE("A ball in the shell oscillates at the square root of k over m") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1000, rest = kMass_kg * kToyG / k, first = 0.0003, omega = std::sqrt(k / kMass_kg);
-  // Steps so short that backward Euler loses little: its decay is h omega^2 / 2 = 0.05/s.
+  // Steps short enough that backward Euler loses little: its decay is h omega^2 / 2 = 0.05/s.
   const double h = 1e-5;
   Pressed p(k, 0, is_explicit, rest + first, h);
   double worst = 0;
   for (int n = 1; n <= 20000; ++n) {
     p.step();
-    // Both start half a step off: the velocity at rest is that of half a step before.
+    // Both start half a step off: the velocity at rest is that of half a step earlier.
     worst = std::max(worst, std::abs(p.inside_m() - rest - first * std::cos(omega * (n + 0.5) * h)));
   }
-  // 3 swings: of the phase h omega / 2, and the decay 0.05/s * 0.2 s.
+  // 3 oscillations: the phase h omega / 2, and the decay 0.05/s * 0.2 s.
   CHECK(worst < first * (0.012 + h * omega));
 }
 
-TEST_CASE("A ball rests where its weight bends the spring, a box four times less deep") {
+TEST_CASE("A ball rests where the spring carries its weight, and a box at a quarter of that depth") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 2000, d = 5;
   Toys toys(law(k, d, is_explicit));
@@ -79,13 +79,13 @@ TEST_CASE("A ball rests where its weight bends the spring, a box four times less
   CHECK(toys.force_N() == Approx((kMass_kg + 0.4) * kToyG).epsilon(1e-9));
 }
 
-TEST_CASE("The damper takes the energy that d says") {
+TEST_CASE("The damper dissipates the energy given by d") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1000, d = 2, rest = kMass_kg * kToyG / k, first = 0.0003, h = 1e-5;
   const double omega = std::sqrt(k / kMass_kg), decay = d / (2 * kMass_kg),
                swing = std::sqrt(omega * omega - decay * decay);
   Pressed p(k, d, is_explicit, rest + first, h);
-  // After whole swings x = first exp(-decay t): the energy falls by exp(-2 decay t).
+  // After whole oscillations x = first exp(-decay t): the energy falls by exp(-2 decay t).
   for (const int swings : {1, 2}) {
     static_cast<void>(swings);
     const int steps = static_cast<int>(std::lround(2 * std::numbers::pi / swing / h));
@@ -96,14 +96,14 @@ TEST_CASE("The damper takes the energy that d says") {
   }
 }
 
-TEST_CASE("Each form steps as its recurrence says, to rounding") {
+TEST_CASE("Each integration form follows its recurrence to rounding") {
   const double h = GENERATE(0.001, 0.004);
   const double k = 1000, d = 2, rest = kMass_kg * kToyG / k, m = kMass_kg, g = kToyG;
   Pressed by_force(k, d, true, 1.2 * rest, h), by_end(k, d, false, 1.2 * rest, h);
   double x = 1.2 * rest, v = 0, y = x, w = 0;  // into the shell
   double worst = 0;
   for (int n = 0; n < 60; ++n) {
-    // Explicit: force of the depth at the start and the velocity of the step before.
+    // Explicit: force from the depth at the start and the velocity of the previous step.
     v += h * g - h / m * std::max(0.0, k * x + d * v);
     x += h * v;
     // Backward Euler: m (w' - w) = h (m g - k (y + h w') - d w').
@@ -114,24 +114,24 @@ TEST_CASE("Each form steps as its recurrence says, to rounding") {
   CHECK(worst < 1e-12);
 }
 
-TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and not beyond") {
+TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and unstable beyond") {
   const double h = 1.0 / 60, g = 3 * kToyG;
   const double d = GENERATE(0.0, 1.0, 3.0);
   const double limit = impulse::stiffest_explicit(1 / kMass_kg, d, h);
   CHECK(h * h * limit + 2 * h * d == Approx(4 * kMass_kg));
-  // An undamped swing reaches 1/sqrt(1 - h^2 k / 4 m) times its start: at 99 % of the limit 10.
+  // An undamped oscillation reaches 1/sqrt(1 - h^2 k / 4 m) times its initial amplitude: 10 at 99 % of the limit.
   CHECK(growth(0.99 * limit, d, true, h, g, 2000) < 11);
   CHECK(growth(1.01 * limit, d, true, h, g, 2000) > 20);
 }
 
-TEST_CASE("Implicit penalty never swings higher than it began, however stiff") {
-  const double times = GENERATE(1.0, 10.0, 1e3, 1e6);  // the stiffest explicit one
+TEST_CASE("Implicit penalty never exceeds its initial amplitude at any stiffness") {
+  const double times = GENERATE(1.0, 10.0, 1e3, 1e6);  // times the stiffest explicit one
   const double h = GENERATE(0.001, 1.0 / 60);
   const double k = times * impulse::stiffest_explicit(1 / kMass_kg, 0, h);
   CHECK(growth(k, GENERATE(0.0, 5.0), false, h, kToyG, 500) <= 1.0 + 1e-6);
 }
 
-TEST_CASE("The force of an arrival grows from zero and never jumps") {
+TEST_CASE("The force of an arrival grows continuously from zero") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 4000, d = 5, speed = 0.25, h = 1e-4;
   Pressed p(k, d, is_explicit, -0.001, h);
@@ -144,8 +144,10 @@ TEST_CASE("The force of an arrival grows from zero and never jumps") {
     most = std::max(most, force);
     before = force;
   }
-  // |f'| <= k v + d' v + d a with d' = d v over the part of the shell in which the damper sets in, and a as large
-  // as the force allows.
+  //
+  // f'
+  // <= k v + d' v + d a, with d' = d v over the part of the shell in which damping increases, and the largest a that
+  // the force allows.
   const double fastest = speed + 0.02;
   const double rate =
       k * fastest + d * fastest * fastest / (impulse::kDamperSetsIn * kThickness_m) + d * most / kMass_kg;
@@ -153,7 +155,7 @@ TEST_CASE("The force of an arrival grows from zero and never jumps") {
   CHECK(most > 3);
 }
 
-TEST_CASE("What is too fast for the shell is stopped where the surfaces meet") {
+TEST_CASE("A body too fast for the shell is stopped where the surfaces meet") {
   const bool is_explicit = GENERATE(true, false);
   const double h = GENERATE(0.001, 1.0 / 60);
   const double speed = GENERATE(1.0, 5.0, 20.0);
@@ -189,7 +191,7 @@ TEST_CASE("Friction in the shell obeys the cone: a box on an incline sticks belo
       0.5, {0.1, 0.1, 0.04},
       tilt * Eigen::Translation3d(0, 0, 0.02 + kThickness_m - depth) * Eigen::AngleAxisd(yaw, Vector3d::UnitZ()),
       mu);
-  // Until the corners have shared the weight.
+  // Until the corners share the weight.
   for (int i = 0; i < 300; ++i) toys.step(0.001);
   const Vector3d start = toys.motion(box).centre_m, first = toys.motion(box).velocity_m_s;
   for (int i = 0; i < 300; ++i) toys.step(0.001);
@@ -208,7 +210,7 @@ TEST_CASE("Two balls that meet in their shell without a damper swap their speeds
   const int a = toys.ball(kMass_kg, kRadius_m, {-0.03, 0, 0}), b = toys.ball(kMass_kg, kRadius_m, {0.03, 0, 0});
   toys.world.free_body(a).velocity_m_s = {0.3, 0, 0};
   for (int i = 0; i < 3000; ++i) toys.step(1e-4);
-  // What the steps lose at the rim of the shell: the force of one step, k v h^2 / m of the speed.
+  // Loss of the steps at the border of the shell: the force of one step, k v h^2 / m of the speed.
   CHECK(toys.motion(a).velocity_m_s.x() == Approx(0).margin(0.3 * 2e-3));
   CHECK(toys.motion(b).velocity_m_s.x() == Approx(0.3).epsilon(2e-3));
   CHECK((toys.motion(a).velocity_m_s + toys.motion(b).velocity_m_s - Vector3d(0.3, 0, 0)).norm() < 1e-12);
@@ -225,19 +227,18 @@ TEST_CASE("A link on a hinge lies on the shell with all of its weight where that
   const int body = toys.world.add_system(articulated::ArticulatedSystem({link}));
   toys.capsule(body, 0, 0.01, {1, 0, 0}, 0);
   for (int i = 0; i < 4000; ++i) toys.step(0.001);
-  // No moment is left for the hinge; it is as deep as the spring says.
+  // The hinge carries no moment; the depth follows from the spring.
   const double weight = link.mass_kg * kToyG;
   CHECK(toys.force_N() == Approx(weight).epsilon(1e-4));
   CHECK(-toys.motion(body).centre_m.z() == Approx(weight / k).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "What runs through the shell bounces with its restitution, what the spring stops comes back with its energy") {
+TEST_CASE("A body that crosses the shell bounces with its restitution, and one stopped by the spring returns with its energy") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1e4, e = 0.6;
   impulse::Law in_shell = law(k, 0, is_explicit);
   in_shell.penalty.thickness_m = 0.001;
-  // Up to T sqrt(k/m) = 0.32 m/s the spring bears it.
+  // The spring stops speeds up to T sqrt(k/m) = 0.32 m/s.
   const double speed = GENERATE(0.05, 0.15, 1.0, 3.0), h = 1e-4;
   Toys toys(in_shell);
   toys.gravity_m_s2.setZero();
@@ -253,18 +254,18 @@ TEST_CASE(
   const double back = toys.motion(ball).velocity_m_s.z();
   INFO("speed " << speed << " back " << back);
   if (speed < 0.3) {
-    // Backward Euler loses h omega pi / 2 of the speed in half a swing: 5 %.
+    // Backward Euler loses h omega pi / 2 of the speed in half an oscillation: 5 %.
     CHECK(back <= speed * (1 + 1e-3));
     CHECK(back > speed * 0.94);
   } else {
-    // The spring gives at most its k T^2 / 2 on the way out, but for one step of its force.
+    // The spring gives at most k T^2 / 2 on the way out, except for one step of its force.
     const double step = h * k * in_shell.penalty.thickness_m / kMass_kg;
     CHECK(back >= e * std::sqrt(speed * speed - 0.1) - step);
     CHECK(back <= std::sqrt(e * e * speed * speed + 0.1) + step);
   }
 }
 
-TEST_CASE("What begins inside of the shell is lifted out gently, and rests where its weight bends the spring") {
+TEST_CASE("A body that starts inside the shell is lifted out gently and rests where the spring carries its weight") {
   const bool is_explicit = GENERATE(true, false);
   const double rise = GENERATE(0.0, 0.02), k = 20000;
   impulse::Law in_shell = law(k, 5, is_explicit);
@@ -279,14 +280,14 @@ TEST_CASE("What begins inside of the shell is lifted out gently, and rests where
     fastest = std::max(fastest, toys.motion(box).velocity_m_s.z());
   }
   CHECK(toys.motion(box).centre_m.z() - 0.02 == Approx(0.0005 - 0.4 * kToyG / (4 * k)).epsilon(1e-4));
-  // Let go at once, the spring throws it with up to T sqrt(4 k / m) = 0.22 m/s.
+  // Released at once, the spring throws it with up to T sqrt(4 k / m) = 0.22 m/s.
   if (rise > 0)
     CHECK(fastest < 2.1 * rise);
   else
     CHECK(fastest > 0.08);
 }
 
-TEST_CASE("What arrives from outside meets the whole shell, whether it could begin inside of it or not") {
+TEST_CASE("A body that arrives from outside always meets the whole shell") {
   const bool is_explicit = GENERATE(true, false);
   double force[2];
   for (const bool gentle : {false, true}) {

@@ -35,8 +35,7 @@ Settings with(const std::string& detector) {
 
 }  // namespace
 
-TEST_CASE(
-    "With the layers, a box of triangles comes to rest on a table of triangles without ever overlapping it") {
+TEST_CASE("With the layers, a box of triangles comes to rest on a table of triangles without overlap") {
   const int fineness = GENERATE(1, 6);
   const std::string mode = GENERATE("complete", "itouch2005");
   INFO(mode << ", fineness " << fineness);
@@ -62,7 +61,7 @@ TEST_CASE(
   CHECK(lowest > 0);
   CHECK(m.velocity_m_s.norm() < 1e-3);
   CHECK(m.spin_rad_s.norm() < 1e-2);
-  // Within the tolerance, less what rests in the surface layer.
+  // Within the tolerance, minus the part of the surface layer that a resting body may use.
   CHECK(m.position_m.z() - 0.03 > 0.5 * settings.contact_tolerance_m);
   CHECK(m.position_m.z() - 0.03 < settings.contact_tolerance_m);
   REQUIRE(solver.contacts().size() == 1);
@@ -72,8 +71,7 @@ TEST_CASE(
   CHECK(force == Approx(kG).margin(0.05));
 }
 
-TEST_CASE(
-    "A pair that the chosen detector cannot take stays with ODE, and a shape that it must refuse ends the start") {
+TEST_CASE("A pair that the selected detector does not support stays with ODE, and an unsupported shape is an error at start-up") {
   for (const std::string name : {"ode", "layers", "ccd", "ccd_mpr"}) {
     WorldDef w = empty_world();
     add_floor(w);
@@ -90,7 +88,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(Solver(w, with("ccd")), Catch::Contains("convex meshes only"));
   CHECK_NOTHROW(Solver(w, with("layers")));
 
-  // What its options cannot do is refused as well: a plate is no closed mesh.
+  // Options that the mesh does not support are rejected too: a plate is no closed mesh.
   Settings adjacency = with("layers");
   adjacency.duplicate_remover = "adjacency";
   CHECK_NOTHROW(Solver(w, adjacency));

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A field that is like no mirror image of itself: a plane that rises along x and half as steeply along y.
+// A field without mirror symmetry: a plane that rises along x and half as steeply along y.
 Heightfield slope() {
   Heightfield f;
   f.columns = 11;
@@ -27,7 +27,7 @@ Heightfield slope() {
   return f;
 }
 
-// Its height at a place of the shape frame.
+// Height at a point of the shape frame.
 double height(double x, double y) { return 0.3 + 0.05 * (x - 0.1 + 1) / 2 + 0.025 * (y + 0.2 + 0.5); }
 
 TriangleMesh tetrahedron(double edge) {
@@ -41,7 +41,7 @@ TriangleMesh tetrahedron(double edge) {
 
 }  // namespace
 
-TEST_CASE("A heightfield is as high for bodies and tools as it says, wherever it is touched") {
+TEST_CASE("A heightfield has its nominal height for bodies and tools at every point") {
   WorldDef w = empty_world(0);
   const int ground = add_body(w, "ground", 0, Eigen::Matrix3d::Identity(), at(0.3, 0.4, -0.1));
   const int shape = add_shape(w, ground, ShapeKind::kHeightfield, {1, 1, 1});
@@ -55,7 +55,7 @@ TEST_CASE("A heightfield is as high for bodies and tools as it says, wherever it
     for (const double y : {-0.55, -0.2, 0.17}) {
       INFO(x << " " << y);
       const double depth = 0.002;
-      // The slope is gentle: a ball with its bottom that much below touches that deep, to second order of the slope.
+      // The slope is gentle: the depth of a ball equals the depth of its lowest point, to second order of the slope.
       const double z = height(x, y) + r - depth;
       WorldDef with_ball = w;
       add_ball(with_ball, 1, r, Vector3d(0.3, 0.4, -0.1) + Vector3d(x, y, z));
@@ -106,14 +106,14 @@ TEST_CASE("Every pair of shapes collides, with a unit normal from the first body
         CHECK(m.body_a == 0);
         CHECK(m.body_b == 1);
         for (const ManifoldPoint& p : m.used()) CHECK(p.normal.norm() == Approx(1));
-        // The tetrahedra meet with edges or faces of their own; the others face each other.
+        // The tetrahedra touch with edges or faces of their own. The other shapes face each other.
         if (lower == ShapeKind::kMesh || upper == ShapeKind::kMesh) continue;
         CHECK(m.points[0].normal.z() * (below == 0 ? 1 : -1) > 0.9);
         CHECK(m.points[0].depth_m == Approx(0.004).margin(0.001));
       }
 }
 
-TEST_CASE("Bodies that shall not collide do not, nor tools, nor two that never move") {
+TEST_CASE("Excluded pairs of bodies do not collide, nor do tools or two static bodies") {
   WorldDef w = empty_world(0);
   add_floor(w);
   const int a = add_ball(w, 1, 0.1, {0, 0, 0.05}), b = add_ball(w, 1, 0.1, {0.05, 0, 0.05});
@@ -147,7 +147,7 @@ TEST_CASE("A body of several shapes has a contact of its own for each pair") {
   CHECK(places == std::set<std::pair<double, double>>{{-0.2, -0.1}, {-0.2, 0.1}, {0.2, -0.1}, {0.2, 0.1}});
 }
 
-TEST_CASE("A plane that moves is a plate") {
+TEST_CASE("A moving plane is a plate") {
   WorldDef w = empty_world(0);
   const int plate = add_body(w, "plate", 1, Eigen::Matrix3d::Identity(), at(0, 0, 1));
   add_shape(w, plate, ShapeKind::kPlane, {0.4, 0.4, 1});

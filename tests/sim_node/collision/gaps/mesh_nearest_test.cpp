@@ -1,5 +1,5 @@
-// Two meshes, nearest first: held against all their contacts, of which a tool keeps the nearest of each place and
-// direction.
+// The nearest-first search of two meshes, compared with all their contacts, of which a tool keeps the nearest of each
+// place and direction.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// As a tool does.
+// The selection that a tool makes.
 struct Kept : NearestFirst {
   bool known(const PointPair& p) const override {
     return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& q) {
@@ -33,8 +33,8 @@ struct Kept : NearestFirst {
 struct Scene {
   std::string name;
   Soup a, b;
-  double away_m;  // poses of a are so far from b at most
-  bool straight;  // and parallel to it, or turned by a right angle
+  double away_m;  // maximum distance of the poses of a from b
+  bool straight;  // parallel to b, or rotated by a right angle
   double reach_m = 0.003;
 };
 
@@ -68,7 +68,7 @@ Isometry3d pose(const Scene& s, Random& random) {
     p.linear() = Eigen::AngleAxisd(M_PI / 2 * static_cast<double>(random() % 4),
                                    Vector3d::Unit(static_cast<int>(random() % 3)))
                      .toRotationMatrix();
-    // On a grid of half a millimetre, so that edges lie over edges and corners over corners.
+    // On a grid of half a millimetre, so that edges and corners coincide.
     for (int k = 0; k < 3; ++k)
       p.translation()[k] = 5e-4 * std::round(uniform(random, -s.away_m, s.away_m) / 5e-4);
   } else {
@@ -77,7 +77,7 @@ Isometry3d pose(const Scene& s, Random& random) {
   return p;
 }
 
-// How many of x have none of the same place, direction and gap in y.
+// Number of contacts of x without one of the same position, direction and gap in y.
 int missing(const Kept& x, const Kept& y) {
   int count = 0;
   for (const PointPair& p : x.pairs)
@@ -97,7 +97,7 @@ ShapeDef mesh_shape(int mesh) {
 
 }  // namespace
 
-TEST_CASE("Two meshes nearest first are the contacts that a tool would keep of all, to within rounding") {
+TEST_CASE("The nearest-first search over two meshes gives the contacts that a tool would keep, to within rounding") {
   for (const Scene& s : scenes()) {
     WorldDef world;
     world.meshes = {{s.a.vertices, {}, s.a.indices}, {s.b.vertices, {}, s.b.indices}};
@@ -123,7 +123,7 @@ TEST_CASE("Two meshes nearest first are the contacts that a tool would keep of a
   }
 }
 
-TEST_CASE("Two meshes nearest first come in order, the same ones for any limit, and the same to the bit again") {
+TEST_CASE("The nearest-first search over two meshes is ordered, independent of the limit, and repeatable to the bit") {
   const Soup x = lumpy_sphere(3, 0.012, 1), y = lumpy_sphere(4, 0.05, 2);
   WorldDef world;
   world.meshes = {{x.vertices, {}, x.indices}, {y.vertices, {}, y.indices}};

@@ -24,20 +24,19 @@ bool same_points(const std::vector<PointPair>& x, const std::vector<PointPair>& 
 
 }  // namespace
 
-TEST_CASE(
-    "The hashed remover keeps exactly what the brute force keeps, also where duplicates lie in other cells") {
+TEST_CASE("The hashed remover keeps the same pairs as brute force, also where duplicates lie in other cells") {
   Random random(2);
   for (int round = 0; round < 20; ++round) {
     std::vector<PointPair> pairs;
     for (int i = 0; i < 60; ++i) {
-      // Places on the borders of cells, around zero and far from it, where rounding moves a point across.
+      // Positions on the borders of cells, around zero and far from it, where rounding moves a point to another cell.
       const double grid = 128 * kSamePlace_m * std::floor(uniform(random, -3, 3));
       const Vector3d at = (i % 2 ? grid : uniform(random, -1e-3, 1e-3)) * Vector3d::Ones() +
                           (i % 3 ? 0.0 : 40.0) * Vector3d::UnitX();
       for (int k = static_cast<int>(random() % 4); k >= 0; --k)
         pairs.push_back(
             pair_at(at + 0.4 * kSamePlace_m * direction(random), at + 0.4 * kSamePlace_m * direction(random)));
-      // The same place on one surface alone is no duplicate.
+      // The same position on one surface only is no duplicate.
       pairs.push_back(pair_at(at, at + 1e-4 * direction(random)));
     }
     for (std::size_t i = pairs.size(); i > 1; --i) std::swap(pairs[i - 1], pairs[random() % i]);
@@ -51,7 +50,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("On well constructed meshes all three removers agree") {
+TEST_CASE("All three removers agree on well-constructed meshes") {
   const Soup a = lumpy_sphere(2, 0.1, 1), b = box({0.1, 0.12, 0.08});
   const ContactMesh ma(a.vertices, a.indices), mb(b.vertices, b.indices);
   REQUIRE(ma.check.fault == "");
@@ -76,7 +75,7 @@ TEST_CASE("On well constructed meshes all three removers agree") {
   CHECK(removed > 100);
 }
 
-TEST_CASE("The adjacency remover is refused where neighbours are not right, with what is wrong") {
+TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency and names the fault") {
   const auto refused = [](const Soup& s, const std::string& why) {
     const Soup good = icosphere(1, 0.1);
     const ContactMesh bad(s.vertices, s.indices), fine(good.vertices, good.indices);

@@ -13,10 +13,10 @@ struct Case {
   std::string name;
   Soup a, b;
   double tolerance_m;
-  double reach_m;  // poses of b are so far from a at most
+  double reach_m;  // maximum distance of the poses of b from a
 };
 
-// A unit of 0.1 m, as the things on a desk.
+// Meshes with a size of 0.1 m, as objects on a desk.
 std::vector<Case> cases() {
   std::vector<Case> all;
   const double r = 0.1;
@@ -42,7 +42,7 @@ ContactMesh mesh(const Soup& s) { return ContactMesh(s.vertices, s.indices); }
 
 }  // namespace
 
-TEST_CASE("Every pair of triangles within the tolerance is covered, with no false point pair and none twice") {
+TEST_CASE("Every pair of triangles within the tolerance is covered, without false or duplicate point pairs") {
   for (const Case& c : cases()) {
     Random random(7);
     const ContactMesh a = mesh(c.a), b = mesh(c.b);
@@ -55,7 +55,7 @@ TEST_CASE("Every pair of triangles within the tolerance is covered, with no fals
       INFO(c.name << ", pose " << i);
       const Placed pa(c.a, pose_a), pb(c.b, pose_b);
       const Truth truth = compare(pa, pb, c.tolerance_m, found);
-      CHECK(truth.silent == 0);
+      CHECK(truth.missed == 0);
       check_sound(pa, pb, c.tolerance_m, found);
       double least = 1e300;
       for (const PointPair& p : found.pairs) least = std::min(least, p.gap_m);
@@ -63,7 +63,7 @@ TEST_CASE("Every pair of triangles within the tolerance is covered, with no fals
       near += truth.near > 0;
       apart += truth.near > 0 && truth.least > 1e-6;
       pierced += found.pierced;
-      // The alarm is never false.
+      // The piercing alarm is never false.
       if (found.pierced) CHECK(truth.least < 1e-9);
     }
     INFO(c.name << ": " << near << " near, " << apart << " of them apart, " << pierced << " pierced");
@@ -73,7 +73,7 @@ TEST_CASE("Every pair of triangles within the tolerance is covered, with no fals
   }
 }
 
-TEST_CASE("Meshes exactly on each other, plates face to face, are covered as well") {
+TEST_CASE("Coincident meshes and plates face to face are covered") {
   for (const double gap : {0.0, 1e-12, 1e-4, 1e-3}) {
     const Soup lower = plate(0.1, 0.1, 4, 4), upper = t_junctions(0.08);
     Random random(3);
@@ -86,14 +86,14 @@ TEST_CASE("Meshes exactly on each other, plates face to face, are covered as wel
     const Placed pa(lower, pose_a), pb(upper, pose_b);
     const Truth truth = compare(pa, pb, 2e-3, found);
     CHECK(truth.near > 50);
-    CHECK(truth.silent == 0);
+    CHECK(truth.missed == 0);
     check_sound(pa, pb, 2e-3, found);
     CHECK(std::any_of(found.pairs.begin(), found.pairs.end(),
                       [](const PointPair& p) { return p.kind == ContactKind::kSurface; }));
   }
 }
 
-TEST_CASE("A contact is the same seen from the other side, from elsewhere, and for any winding and order") {
+TEST_CASE("A mesh contact does not depend on the order of the meshes, the frame, the winding or the order of triangles") {
   for (const Case& c : cases()) {
     Random random(11);
     int compared = 0;
@@ -105,7 +105,7 @@ TEST_CASE("A contact is the same seen from the other side, from elsewhere, and f
   }
 }
 
-TEST_CASE("Every instruction set finds the same contact to the bit") {
+TEST_CASE("Every instruction set gives a bit-identical contact") {
   const Case c = cases()[0];
   const ContactMesh a = mesh(lumpy_sphere(3, 0.1, 1)), b = mesh(lumpy_sphere(3, 0.1, 2));
   for (const Isa isa : {Isa::kAvx2, Isa::kAvx512}) {
@@ -130,7 +130,7 @@ TEST_CASE("Every instruction set finds the same contact to the bit") {
   }
 }
 
-TEST_CASE("The distance of two meshes is the least of all their triangles") {
+TEST_CASE("The distance of two meshes is the least over all pairs of triangles") {
   const Soup sa = lumpy_sphere(2, 0.1, 8), sb = comb(3, 0.1);
   const ContactMesh a = mesh(sa), b = mesh(sb);
   Random random(9);
@@ -155,7 +155,7 @@ TEST_CASE("The distance of two meshes is the least of all their triangles") {
   }
 }
 
-TEST_CASE("A mesh that makes no sense is refused with a sentence") {
+TEST_CASE("An invalid mesh is rejected with one sentence") {
   const std::vector<Vector3d> v{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   using Indices = std::vector<int>;
   CHECK_THROWS_WITH(ObbTree(v, Indices{0, 1}), Catch::Contains("no triangles"));

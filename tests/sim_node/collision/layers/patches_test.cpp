@@ -26,7 +26,7 @@ std::vector<ContactPatch> patches_of(const std::vector<PointPair>& pairs, double
 
 }  // namespace
 
-TEST_CASE("However finely two plates are divided, their contact is one patch of four corners and one stiffness") {
+TEST_CASE("The contact of two plates is one patch of four corners with one stiffness at any resolution") {
   for (const int n : {1, 2, 5, 12}) {
     const Soup lower = plate(0.2, 0.2, n, n + 1), upper = plate(0.1, 0.06, n + 2, n);
     const auto pairs = touching(lower, upper, Isometry3d(Eigen::Translation3d(0.01, 0.02, 3e-4)));
@@ -49,7 +49,7 @@ TEST_CASE("However finely two plates are divided, their contact is one patch of 
   }
 }
 
-TEST_CASE("An edge on a plate is an edge, a corner a point, and a corner between two walls two patches") {
+TEST_CASE("An edge on a plate is an edge, a corner on it is a point, and a corner between two walls is two patches") {
   const Soup floor = plate(0.2, 0.2, 4, 4), cube = box({0.04, 0.04, 0.04});
   const double half_diagonal = 0.02 * std::sqrt(2.0);
   Isometry3d on_edge(Eigen::Translation3d(0.003, 0.001, half_diagonal + 2e-4));
@@ -79,7 +79,7 @@ TEST_CASE("An edge on a plate is an edge, a corner a point, and a corner between
   CHECK(both[0].points[0].gap_m == Approx(2e-4));
 }
 
-TEST_CASE("Patches do not depend on the order of the pairs, and hold every direction of the contact") {
+TEST_CASE("Patches do not depend on the order of the pairs and cover every direction of the contact") {
   const Soup a = lumpy_sphere(3, 0.1, 1), b = lumpy_sphere(3, 0.1, 2);
   Random random(3);
   int compared = 0;
@@ -96,13 +96,13 @@ TEST_CASE("Patches do not depend on the order of the pairs, and hold every direc
       CHECK(again[k].normal == patches[k].normal);
       CHECK(again[k].points[0].on_a_m == patches[k].points[0].on_a_m);
     }
-    // Every pair is spoken for: by a patch of its direction, or by one along whose normal it is no nearer.
+    // Every pair is represented: by a patch of its direction, or by one along whose normal its gap is no smaller.
     for (const PointPair& p : pairs)
       CHECK(std::any_of(patches.begin(), patches.end(), [&](const ContactPatch& patch) {
         const double along = patch.normal.dot(p.normal), least = patch.points[0].gap_m - 2e-6;
         return along >= std::cos(kPatchAngle_rad) ? least <= p.gap_m : least <= along * p.gap_m;
       }));
-    // The least gap of all is in the first one.
+    // The first patch has the least gap.
     if (!pairs.empty())
       CHECK(patches[0].points[0].gap_m <=
             1e-6 + std::min_element(pairs.begin(), pairs.end(), [](const PointPair& x, const PointPair& y) {

@@ -1,7 +1,11 @@
-// Looks, shaders, passes and surroundings: from the scene and from mesh files to the message.
+// Looks, shaders, passes and environment: from the scene and from mesh files to the message.
 #include "sim_node/scene/extensions/tactus_looks.h"
 
 #include <cstring>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/look_t.hpp>
+#include <tactus/mesh_t.hpp>
+#include <tactus/scene_t.hpp>
 
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/materials/pictures.h"
@@ -23,7 +27,7 @@ std::int64_t hash(const sync::Bytes& bytes) { return sync::fnv1a_64(bytes.data()
 const char* kShader = "void main() {}\n";
 const std::string kBox = "<geometry><box><size>1 1 1</size></box></geometry>";
 
-// The box wears what `inside` its visual says, in a world that says `outside`.
+// A box whose visual contains `inside`, in a world that contains `outside`.
 SceneFile scene(const std::string& outside, const std::string& inside) {
   return SceneFile(world(outside + "\n<model name='m'><link name='l'>\n<visual name='v'>" + kBox + inside +
                          "</visual></link></model>"),
@@ -51,7 +55,7 @@ look_t look_of(const std::string& outside, const std::string& inside) {
 
 }  // namespace
 
-TEST_CASE("A visual says how it is drawn: shader, pictures, mirror and numbers") {
+TEST_CASE("A visual defines its appearance: shader, pictures, reflectance and uniforms") {
   const look_t look =
       look_of("",
               "<tactus:look shader='reflecting' colour_map='a.png' normal_map='n.png' reflectance='0.3' "
@@ -68,7 +72,7 @@ TEST_CASE("A visual says how it is drawn: shader, pictures, mirror and numbers")
   CHECK(look.uniforms[1].values[1] == 0.5f);
 }
 
-TEST_CASE("A look of the world is worn by name, made of another, and changed by who wears it") {
+TEST_CASE("A look of the world is used by name, based on another, and changed by its user") {
   const std::string looks =
       "<tactus:look name='tiles' shader='textured' colour_map='a.png'/>"
       "<tactus:look name='wet' base='tiles' shader='reflecting' reflectance='0.1'/>";
@@ -85,7 +89,7 @@ TEST_CASE("A look of the world is worn by name, made of another, and changed by 
   CHECK(own.shader == "reflecting");
 }
 
-TEST_CASE("A visual of which nothing is said has no look, and who says the same wears the same") {
+TEST_CASE("A visual without attributes has no look, and equal attributes share one look") {
   SceneFile file(world("<model name='m'><link name='l'><visual name='a'>" + kBox +
                        "<tactus:look shader='gouraud'/></visual><visual name='b'>" + kBox +
                        "<tactus:look shader='gouraud'/></visual><visual name='c'>" + kBox +
@@ -98,7 +102,7 @@ TEST_CASE("A visual of which nothing is said has no look, and who says the same 
   CHECK(w.looks.size() == 1);
 }
 
-TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:look goes before them") {
+TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:look has precedence") {
   const std::string material =
       "<material><shininess>200</shininess><pbr><metal><albedo_map>a.png</albedo_map>"
       "<normal_map>n.png</normal_map></metal></pbr></material>";
@@ -110,7 +114,7 @@ TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:loo
   const look_t look = w.looks.at(0);
   CHECK(look.colour_map == hash(picture(1)));
   CHECK(look.normal_map == hash(picture(3)));
-  CHECK(look.shader == "normal_mapped");  // nobody named one: the one that shows what there is
+  CHECK(look.shader == "normal_mapped");  // no name given: the one that shows all attributes
   const look_t own = look_of("", "<tactus:look colour_map='b.png' normal_map=''/>" + material);
   CHECK(own.colour_map == hash(picture(2)));
   CHECK(own.normal_map == 0);
@@ -123,7 +127,7 @@ TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:loo
 }
 
 TEST_CASE(
-    "Shaders, passes and what lies around go to the renderers with the scene, texts and pictures as assets") {
+    "Shaders, passes and the environment go to the renderers with the scene, texts and pictures as assets") {
   SceneFile file = scene(
       "<tactus:environment picture='a.png'/><tactus:pass shader='blur' uniforms='radius 2'/><tactus:pass "
       "shader='own'/>"
@@ -156,7 +160,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "A shader that is neither the scene's nor visual_node's is warned of with the names there are, once for each "
+    "A shader that belongs neither to the scene nor to visual_node causes a warning with the known names, once for each "
     "line") {
   SceneFile file = scene("<tactus:shader name='own' fragment='own.frag'/>", "<tactus:look shader='velvet'/>");
   file.load();
@@ -165,7 +169,7 @@ TEST_CASE(
                                            Catch::Contains("normal_mapped") && Catch::Contains("own"));
 }
 
-TEST_CASE("A look, shader, pass or picture that cannot be is refused with its line") {
+TEST_CASE("An invalid look, shader, pass or picture is refused with its line") {
   const auto worn = [](const std::string& attributes) { return refusal("", "<tactus:look " + attributes + "/>"); };
   CHECK_THAT(worn("name='wood'"),
              Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("there is none in this scene"));
@@ -178,12 +182,12 @@ TEST_CASE("A look, shader, pass or picture that cannot be is refused with its li
   CHECK_THAT(worn("reflectance='nan'"), Catch::Contains("reflectance"));
   CHECK_THAT(worn("shader='two words'"), Catch::Contains("letters"));
   CHECK_THAT(worn("colr='1'"), Catch::Contains("no attribute \"colr\""));
-  CHECK_THAT(worn("uniforms='2 2'"), Catch::Contains("no name of a uniform"));
-  CHECK_THAT(worn("uniforms='gl_x 2'"), Catch::Contains("no name of a uniform"));
+  CHECK_THAT(worn("uniforms='2 2'"), Catch::Contains("not a valid uniform name"));
+  CHECK_THAT(worn("uniforms='gl_x 2'"), Catch::Contains("not a valid uniform name"));
   CHECK_THAT(worn("uniforms='a'"), Catch::Contains("no number"));
   CHECK_THAT(worn("uniforms='a 1 2 3 4 5'"), Catch::Contains("more than 4"));
   CHECK_THAT(worn("uniforms='a 1; a 2'"), Catch::Contains("twice"));
-  CHECK_THAT(worn("uniforms='a 1e300'"), Catch::Contains("beyond 1e6"));
+  CHECK_THAT(worn("uniforms='a 1e300'"), Catch::Contains("exceeds 1e6"));
   CHECK_THAT(worn("uniforms='a b'"), Catch::Contains("uniforms"));
   CHECK_THAT(refusal("<tactus:look shader='phong'/>"), Catch::Contains("\"name\""));
   CHECK_THAT(refusal("<tactus:look name='a'/><tactus:look name='a'/>"), Catch::Contains("another look has"));
@@ -207,7 +211,7 @@ TEST_CASE("A look, shader, pass or picture that cannot be is refused with its li
   CHECK_THAT(large.refusal(), Catch::Contains("larger than"));
 }
 
-TEST_CASE("Pictures are whole files of a bounded size, and JPEG only where colour is meant") {
+TEST_CASE("Pictures are complete files of a bounded size, and JPEG only for colours") {
   const sync::Bytes png = picture(7);
   CHECK_NOTHROW(check_picture(png, PictureUse::kDirections));
   for (std::size_t size = 0; size < png.size(); ++size)
@@ -215,7 +219,7 @@ TEST_CASE("Pictures are whole files of a bounded size, and JPEG only where colou
   sync::Bytes wide = png;
   wide[16 + 2] = 0x10, wide[16 + 3] = 0x01;  // 4097 columns
   CHECK_THROWS_WITH(check_picture(wide, PictureUse::kColour), Catch::Contains("4096"));
-  // The start of a JPEG of 3 x 2: a segment of an application, then the frame.
+  // The start of a JPEG of 3 x 2: an application segment, then the frame.
   sync::Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xc0, 0, 11, 8, 0, 2, 0, 3, 1, 1, 0x11, 0};
   CHECK_NOTHROW(check_picture(jpeg, PictureUse::kColour));
   CHECK_THROWS_WITH(check_picture(jpeg, PictureUse::kDirections), Catch::Contains("no PNG"));
@@ -245,7 +249,7 @@ SceneFile two(const std::string& inside) {
 }  // namespace
 
 TEST_CASE(
-    "A mesh of two materials is seen as two parts, each in its colours and its pictures, and collides as one") {
+    "A mesh of two materials is displayed as two parts, each with its colours and pictures, and collides as one") {
   SceneFile file = two("");
   const WorldDef w = file.load();
   CHECK(file.warnings == std::vector<std::string>{});
@@ -268,7 +272,7 @@ TEST_CASE(
     CHECK(m.texcoords.size() == m.vertices.size());
     CHECK(m.tangents.size() == m.vertices.size());
   }
-  // And so the message says.
+  // The message has the same content.
   const auto assets = make_assets(w);
   int with_tangents = 0;
   for (const sync::Asset& a : assets) {
@@ -284,7 +288,7 @@ TEST_CASE(
   CHECK(with_tangents == 2);
 }
 
-TEST_CASE("What SDF says of a mesh goes before its file: its colours, its look, no picture at all") {
+TEST_CASE("SDF has precedence over the mesh file: its colours, its look, an empty picture") {
   SceneFile coloured =
       two("<material><diffuse>1 0 0 1</diffuse></material><tactus:look colour_map='' normal_map='' "
           "shader='gouraud'/>");
@@ -297,7 +301,7 @@ TEST_CASE("What SDF says of a mesh goes before its file: its colours, its look, 
 }
 
 TEST_CASE(
-    "A picture that a mesh file names and that is not there is warned of, and the mesh is drawn without it") {
+    "A picture that a mesh file names and that does not exist causes a warning, and the mesh is drawn without it") {
   SceneFile file = two("");
   std::filesystem::remove(file.folder() / "b.png");
   const WorldDef w = file.load();
@@ -308,7 +312,7 @@ TEST_CASE(
   CHECK(w.looks.at(static_cast<std::size_t>(w.visuals[1].look)).normal_map == hash(picture(3)));
 }
 
-TEST_CASE("A visual may have a finer mesh than what collides, from a file of its own or divided") {
+TEST_CASE("A visual may have a finer mesh than the collision, from its own file or by subdivision") {
   SceneFile file = two("<tactus:display subdivide='2'/>");
   const WorldDef divided = file.load();
   CHECK(divided.meshes.at(static_cast<std::size_t>(divided.shapes.at(0).mesh)).indices.size() == 6);

@@ -1,9 +1,10 @@
-// From any file to glTF and back: the same to the bit, and a scene that loads it is told what it says.
+// Conversion of any file to glTF and back: identical to the bit, and a scene that loads it uses its properties.
 #include "sim_node/scene/meshes/convert_geometry.h"
 
 #include <bit>
 #include <cstring>
 #include <random>
+#include <tactus/material_def_t.hpp>
 
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/meshes/gltf_writer.h"
@@ -21,7 +22,7 @@ bool same_bits(const List& a, const List& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
 }
 
-// Stricter than the program's own check: 0 and -0 differ.
+// Stricter than the check of the program: 0 and -0 differ.
 void check_same(const MeshParts& a, const MeshParts& b) {
   REQUIRE(a.parts.size() == b.parts.size());
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
@@ -75,7 +76,7 @@ MeshParts random_mesh(std::mt19937& random) {
     const bool textured = count(0, 1), tangents = textured && count(0, 1);
     const int vertices = count(3, 60);
     for (int v = 0; v < vertices; ++v) {
-      // Of all magnitudes, near each other too, and negative zeros.
+      // All magnitudes, including equal ones, and negative zeros.
       const float size = std::ldexp(1.0f, count(-40, 15));
       part.positions_m.emplace_back(number(-size, size), count(0, 3) ? number(-size, size) : -0.0f, number(-1, 1));
       part.normals.push_back(unit());
@@ -97,7 +98,7 @@ MeshParts random_mesh(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Whatever mesh is written as glTF is read back to the bit") {
+TEST_CASE("A random mesh written as glTF is read back identically to the bit") {
   SceneFile file;
   std::mt19937 random(7);
   for (int i = 0; i < 200; ++i) {
@@ -107,7 +108,7 @@ TEST_CASE("Whatever mesh is written as glTF is read back to the bit") {
   }
 }
 
-TEST_CASE("Every mesh that comes with the project goes to glTF and back to the bit") {
+TEST_CASE("Every mesh of the project converts to glTF and back identically to the bit") {
   SceneFile file;
   int met = 0;
   for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes")) {
@@ -119,14 +120,14 @@ TEST_CASE("Every mesh that comes with the project goes to glTF and back to the b
     for (const MeshPart& part : mesh.parts) CHECK(part.tangents.size() == part.texcoords.size());
     check_same(read_back(file, mesh, true), mesh);
     check_same(read_back(file, mesh, false), mesh);
-    // Converted once more, nothing is left to do.
+    // A second conversion changes nothing.
     const auto again = file.folder() / "back.glb";
     check_same(for_place(read_mesh_parts(again), again, again), mesh);
   }
   CHECK(met >= 4);
 }
 
-TEST_CASE("Pictures and properties are named from where the new file lies") {
+TEST_CASE("Paths of pictures and properties are relative to the new file") {
   SceneFile file;
   std::filesystem::create_directories(file.folder() / "to" / "there");
   MeshParts mesh;
@@ -144,7 +145,7 @@ TEST_CASE("Pictures and properties are named from where the new file lies") {
   CHECK(moved.look.at("colour_map") == "../../from/d.png");
 }
 
-TEST_CASE("A scene takes material, relief, modes and look from the mesh file where it says nothing itself") {
+TEST_CASE("A scene takes material, height map, modes and look from the mesh file unless it defines them") {
   const auto picture = test::png_bytes(2, 2, 8, {0, 10, 20, 30});
   SceneFile file("", {{"planks.png", picture}});
   file.write("box.modes.csv", "frequency_Hz,damping_1_s,amplitude\n440,3,1\n");
@@ -182,20 +183,20 @@ TEST_CASE("A scene takes material, relief, modes and look from the mesh file whe
   REQUIRE(w.visuals[0].look >= 0);
   CHECK(w.looks[static_cast<std::size_t>(w.visuals[0].look)].shader == "reflecting");
   CHECK(w.looks[static_cast<std::size_t>(w.visuals[0].look)].reflectance == 0.25f);
-  SECTION("what the scene says goes before it, attribute by attribute") {
+  SECTION("the scene has precedence, attribute by attribute") {
     file.write("scene.sdf", scene("<tactus:surface material='steel'/>", "<tactus:look reflectance='0.5'/>"));
     const WorldDef own = file.load();
     CHECK(own.materials[static_cast<std::size_t>(own.shapes.at(0).material)].name == "steel");
     CHECK(own.looks.at(static_cast<std::size_t>(own.visuals.at(0).look)).reflectance == 0.5f);
     CHECK(own.looks.at(static_cast<std::size_t>(own.visuals.at(0).look)).shader == "reflecting");
   }
-  SECTION("a material alone is the one of the table") {
+  SECTION("a material name alone refers to the table") {
     mesh.material = {{"base", "copper"}};
     write();
     const WorldDef plain = file.load();
     CHECK(plain.materials[static_cast<std::size_t>(plain.shapes.at(0).material)].name == "copper");
   }
-  SECTION("what is wrong in it is refused with its name") {
+  SECTION("invalid properties are refused with the name of the file") {
     mesh.material["base"] = "unobtainium";
     write();
     CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
@@ -212,7 +213,7 @@ TEST_CASE("A scene takes material, relief, modes and look from the mesh file whe
   }
 }
 
-TEST_CASE("A file is written whole or not at all, and only what was named is there afterwards") {
+TEST_CASE("A file is written completely or not at all, and no other file remains") {
   SceneFile file;
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const MeshParts mesh = read_mesh_parts(file.folder() / "t.obj");

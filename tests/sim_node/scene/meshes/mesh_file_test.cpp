@@ -7,7 +7,7 @@ using namespace tactus::sim;
 using Eigen::Vector3d;
 
 namespace {
-// One triangle in the plane z = 0, as each format writes it; its normal is +z.
+// One triangle in the plane z = 0, in each format; its normal is +z.
 const char* kObj = "o first\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no second\nv 0 0 5\nv 2 0 5\nv 0 2 5\nf 4 5 6\n";
 const char* kStl = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
 const char* kPly =
@@ -67,7 +67,7 @@ TEST_CASE("A mirrored mesh stays right side out") {
   CHECK(m.normals[0].z() > 0.99);
 }
 
-TEST_CASE("Normals that are missing are the mean of the faces around") {
+TEST_CASE("Missing normals are the mean of the adjacent faces") {
   TriangleMesh roof;
   roof.vertices = {{0, 0, 1}, {0, 1, 1}, {1, 0, 0}, {-1, 0, 0}};
   roof.indices = {0, 2, 1, 0, 1, 3};

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of radius 1, vertices shared.
+// Of radius 1, with shared vertices.
 TriangleMesh icosahedron() {
   const double g = std::numbers::phi;
   TriangleMesh m;
@@ -34,7 +34,7 @@ TriangleMesh icosahedron() {
   return m;
 }
 
-// A cube of edge 2 whose sides have normals of their own.
+// A cube of edge 2 with separate normals for its sides.
 TriangleMesh cube() {
   TriangleMesh m;
   for (int axis = 0; axis < 3; ++axis)
@@ -55,14 +55,14 @@ double loop_beta(int n) { return (5.0 / 8 - std::pow(3.0 / 8 + std::cos(2 * std:
 
 }  // namespace
 
-TEST_CASE("Once divided, an icosahedron has the points of Loop's masks") {
+TEST_CASE("An icosahedron subdivided once has the points of Loop's masks") {
   const TriangleMesh m = subdivide(icosahedron(), 1);
   REQUIRE(m.vertices.size() == 42);
   REQUIRE(m.indices.size() == 3 * 80);
   // The five neighbours of a vertex v of radius 1 sum to sqrt(5) v.
   const double old_radius = 1 - 5 * loop_beta(5) + std::sqrt(5.0) * loop_beta(5);
-  // Of an edge between a and b, with c and d opposite: |3 (a + b) + c + d| / 8; a.b = c.d' = 1/sqrt(5) where
-  // joined, and c and d are joined by no edge: c.d = -1/sqrt(5); each of a, b with each of c, d: 1/sqrt(5).
+  // Edge between a and b, with c and d opposite: |3 (a + b) + c + d| / 8; a.b = 1/sqrt(5), since they are joined; c
+  // and d are not joined: c.d = -1/sqrt(5); each of a, b with each of c, d: 1/sqrt(5).
   const double s = 1 / std::sqrt(5.0);
   const double edge_radius = std::sqrt(9 * (2 + 2 * s) + (2 - 2 * s) + 2 * 3 * 4 * s) / 8;
   int old_ones = 0, new_ones = 0;
@@ -74,9 +74,9 @@ TEST_CASE("Once divided, an icosahedron has the points of Loop's masks") {
   CHECK(new_ones == 30);
 }
 
-TEST_CASE("Divided on and on, the vertices of an icosahedron go to Loop's limit, and its surface to a round one") {
-  // Limit of a vertex of valence n: 1 - n c of itself and c of each neighbour, c = 1 / (3 / (8 beta) + n) (Loop
-  // 1987, p. 41).
+TEST_CASE("Under repeated subdivision, the vertices of an icosahedron go to Loop's limit, and its surface to a round one") {
+  // Limit of a vertex of valence n: 1 - n c of itself and c of each neighbour, c = 1 / (3 / (8 beta) + n) (Loop 1987,
+  // p. 41).
   const double c = 1 / (3 / (8 * loop_beta(5)) + 5), limit = 1 - 5 * c + std::sqrt(5.0) * c;
   double last = 1;
   const TriangleMesh plain = icosahedron();
@@ -88,8 +88,7 @@ TEST_CASE("Divided on and on, the vertices of an icosahedron go to Loop's limit,
     CHECK(error < 0.5 * last);  // by the second eigenvalue of its matrix, below 3/8 + 2/8 cos(72 deg) = 0.453
     last = error;
     if (times < 3) continue;
-    // Loop's surface of an icosahedron is no sphere, but near one: radii within 2 %, normals within 3 degrees of
-    // it.
+    // Loop's surface of an icosahedron is not a sphere, but near one: radii within 2 %, normals within 3 degrees.
     double low = 9, high = 0, off = 0;
     for (std::size_t i = 0; i < m.vertices.size(); ++i) {
       low = std::min(low, m.vertices[i].norm()), high = std::max(high, m.vertices[i].norm());
@@ -102,21 +101,21 @@ TEST_CASE("Divided on and on, the vertices of an icosahedron go to Loop's limit,
   }
 }
 
-TEST_CASE("What is sharp stays sharp: a cube stays the cube it was") {
+TEST_CASE("Sharp edges stay sharp: a cube stays the same cube") {
   const TriangleMesh m = subdivide(cube(), 3);
   CHECK(m.indices.size() == 3 * 12 * 64);
   const VolumeIntegral v = integrate(m);
   for (std::size_t i = 0; i < m.vertices.size(); ++i) {
     CHECK(m.vertices[i].cwiseAbs().maxCoeff() < 1 + 1e-12);
-    // On the side that its normal points to, which is one of six.
+    // On the side of its normal, one of six.
     CHECK(m.normals[i].cwiseAbs().maxCoeff() > 1 - 1e-12);
     CHECK(m.vertices[i].dot(m.normals[i]) == Approx(1).margin(1e-12));
   }
-  // Its edges are straight, so only the corners, which stay too, could take something away.
+  // Its edges are straight, so only corners could change the volume, and they stay too.
   CHECK(v.volume_m3 == Approx(8).epsilon(1e-12));
 }
 
-TEST_CASE("A flat sheet stays flat, within its border, and a picture lies on it as before") {
+TEST_CASE("A flat sheet stays flat, within its border, and keeps its texture coordinates") {
   TriangleMesh sheet;
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
@@ -147,13 +146,13 @@ TEST_CASE("A flat sheet stays flat, within its border, and a picture lies on it 
     CHECK(twice > 0);  // none is turned over
     area += twice / 2;
   }
-  // The border goes to a cubic B-spline, which cuts 1/12 off each corner: the integral of (x dy - y dx) along
-  // x = 1 - t + t^3/6, y = t^3/6, half of it on each side. On the way there, less.
+  // The border converges to a cubic B-spline, which cuts 1/12 off each corner: the integral of (x dy - y dx) along x
+  // = 1 - t + t^3/6, y = t^3/6, half of it on each side. Before the limit, less.
   CHECK(area < 9);
   CHECK(area > 9 - 4.0 / 12);
 }
 
-TEST_CASE("Vertices that lie at one place are one point, however often a file writes it") {
+TEST_CASE("Vertices at one place are one point, even if a file repeats them") {
   const TriangleMesh shared = icosahedron();
   TriangleMesh soup;
   for (const int i : shared.indices) {
@@ -164,6 +163,6 @@ TEST_CASE("Vertices that lie at one place are one point, however often a file wr
   CHECK(subdivide(soup, 2).vertices.size() == subdivide(shared, 2).vertices.size());
 }
 
-TEST_CASE("More triangles than a mesh may have are refused before they are made") {
+TEST_CASE("A mesh with too many triangles is refused before it is computed") {
   CHECK_THROWS_WITH(subdivide(icosahedron(), 12), Catch::Contains("more than 1000000 triangles"));
 }

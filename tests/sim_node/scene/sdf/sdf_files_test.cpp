@@ -1,4 +1,4 @@
-// Includes, and files that are no scenes.
+// Includes, and files that are not scenes.
 #include <sstream>
 
 #include <iostream>
@@ -32,7 +32,7 @@ TEST_CASE("Includes are found beside the file, in its models folder, by name and
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("An include inside an included model, and its mesh, are looked for beside that model") {
+TEST_CASE("An include inside an included model, and its mesh, are searched beside that model") {
   SceneFile file(world("<include><uri>models/outer/model.sdf</uri></include>"));
   file.write("models/outer/model.sdf",
              "<sdf version='1.9'><model name='outer'><link name='l'><visual name='v'><geometry><mesh><uri>tri.obj</uri></mesh>"
@@ -54,7 +54,7 @@ TEST_CASE("A warning inside an included file names that file and its line") {
   CHECK_THAT(file.short_warnings()[1], Catch::StartsWith("ball.sdf:4: "));
 }
 
-TEST_CASE("An include that is missing, empty, circular or wrong inside is refused with its line") {
+TEST_CASE("An include that is missing, empty, circular or invalid is refused with its line") {
   SceneFile file(world("\n<include><uri>ball.sdf</uri></include>"));
   CHECK(file.refusal() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
   file.write("ball.sdf", ball("ball", "<include><uri>ball.sdf</uri></include>"));
@@ -79,7 +79,7 @@ TEST_CASE("Two files of one name in two folders are refused instead of mixed up"
   CHECK_THAT(file.refusal(), Catch::StartsWith("sub/outer.sdf:1: ") && Catch::Contains("exists twice"));
 }
 
-TEST_CASE("What every Gazebo brings is stood in for, and nothing is downloaded") {
+TEST_CASE("The models of every Gazebo installation are built in, and nothing is downloaded") {
   SceneFile file(world("<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>\n"
                        "<include><uri>https://fuel.example/box</uri></include>"));
   const WorldDef w = file.load();
@@ -91,7 +91,7 @@ TEST_CASE("What every Gazebo brings is stood in for, and nothing is downloaded")
   CHECK_THAT(file.short_warnings()[2], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("nothing is downloaded"));
 }
 
-TEST_CASE("A file that is no scene is refused in one sentence") {
+TEST_CASE("A file that is not a scene is refused in one sentence") {
   SceneFile file;
   CHECK_THAT(file.refusal(), Catch::Contains("cannot be read"));
   file.write("scene.sdf", "");
@@ -113,10 +113,10 @@ TEST_CASE("A file that is no scene is refused in one sentence") {
 }
 
 TEST_CASE("libsdformat's own message comes with the line, and nothing is printed") {
-  std::ostringstream heard;
-  std::streambuf* before = std::cerr.rdbuf(heard.rdbuf());
+  std::ostringstream printed;
+  std::streambuf* before = std::cerr.rdbuf(printed.rdbuf());
   SceneFile file(world("<model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>"
-                       "<child>nobody</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
+                       "<child>no_such_link</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
   const std::string joint = file.refusal();
   file.write("scene.sdf", link("<inertial><mass>heavy</mass></inertial>"));
   const std::string mass = file.refusal();
@@ -125,14 +125,14 @@ TEST_CASE("libsdformat's own message comes with the line, and nothing is printed
   file.write("scene.sdf", world("<model>\n</model>"));
   const std::string nameless = file.refusal();
   std::cerr.rdbuf(before);
-  CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("nobody"));
+  CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no_such_link"));
   CHECK_THAT(mass, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("heavy"));
   CHECK_THAT(twice, Catch::StartsWith("scene.sdf:") && Catch::Contains("a"));
   CHECK_THAT(nameless, Catch::StartsWith("scene.sdf:3: "));
-  CHECK(heard.str() == "");
+  CHECK(printed.str() == "");
 }
 
-TEST_CASE("A file that holds a model alone is a world of one model") {
+TEST_CASE("A file that contains only a model is a world of one model") {
   SceneFile file(ball("ball"));
   const WorldDef w = file.load();
   CHECK(w.name == "ball");

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <tactus/asset_chunk_t.hpp>
+#include <tactus/asset_ref_t.hpp>
+#include <tactus/log_info_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 
 #include "lcmtypes/fields.h"

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <tactus/node_health_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 
@@ -14,7 +15,6 @@ using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-
 constexpr Nanoseconds kTick{1'000'000};
 const HostTime kNow = host_time(900'000'000'000);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tactus/tag_list_t.hpp>
+#include <tactus/tag_values_t.hpp>
 #include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"

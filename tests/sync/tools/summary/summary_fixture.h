@@ -4,6 +4,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/tools/recorder/recorder.h"
 #include "sync/tools/summary/summary.h"

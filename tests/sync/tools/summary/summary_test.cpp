@@ -2,6 +2,15 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <tactus/clock_map_t.hpp>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/game_state_t.hpp>
+#include <tactus/input_health_t.hpp>
+#include <tactus/log_info_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/presentation_t.hpp>
+#include <tactus/presented_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "tests/sync/tools/summary/summary_fixture.h"
 

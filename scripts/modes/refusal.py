@@ -1,5 +1,0 @@
-"""What is wrong with what a person gave, as one sentence."""
-
-
-class Refusal(Exception):
-    pass

@@ -1,0 +1,1 @@
+"""Tactus: runs, clusters, studies and analyses, around the programs of the repository."""

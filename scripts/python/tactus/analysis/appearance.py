@@ -1,0 +1,92 @@
+"""L_appear: the level at which a felt property is off by more than its JND, from what participants matched or rated it to be; presses.py adds what was
+measured of what they felt.
+
+Each answer is held against the mean of the same participant's answers about the undegraded stimulus: people use scales differently.
+The JND is a published one (study/just_noticeable.csv), a share of that reference or an absolute step.
+"""
+import dataclasses
+
+import numpy as np
+
+from tactus.analysis import limits, operators, resampling
+from tactus.analysis.crossing import crossing
+from tactus.study import felt_properties
+
+TASKS = ("matching", "rating")
+
+
+@dataclasses.dataclass
+class Felt:
+    """One property under one factor. levels with shift (mean of answer minus reference) and its interval; jnd in the answers' unit."""
+    property: str
+    factor: operators.Factor
+    levels: list
+    shifts: list
+    intervals: list
+    counts: list
+    reference: float
+    jnd: float
+    source: felt_properties.JustNoticeable
+    limit: limits.Limit
+    toward: str  # less, more: where the property goes
+    left_out: int  # answers of participants who never judged the undegraded stimulus, or took it for nothing
+    observer: str
+    measured: bool = False  # what the hand was given; else what it was judged to be
+
+
+def judged(trials, stated):
+    """[(property, Trials)] of answers with a number about a property that has a published JND. stated(study): the property that the study
+    file names, or ""; else the question is to name it."""
+    known = felt_properties.just_noticeable()
+    mine = trials.where(np.isin(trials["task"], TASKS) & ~np.isnan(trials["answer_value"]))
+    names = np.array([stated(study) or felt_properties.property_of(question, known) for study, question in zip(mine["study"], mine["question"])], dtype=object)
+    return [(name, rows) for name in known for _, rows in mine.where(names == name).groups("study")]
+
+
+def felt(property, trials, rng):
+    """[Felt] for each factor of these trials."""
+    jnd = felt_properties.just_noticeable()[property][0]
+    plain = np.array([not (m and o) or operators.factor(m, o, u, level).undegraded(level) for m, o, u, level in
+                      zip(*(trials[name] for name in ("modality_degraded", "operator", "unit", "level")))], dtype=bool)
+    own = {name: float(np.mean(rows["answer_value"])) for (name,), rows in trials.where(plain).groups("participant_id")}
+    own = {name: reference for name, reference in own.items() if reference or jnd.unit != "%"}  # of nothing there is no share
+    known = np.array([p in own for p in trials["participant_id"]], dtype=bool)
+    single = known & (trials["second_modality"] == "")
+    made = []
+    for factor, rows in operators.factors(trials.where(single & ~plain)):
+        if factor.removal:
+            continue
+        # Per participant: the reference is a share of what this participant takes the undegraded to be.
+        baseline = trials.where(known & plain & np.isin(trials["participant_id"], rows["participant_id"]))
+        made.append(of_factor(property, jnd, factor, rows, baseline, own, int(np.count_nonzero(~known)), rng))
+    return made
+
+
+def of_factor(property, jnd, factor, rows, baseline, own, left_out, rng):
+    resampler = resampling.Resampler(np.concatenate([rows["participant_id"], baseline["participant_id"]]), rng)
+    relative = jnd.unit == "%"
+    shift = lambda t: np.array([value / own[p] - 1 if relative else value - own[p] for p, value in zip(t["participant_id"], t["answer_value"])])
+    bound = jnd.jnd / 100 if relative else jnd.jnd
+    base, _ = resampler.of_cell(baseline["participant_id"], shift(baseline)[:, None])
+    return of_levels(property, jnd, bound, factor, rows, shift, resampler, base[:, 0], float(np.mean(list(own.values()))), left_out)
+
+
+def of_levels(property, jnd, bound, factor, rows, shift, resampler, base, reference, left_out, measured=False):
+    """Felt of the shifts, shift(Trials) -> (n,), at each level. bound: the JND as a shift. base: draws of the shift of the undegraded, or 0."""
+    groups = sorted(rows.groups("level"), key=lambda g: factor.severity(g[0][0]))
+    levels, shifts, intervals, counts, draws = [], [], [], [], []
+    for (level,), cell in groups:
+        values = shift(cell)
+        drawn, _ = resampler.of_cell(cell["participant_id"], values[:, None])
+        drawn = drawn[:, 0] - base
+        levels.append(level), shifts.append(float(values.mean())), counts.append(len(values)), draws.append(drawn)
+        intervals.append(resampling.interval(drawn))
+    sign = 1 if shifts[int(np.argmax(np.abs(shifts)))] >= 0 else -1
+    severities, weights = np.array([factor.severity(x) for x in levels]), np.array(counts, dtype=float)
+    drawn = np.stack(draws)
+    drawn = drawn[:, ~np.isnan(drawn).any(axis=0)]
+    point = crossing(severities, sign * np.array(shifts)[:, None], weights, bound)[0]
+    limit = limits.of_draws("appear", factor, f"{property}, measured" if measured else property, point, crossing(severities, sign * drawn, weights, bound), float(severities.max()),
+                            rows.observer(), len(rows))
+    return Felt(property, factor, levels, shifts, intervals, counts, reference, bound, jnd, limit,
+                "more" if sign > 0 else "less", left_out, rows.observer(), measured)

@@ -1,0 +1,85 @@
+"""L_detect: the level at which a degradation is noticed.
+
+  synchrony judgement   the edges of the window, where the curve is at 75 % of its peak; one for each sense being late
+  temporal order        PSS ± JND, where 75 % of the orders are right, lapses aside
+  two intervals         75 % correct; where the study asks which of two felt softer, that is L_appear as it was judged
+
+Of FEWEST_PARTICIPANTS people or more, the mean of the people's own values, with draws over people; of fewer, that of their answers taken
+together, with draws from the fit's interval: a normal distribution of either half's width. (PSS and JND of an order judgement are
+estimated independently of each other where the levels lie about the PSS, for the curve is symmetric.) A degradation that is noticed when there
+is none has a limit of 0.
+"""
+import numpy as np
+from scipy.stats import norm
+
+from tactus.analysis import limits, resampling
+from tactus.analysis.operators import Factor
+
+EVERYBODY = ""  # the participant of a curve of all together
+
+
+def draws_of(value, interval, rng, draws=resampling.DRAWS):
+    """Draws that have this value as median and this 95 % interval."""
+    z = rng.standard_normal(draws)
+    halves = np.array([value - interval[0], interval[1] - value]) / norm.ppf(0.975)
+    return value + z * np.where(z < 0, halves[0], halves[1])
+
+
+def edges(curve, sign, rng):
+    """(value, draws) of how late one sense may be in one fit; sign: +1 for the second of the pair, -1 for the first."""
+    if curve.condition.kind == "sj":
+        name = "high75" if sign > 0 else "low75"
+        return sign * curve.value(name), None if rng is None else sign * draws_of(curve.value(name), curve.intervals[name], rng)
+    value = sign * curve.value("pss") + curve.value("jnd")
+    if rng is None:
+        return value, None
+    return value, sign * draws_of(curve.value("pss"), curve.intervals["pss"], rng) + draws_of(curve.value("jnd"), curve.intervals["jnd"], rng)
+
+
+def threshold(curve, rng):
+    return curve.value("threshold75"), None if rng is None else draws_of(curve.value("threshold75"), curve.intervals["threshold75"], rng)
+
+
+def severities(values):
+    """(n,), what is below 0 as nothing at all."""
+    return np.array([max(v, 0.0) for v in values])
+
+
+def of_condition(condition, curves, rng, felt=""):
+    """[Limit] of one condition from its curves. felt: the property that its two intervals were judged by, or ""."""
+    fitted = [c for c in curves if c.fit is not None]
+    everybody = [c for c in fitted if c.participant == EVERYBODY]
+    people = [c for c in fitted if c.participant != EVERYBODY]
+    sides = [(+1, condition.pair[1], condition.pair[0]), (-1, condition.pair[0], condition.pair[1])] if condition.pair else [(0, None, None)]
+    made = []
+    for sign, late, early in sides:
+        factor = Factor(late, "delay", "ms") if condition.pair else condition.factor
+        one = (lambda c, r: edges(c, sign, r)) if condition.pair else threshold
+        by = f"{early} → {late}, {condition.kind}" if condition.pair else f"{felt}, judged" if felt else condition.kind
+        if len(people) >= resampling.FEWEST_PARTICIPANTS:
+            values = severities([one(c, None)[0] for c in people])
+            point = float(values.mean())
+            draws = resampling.Resampler([c.participant for c in people], rng).of_cell([c.participant for c in people], values[:, None])[0][:, 0]
+        elif everybody:
+            point, draws = one(everybody[0], rng)
+            point, draws = severities([point])[0], severities(draws)
+        else:
+            continue
+        used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else everybody
+        tried = np.abs(np.concatenate([c.levels for c in used]))
+        made.append(limits.of_draws("appear" if felt else "detect", factor, by, point, draws, float(tried.max()),
+                                    " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used))))
+    return made
+
+
+def detected(curves, seed, felt=lambda study: ""):
+    """[Limit] of all conditions. felt(study): the property that its file asks for, or ""."""
+    made = []
+    conditions = []
+    for c in curves:
+        if c.condition not in conditions:
+            conditions.append(c.condition)
+    for i, condition in enumerate(conditions):
+        made += of_condition(condition, [c for c in curves if c.condition == condition], np.random.default_rng([seed, 1000 + i]),
+                             felt(condition.study) if condition.kind == "2ifc" else "")
+    return made

@@ -1,0 +1,43 @@
+"""What the figures of a study share: the run report's look, who answered, and published thresholds behind the data."""
+
+from tactus.report import figures
+
+figures.matplotlib.rcParams["text.parse_math"] = False  # names are texts, whatever they hold
+
+INK, PALE, BREAK = "#222222", "#9aa7b5", "#b3261e"
+BANDS = ("#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#9c755f", "#bab0ac")
+
+
+def colour(modality):
+    return figures.COLOUR.get(modality, INK)
+
+
+def stamp(fig, observer):
+    """Says on the figure itself who answered, when it was not people."""
+    if "simulated" in observer:
+        fig.text(0.998, 1.0, f"observer = {observer}", ha="right", va="bottom", fontsize=7, color="#8a2be2")
+
+
+def thresholds_behind(axes, found, legend=True):
+    """found: [(x, Threshold)]; a line for each, of one colour per source, and the stretch between the least and the largest on each side."""
+    low, high = axes.get_xlim()
+    shown = [(x, t) for x, t in found if low <= x <= high]
+    for side in (-1, 1):
+        mine = [x for x, _ in shown if x * side > 0]
+        if len(mine) > 1:
+            axes.axvspan(min(mine), max(mine), color="#f9f3e4", zorder=0, linewidth=0)
+    marks = {}
+    sources = []
+    for x, t in shown:
+        label = t.short()
+        if label not in sources:
+            sources.append(label)
+        marks[label] = axes.axvline(x, color=BANDS[sources.index(label) % len(BANDS)], linewidth=1, linestyle=(0, (4, 2)), zorder=1)
+    if marks and legend:
+        axes.add_artist(axes.legend(marks.values(), marks.keys(), loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=6.5, title="published thresholds",
+                                    title_fontsize=7, handlelength=1.6))
+    return len(found) - len(shown)
+
+
+def label_of(participant):
+    return participant or "all together"

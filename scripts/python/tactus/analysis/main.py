@@ -1,0 +1,113 @@
+"""The command line of `tactus study analyse`."""
+import argparse
+import json
+import math
+import os
+import pathlib
+import sys
+
+from tactus.refusal import Refusal
+
+USAGE = """Analyses trials and games: what is noticed, what feels changed, what breaks the task.
+
+  tactus study analyse PLACE... [--out DIR] [--json FILE] [--seed N] [--time-limit S] [--margin-success POINTS] [--margin-time PERCENT] [--alpha A]
+
+  PLACE                    a folder that `study run` or `study sweep` left (all trials.csv and games.csv in it), or one such table
+  --out DIR                where tables, figures and report.html go; default: analysis, in the first folder
+  --json FILE              all tables for programs
+  --seed N                 of the bootstrap; the same input and seed give the same bytes; default: 1
+  --time-limit S           how long a game may take; games not won count with it. Default: as the study file says, else the tables
+  --margin-success POINTS  how much less success is worse, in points; default: as the study file says, else 10
+  --margin-time PERCENT    how much more time is worse; default: as the study file says, else 10
+  --alpha A                level of the tests of non-inferiority; default: 0.05
+
+Levels are those that were achieved; trials whose apparatus missed its tolerance are left out and counted. Writes psychometric.csv, limits.csv,
+ratios.csv, conditions.csv, frontier.csv, felt.csv and mixed_models.csv as far as there is something in them, figures/ and report.html.
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refusal(f"{message}; see tactus study analyse --help")
+
+
+def parsed(words):
+    parser = Parser(add_help=False, allow_abbrev=False)
+    parser.add_argument("place", nargs="+")
+    parser.add_argument("--out")
+    parser.add_argument("--json")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--time-limit", type=float)
+    parser.add_argument("--margin-success", type=float)
+    parser.add_argument("--margin-time", type=float)
+    parser.add_argument("--alpha", type=float, default=0.05)
+    options = parser.parse_args(words)
+    for name, value, low, high in (("--margin-success", options.margin_success, 0, 100), ("--margin-time", options.margin_time, 0, 1000),
+                                   ("--alpha", options.alpha, 0, 0.5), ("--time-limit", options.time_limit, 0, 1e6)):
+        if value is not None and not low < value < high:
+            raise Refusal(f"{name} {value:g}: give a number above {low} and below {high:g}")
+    if options.seed < 0:
+        raise Refusal(f"--seed {options.seed}: give a number from 0 on")
+    first = pathlib.Path(options.place[0])
+    options.out = options.out or str((first if first.is_dir() else first.parent) / "analysis")
+    return options
+
+
+def analyse(options):
+    try:
+        from tactus.analysis import result_tables
+        from tactus.analysis import study_analysis
+        from tactus.analysis import study_files
+        from tactus.analysis import study_report
+        from tactus.analysis import trials
+    except ImportError as error:
+        raise Refusal(f"{error.name} is missing; run scripts/setup") from None
+    files = trials.files_of(options.place)
+    rows = trials.read(files)
+    share = lambda percent: None if percent is None else percent / 100
+    settings = study_analysis.Settings(share(options.margin_success), share(options.margin_time), options.alpha, options.time_limit, options.seed, study_files.stated(files))
+    analysis = study_analysis.analyse(rows, settings)
+    made = result_tables.all_rows(analysis)
+    if not made:
+        raise Refusal(f"nothing in {options.place[0]} can be analysed: no answers to judgements, no matches of a known property, no games")
+    os.makedirs(options.out, exist_ok=True)
+    result_tables.write(made, options.out)
+    report = study_report.Report(analysis, os.path.join(options.out, "figures"))
+    text = report.html(", ".join(sorted({s for s in analysis.trials["study"] if s})))
+    page = os.path.join(options.out, "report.html")
+    with open(page + ".part", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(page + ".part", page)
+    if options.json:
+        with open(options.json, "w", encoding="utf-8") as file:
+            json.dump({"trials": len(analysis.trials), "left_out": analysis.left_out, "observer": analysis.observer, **result_tables.for_programs(made)}, file, indent=1)
+            file.write("\n")
+    tell(analysis, made, page, report)
+
+
+def tell(analysis, made, page, report):
+    from tactus.analysis import operators
+    who = f", observer = {analysis.observer}" if "simulated" in analysis.observer else ""
+    print(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out since the apparatus missed its tolerance{who}")
+    if "limits" in made:
+        print(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
+        for row in made["limits"]:
+            beyond = ("<" if row["operator"] in operators.FALLING else ">") + f"{row['up_to']:.4g}"  # not reached up to there
+            told = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
+            print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(told)} {row['unit']}")
+    print(f"study analyse: {page}, {os.path.getsize(page) // 1000} kB, {report.gallery.count} figures, tables {', '.join(name + '.csv' for name in made)}")
+
+
+def main(argv):
+    if not argv or any(word in ("-h", "--help") for word in argv):
+        print(USAGE, end="", file=sys.stdout if argv else sys.stderr)
+        return 0 if argv else 1
+    try:
+        analyse(parsed(argv))
+    except Refusal as error:
+        print(f"study analyse: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders that can be read and written", file=sys.stderr)
+        return 1
+    return 0

@@ -1,0 +1,44 @@
+"""Stiffness that was felt in two presses of which one was degraded, as it was measured: the slope of the force over the depth of the hand.
+
+L_appear by measurement is the level at which the degraded press is as much softer or stiffer than the other one of its trial as a published JND. It needs no
+answer: it says what the apparatus did to the hand. What people say of it, which of the two felt softer, is a psychometric function like any other; where
+the study asks for that (of="stiffness"), the level with 75 % right is L_appear as it was judged (detection.py).
+"""
+import numpy as np
+
+from tactus.analysis import appearance, operators, resampling
+from tactus.study import felt_properties
+
+PROPERTY = "stiffness"
+COLUMNS = ("stiffness_first_n_m", "stiffness_second_n_m", "degraded_interval")
+
+
+def pressed(trials):
+    """The Trials in which both stiffnesses were measured, one sense was degraded, and the other press gave a hand something to hold it against."""
+    first, second, degraded = (trials[name] for name in COLUMNS)
+    _, plain = stiffnesses(first, second, degraded)
+    return trials.where(~np.isnan(first + second + degraded) & (plain > 0) & (trials["modality_degraded"] != "") & (trials["second_modality"] == ""))
+
+
+def stiffnesses(first, second, degraded):
+    """(of the degraded press, of the other), each (n,), N/m."""
+    return np.where(degraded == 1, first, second), np.where(degraded == 1, second, first)
+
+
+def shift(trials):
+    """(n,) by which share the degraded press was stiffer than the other of the same trial."""
+    degraded, plain = stiffnesses(*(trials[name] for name in COLUMNS))
+    return degraded / plain - 1
+
+
+def felt(trials, rng):
+    """[appearance.Felt] of each study and factor."""
+    jnd, made = felt_properties.just_noticeable()[PROPERTY][0], []
+    for factor, rows in (found for _, of_study in pressed(trials).groups("study") for found in operators.factors(of_study)):
+        rows = rows.where(np.array([not factor.undegraded(level) for level in rows["level"]]))
+        if factor.removal or not len(rows):
+            continue
+        _, plain = stiffnesses(*(rows[name] for name in COLUMNS))
+        resampler = resampling.Resampler(rows["participant_id"], rng)
+        made.append(appearance.of_levels(PROPERTY, jnd, jnd.jnd / 100, factor, rows, shift, resampler, 0.0, float(plain.mean()), 0, measured=True))
+    return made

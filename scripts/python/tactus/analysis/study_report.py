@@ -1,0 +1,221 @@
+"""The report on a study: one page that needs nothing else, with its figures beside it as SVG and PNG."""
+import collections
+import re
+
+import numpy as np
+
+from tactus.analysis import limit_plots, limits, mixed, performance_plots, published, resampling
+from tactus.analysis.look import figures
+from tactus.analysis.result_tables import degraded_words
+from tactus.report.words import figure as number, listed, page, safe, table
+
+
+class Report:
+    """Numbers figures, tables and sources while the sections are written."""
+
+    def __init__(self, analysis, folder):
+        self.analysis = analysis
+        self.gallery = figures.Gallery(folder)
+        self.tables, self.sources, self.slugs = 0, [], collections.Counter()
+
+    def keep(self, fig, slug, caption):
+        """Each figure's name is its own, also where two studies have the same condition, and a file's name whatever its senses are called."""
+        slug = re.sub(r"[^A-Za-z0-9_]+", "-", slug)
+        self.slugs[slug] += 1
+        return self.gallery.keep(fig, slug if self.slugs[slug] == 1 else f"{slug}_{self.slugs[slug]}", caption + self.who())
+
+    def table(self, caption, head, rows):
+        self.tables += 1
+        return table(caption + self.who(), head, rows, self.tables)
+
+    def who(self):
+        return " <b>observer = simulated</b>." if self.analysis.observer == "simulated" else f" Observers: {self.analysis.observer}." if "simulated" in self.analysis.observer else ""
+
+    def cite(self, source):
+        if source not in self.sources:
+            self.sources.append(source)
+        n = self.sources.index(source) + 1
+        return f'<a href="#ref{n}">[{n}]</a>'
+
+    def html(self, name):
+        sections = [head, limits_section, curves_section, felt_section, performance_section, models_section, methods]
+        body = "".join(section(self) for section in sections)
+        if self.sources:
+            body += '<h2>Sources</h2>\n<ol class="refs">' + "".join(f'<li id="ref{i + 1}">{safe(s)}</li>' for i, s in enumerate(self.sources)) + "</ol>\n"
+        return page(f"Study {name}", body)
+
+
+SMALLEST = 1e-6  # of what is told as more than 0, design
+
+
+def span(low, high, endless="not reached"):
+    """An interval; endless: what is said of an end that is infinite."""
+    end = lambda v: endless if np.isinf(v) else number(0.0 if abs(v) < SMALLEST else v)
+    return f"[{end(low)}, {end(high)}]"
+
+
+def value_of(limit):
+    unit = f" {limit.factor.unit}" if limit.factor.unit else ""
+    return f"{number(limit.value)}{unit} {span(limit.low, limit.high)}" if limit.reached else f"not reached up to {number(limit.up_to)}{unit}"
+
+
+def head(report):
+    a = report.analysis
+    studies = sorted({s for s in a.trials["study"] if s}) or ["a study without a name"]
+    people = len(a.trials.participants())
+    sentences = [f"{number(len(a.trials))} trials and games of {number(people)} participant{'s' if people != 1 else ''} were analysed"
+                 + (f"; {number(a.left_out)} were left out, since the apparatus missed its tolerance." if a.left_out else "; none was left out.")]
+    if "simulated" in a.observer:
+        sentences.append("<b>observer = simulated</b>: no person took part; what follows holds of the simulated ones."
+                         if a.observer == "simulated" else "<b>Some observers were simulated</b>; figures and tables mix them with people.")
+    for limit in (l for l in a.limits if l.kind == "break" and l.by.split()[0] == limits.EITHER):
+        whose = limit.by.removeprefix(limits.EITHER)
+        sentences.append(f"L_break of {safe(limit.factor.words() + whose)}: {safe(value_of(limit))}.")
+    return f"<h1>{safe(listed(studies))}</h1>\n<p class=\"sub\">How far a sense can degrade: noticed, felt, in the way</p>\n<p class=\"sum\">{' '.join(sentences)}</p>\n"
+
+
+def margins_of(analysis):
+    """ (10 points, 10 %), where all studies have the same."""
+    found = {p.margins for p in analysis.performances}
+    return "".join(f" ({100 * success:g} points, {100 * (time - 1):.3g} %)" for success, time in found) if len(found) == 1 else ""
+
+
+def limits_section(report):
+    a = report.analysis
+    if not a.limits:
+        return ""
+    factors = sorted({l.factor for l in a.limits})
+    parts = ["<h2>The limits of each sense</h2>\n",
+             report.table("Limits with 95 % intervals. L_detect: noticed; L_appear: a felt property off by more than its JND; L_break: success or time worse than "
+                          f"undegraded by the margin{margins_of(a)}.",
+                          ["sense and operator", "limit", "by", "level", "n"],
+                          [[l.factor.words(), f"L_{l.kind}", l.by, value_of(l), l.n] for f in factors for l in a.limits if l.factor == f])]
+    for factor in factors:
+        mine = [l for l in a.limits if l.factor == factor]
+        behind = published.of_factor(factor)
+        for t in behind:
+            report.cite(t.source)
+        parts.append(report.keep(limit_plots.limits_figure(factor, mine, behind, a.observer), f"limits_{factor.modality}_{factor.operator}",
+                                 f"Limits of {safe(factor.words())} with 95 % intervals" + ("; grey: published thresholds by source." if behind else ".")))
+    rows = [(f"{r.upper.factor.words()} / {r.lower.by}", False, r.value, r.low, r.high) for r in a.ratios]
+    rows += [(f"{l.factor.words()} / {t.earlier} → {t.later}, {t.what}: {t.short()}", True, l.value / t.ms, l.low / t.ms, l.high / t.ms) for l, t in a.against_published]
+    if rows:
+        parts.append(report.keep(limit_plots.forest_figure(rows, a.observer), "ratio_break_detect",
+                                 "L_break / L_detect with 95 % intervals. Black: both measured here; grey: against a published threshold, whose own spread is "
+                                 "not in the interval."))
+    return "".join(parts)
+
+
+def curves_section(report):
+    if not report.analysis.curves:
+        return ""
+    from tactus.analysis import curve_plots
+    from tactus.analysis import psychometric
+    parts, seed = ["<h2>Psychometric functions</h2>\n"], report.analysis.settings.seed
+    conditions = []
+    for curve in report.analysis.curves:
+        if curve.condition not in conditions:
+            conditions.append(curve.condition)
+    for condition in conditions:
+        mine = [c for c in report.analysis.curves if c.condition == condition]
+        everybody = mine[0]
+        parts.append(f"<h3>{safe(condition.words())}{safe(f' ({condition.study})' if condition.study else '')}</h3>\n")
+        names = list(dict.fromkeys(name for c in mine if c.fit for name in c.intervals))
+        rows = [[c.participant or "all together", int(c.total.sum())] + ([f"{number(0.0 if abs(c.value(n)) < SMALLEST else c.value(n))} {span(*c.intervals[n], 'no end')}" if n in c.intervals else "–" for n in names] if c.fit
+                else [c.why, *[""] * (len(names) - 1)]) for c in mine]
+        parts.append(report.table(f"Maximum likelihood with 95 % intervals: {safe(condition.axis())}.", ["participant", "n", *(names or ["why not"])], rows))
+        if everybody.fit is not None:
+            fig, beyond = curve_plots.curve_figure(everybody, seed)
+            for t in dict.fromkeys(t for _, t in published.of_pair(*condition.pair)) if condition.pair else []:
+                report.cite(t.source)
+            parts.append(report.keep(fig, f"curve_{condition.slug()}", f"{safe(condition.words().capitalize())}: points in proportion to their answers, the function with its band of 95 %; at the bottom the 95 % interval of its centre" + ("; dashed: published thresholds" if condition.pair else "")
+                                     + (f", {beyond} of them beyond the levels given" if beyond else "") + "."))
+        if len(mine) > 2:
+            parts.append(report.keep(curve_plots.small_multiples(mine), f"participants_{condition.slug()}", "Each participant; grey: all together."))
+        if condition.pair and len(everybody.levels):
+            parts.append(report.keep(curve_plots.achieved_figure(everybody), f"achieved_{condition.slug()}", "Asynchronies that were achieved, and how far from those asked for."))
+        if any(len(c.trials) for c in mine):
+            parts.append(report.keep(curve_plots.trace_figure(mine), f"levels_{condition.slug()}", "Levels in the order in which they were given; filled: "
+                                     f"{ {'sj': 'judged synchronous', 'toj': 'first sense first', '2ifc': 'correct'}[condition.kind]}. Line: the fitted centre as answers came in; band: its interval at the end."))
+        if len(mine) > psychometric.FEWEST_TRIALS + 5:
+            parts.append(f"<p>The first {curve_plots.MOST_SMALL} participants are drawn; the table has all.</p>\n")
+    return "".join(parts)
+
+
+def felt_section(report):
+    felt = report.analysis.felt
+    if not felt:
+        return ""
+    parts = ["<h2>What is felt</h2>\n"]
+    for f in felt:
+        left = f" {f.left_out} answers of participants who never judged the undegraded stimulus are left out." if f.left_out else ""
+        parts.append(report.keep(limit_plots.felt_figure(f), f"felt_{f.property}_{f.factor.modality}_{f.factor.operator}",
+                                 f"{'Measured' if f.measured else 'Felt'} {f.property} under {safe(f.factor.words())}, against the undegraded, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
+                                 f"({safe(f.source.situation)}). L_appear: {safe(value_of(f.limit))}; the property is felt as {f.toward}.{left}"))
+    return "".join(parts)
+
+
+def performance_section(report):
+    a, parts = report.analysis, []
+    for p in a.performances:
+        parts.append(f"<h2>Games{': ' + safe(p.study) if p.study else ''}</h2>\n")
+        baseline = p.cells[()]
+        rows = []
+        for degraded, c in p.cells.items():
+            d = p.differences.get(degraded)
+            time = resampling.interval(c.draws[:, 1])
+            rows.append([degraded_words(degraded), c.n, f"{100 * c.share:.1f} [{100 * c.share_interval()[0]:.1f}, {100 * c.share_interval()[1]:.1f}]", f"{c.mean_time_s:.2f} {span(*time)}"]
+                        + ([f"{100 * d.success:+.1f} [{100 * d.success_interval[0]:+.1f}, {100 * d.success_interval[1]:+.1f}]", f"{d.time:.3f} {span(*d.time_interval)}",
+                            "harmless" if d.harmless else "harmful" if d.harmful else "open"] if d else ["", "", "baseline"]))
+        parts.append(report.table(f"Games won (%, Wilson’s interval), time to win (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'not at all: all were won'}"
+                                  f"{' s' if np.isfinite(p.limit_s) else ''}), and both against all senses. Harmless: shown to be within both margins, Holm’s correction; harmful: an interval lies "
+                                  "beyond its margin.", ["condition", "n", "won %", "time s", "difference, points", "ratio of time", "shown"], rows))
+        if baseline.share < p.margins[0] or baseline.mean_time_s * p.margins[1] > p.limit_s:
+            parts.append("<p>The undegraded games were won so seldom, or so late, that no level could be worse by a margin: none is shown to be harmless by that outcome.</p>\n")
+        for factor, found in p.limits.items():
+            parts.append(report.keep(performance_plots.factor_figure(p.cells, factor, found, p.margins, p.observer), f"games_{factor.modality}_{factor.operator}",
+                                     f"Games under {safe(factor.words())}. Green: all senses, with their interval; dashed: the margin; red: L_break with its interval."))
+        removed = [(degraded_words(degraded), d) for degraded, d in p.differences.items() if all(f.removal for f, _ in degraded)]
+        if removed:
+            parts.append(report.keep(performance_plots.removal_figure(removed, baseline, p.margins, p.observer), "removal",
+                                     "What each sense is worth: games without it, against all senses, with 95 % intervals. Dashed: the margins."))
+        for f in p.frontiers:
+            slug = f"{f.first.modality}_{f.first.operator}_{f.second.modality}_{f.second.operator}"
+            parts.append(report.keep(performance_plots.frontier_figure(f, p.cells, p.margins, p.observer), f"frontier_map_{slug}",
+                                     f"{safe(f.first.words().capitalize())} and {safe(f.second.words())} together. Red line: where the margin is reached; dashed: 75 % of the games won."))
+            if f.edge:  # not where neither was played alone
+                parts.append(report.keep(performance_plots.edge_figure(f, p.observer), f"frontier_{slug}",
+                                         f"How much of {safe(f.second.words())} the game bears, by success or time, at each level of {safe(f.first.words())}, with 95 % intervals."))
+    return "".join(parts)
+
+
+def models_section(report):
+    models = report.analysis.models
+    if not models:
+        return ""
+    rows, doubts = [], []
+    for words, model in models:
+        if not isinstance(model, mixed.Model):
+            doubts.append((words, model))
+            continue
+        rows += [[words if i == 0 else "", e.name, f"{number(e.estimate)} {span(e.low, e.high)}", "< 0.0001" if e.p < 1e-4 else f"{e.p:.4f}"] for i, e in enumerate(model.effects)]
+        rows.append(["", "between participants", f"sd of intercept {number(model.sd_intercept)}, of slope {number(model.sd_slope)}", f"{model.participants} people"])
+        doubts.append((words, model.words))
+    text = "<h2>Over participants</h2>\n"
+    if rows:
+        text += report.table("Mixed models: effects with 95 % intervals, in log odds or in ln(s), per unit of the level.", ["of", "effect", "estimate", "p"], rows)
+    by_words = {}
+    for words, said in doubts:
+        by_words.setdefault(said, []).append(words)
+    return text + "".join(f"<p>{safe(listed(of).capitalize())}: {safe(said)}</p>\n" for said, of in by_words.items())
+
+
+def methods(report):
+    a = report.analysis
+    clusters = "Participants were the sample of the bootstrap." if len(a.trials.participants()) >= resampling.FEWEST_PARTICIPANTS else \
+        f"There were fewer than {resampling.FEWEST_PARTICIPANTS} participants: intervals are of these participants’ trials and say nothing of other people."
+    limit = " Games not won count with the time limit, so that times are restricted means." if any(np.isfinite(p.limit_s) for p in a.performances) else ""
+    return ("<h2>How it was computed</h2>\n<p>All levels are those achieved, where the apparatus measured them. "
+            f"{clusters} Bayesian bootstrap with {resampling.DRAWS} draws, seed {a.settings.seed}.{limit} L_break is where the worsening, made non-decreasing over the levels and joined by "
+            "straight lines, reaches the margin. Success was tested by Farrington and Manning’s score test of non-inferiority with Newcombe’s interval, time by the "
+            f"bootstrap of the ratio of means, at α = {a.settings.alpha:g} with Holm’s correction over the levels of a factor.</p>\n")

@@ -1,0 +1,118 @@
+"""Tables of trials and games, put together: rows as scripts/python/tactus/study/trial_table.py reads and checks them, as columns.
+
+A table that does not hold what its header promises is refused whole, with file, line and reason: an analysis of half a table would look
+like one of all of it.
+"""
+import math
+import pathlib
+
+import numpy as np
+
+from tactus.analysis import operators
+from tactus.refusal import Refusal
+from tactus.study import trial_table
+
+FILES = ("trials.csv", "games.csv")
+DEEPEST = 4  # design: OUT/study/participant/session/trials.csv
+TEXTS = {name for name, column in trial_table.COLUMNS.items() if column.kind == "text"} | {"seed"}  # a seed may need more than 53 bits
+# Of one row: the same participant did not do the same trial twice.
+IDENTITY = ("study", "participant_id", "session", "condition", "block", "trial", "seed", "question")
+
+
+class Trials:
+    """Rows by column: float arrays (NaN where a field is empty) and text arrays. Columns that no file has read as empty."""
+
+    def __init__(self, columns, rows):
+        self.columns, self.rows = columns, rows
+
+    def __len__(self):
+        return self.rows
+
+    def __getitem__(self, name):
+        if name in self.columns:
+            return self.columns[name]
+        return np.full(self.rows, "", dtype=object) if name in TEXTS else np.full(self.rows, np.nan)
+
+    def where(self, rows):
+        """The rows of a mask or of a list of numbers."""
+        rows = np.flatnonzero(rows) if np.asarray(rows).dtype == bool else np.asarray(rows, dtype=int)
+        return Trials({name: values[rows] for name, values in self.columns.items()}, len(rows))
+
+    def groups(self, *names):
+        """[(values, Trials)] of the rows that agree in these columns, in the order of their values."""
+        found = {}
+        for i, key in enumerate(zip(*(self[name] for name in names))):
+            found.setdefault(tuple("" if k != k else k for k in key), []).append(i)
+        return [(key, self.where(found[key])) for key in sorted(found, key=lambda k: [(isinstance(v, str), v) for v in k])]
+
+    def participants(self):
+        return sorted(set(self["participant_id"]))
+
+    def observer(self):
+        """human, simulated, or both."""
+        return " and ".join(sorted(set(self["observer"])))
+
+
+def of_rows(rows):
+    """Trials of [{column: value}]."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    def text(value):
+        return "" if value is None else str(value)
+    def number(value):
+        return math.nan if value is None or value == "" else float(value)
+    return Trials({name: np.array([text(row.get(name)) for row in rows], dtype=object) if name in TEXTS else np.array([number(row.get(name)) for row in rows])
+                   for name in names}, len(rows))
+
+
+def files_of(places):
+    """The tables under folders or files, sorted; each once. Raises Refusal when a place holds none."""
+    found = []
+    for place in map(pathlib.Path, places):
+        if place.is_file():
+            mine = [place]
+        elif place.is_dir():
+            mine = sorted(p for depth in range(DEEPEST + 1) for name in FILES for p in place.glob("*/" * depth + name))
+        else:
+            raise Refusal(f"{place} is not there; give a folder that `study run` or `study sweep` left, or a table of trials")
+        if not mine:
+            raise Refusal(f"{place} holds no {' or '.join(FILES)}; give a folder that `study run` or `study sweep` left")
+        found += [p for p in mine if p.resolve() not in {f.resolve() for f in found}]
+    return found
+
+
+def no_severity(row):
+    """Why the level of a row says nothing of how severe its degradation is; None: it does, or there is none."""
+    for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
+        operator, level = row.get(prefix + "operator"), row.get(prefix + "level")
+        if not row.get(modality) or not operator or operator in operators.REMOVALS:
+            continue
+        if level is None and row["task"] == "game":
+            return f"a game under {operator} has no {prefix}level; write how much of it there was"
+        falls = operator in operators.FALLING and operator != "gain"
+        if level is not None and (level < 0 or falls and level == 0):
+            return f"{prefix}level is {level:g}; a level of {operator} is {'above 0, and off where nothing is left' if falls else '0 or more'}"
+    return None
+
+
+def read(files):
+    """All rows of the tables as Trials. Raises Refusal with file, line and reason."""
+    kept, seen = [], {}
+    for path in files:
+        for number, row in enumerate(trial_table.read(path), start=1):
+            where = f"{path} row {number}"
+            identity = tuple(row.get(name) for name in IDENTITY)
+            if identity in seen:
+                raise Refusal(f"{where}: the same trial of {row['participant_id']} stands in {seen[identity]} already; give each table once")
+            seen[identity] = where
+            if sentence := no_severity(row):
+                raise Refusal(f"{where}: {sentence}")
+            kept.append(row)
+    if not kept:
+        raise Refusal(f"{files[0]}: there is no trial in it; let somebody do the study first")
+    return of_rows(kept)
+
+
+def usable(trials):
+    """(those to analyse, number left out): a trial whose apparatus missed its tolerance says nothing of the person."""
+    missed = trials["missed"] == 1
+    return trials.where(~missed), int(np.count_nonzero(missed))

@@ -1,0 +1,369 @@
+"""What is done on a host, one question at a time: it comes over reach.py with the question, answers, and is gone. What runs is
+kept running by runit, as on one machine (scripts/python/tactus/launch/services.py).
+
+FOLDER (~/.local/share/tactus) holds builds/IDENTITY and clusters/NAME with run.json, files/ and out/."""
+import base64
+import contextlib
+import fcntl
+import gzip
+import io
+import json
+import os
+import pathlib
+import platform
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tarfile
+import time
+
+from tactus.cluster import shader_cache
+from tactus.launch import network, services
+from tactus.refusal import Refusal
+
+KEPT_BUILDS = 3
+CHECK_S, READ_SCENE_S = 60, 600
+END_S = 5
+URL = "udpm://{group}:{port}?ttl={ttl}"
+
+
+def base(request):
+    return pathlib.Path(request["folder"] or "~/.local/share/tactus").expanduser()
+
+
+def place(request):
+    return base(request) / "clusters" / request["cluster"]
+
+
+def record(request):
+    """What runs here of the cluster; {} when nothing does."""
+    try:
+        kept = json.loads((place(request) / "run.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return kept if is_held(pathlib.Path(kept["services"])) else {}
+
+
+def is_held(folder):
+    """Its supervisor lives: it holds the lock until it ends."""
+    try:
+        with open(folder / "in_use", "r", encoding="ascii") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return False
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+
+
+def nothing(_):
+    return {}
+
+
+def look(request):
+    """What this host is, and what of ours it has."""
+    build = build_folder(request)
+    programs = [str(p) for p in sorted((build / "bin").glob("*")) if p.is_file()] if build.is_dir() else []
+    kept = record(request)
+    return {"machine": platform.machine(), "python": platform.python_version(), "runit": bool(shutil.which("runsvdir")), "cores": os.cpu_count(),
+            "build": build.is_dir(), "missing": missing_libraries(programs), "messages": said_of_messages(build), "run": kept,
+            "realtime": resource.getrlimit(resource.RLIMIT_RTPRIO)[1], "root": os.geteuid() == 0}
+
+
+def build_folder(request):
+    return pathlib.Path(request["own_build"]).expanduser() if request.get("own_build") else base(request) / "builds" / request["build"]
+
+
+def missing_libraries(programs):
+    said = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout if programs else ""
+    return sorted({line.split()[0] for line in said.splitlines() if "not found" in line})
+
+
+def said_of_messages(build):
+    try:
+        return subprocess.run([build / "bin" / "message_types"], capture_output=True, text=True, check=True, timeout=10).stdout
+    except (OSError, subprocess.SubprocessError):
+        return ""
+
+
+def receive(request):
+    """Unpacks what follows the question: a build, or the files of a run. Whole or not at all."""
+    into = build_folder(request) if request["into"] == "build" else place(request) / "files"
+    into.parent.mkdir(parents=True, exist_ok=True)
+    fresh = into.with_name(f"{into.name}.{os.getpid()}.new")
+    try:
+        with tarfile.open(fileobj=io.BytesIO(sys.stdin.buffer.read()), mode="r:gz") as tar:
+            tar.extractall(fresh)
+    except (OSError, tarfile.TarError, EOFError) as error:
+        shutil.rmtree(fresh, ignore_errors=True)
+        raise Refusal(f"what was sent cannot be unpacked in {into.parent} ({error}); make room there, or name another folder= of the host") from None
+    shutil.rmtree(into, ignore_errors=True)
+    fresh.rename(into)
+    if request["into"] == "build":
+        old = sorted((p for p in into.parent.iterdir() if p != into), key=lambda p: p.stat().st_mtime)
+        in_use = {json.loads(p.read_text(encoding="utf-8")).get("build") for p in base(request).glob("clusters/*/run.json")}
+        for path in old[:max(0, len(old) - KEPT_BUILDS + 1)]:
+            if path.name not in in_use:
+                shutil.rmtree(path, ignore_errors=True)
+    return {}
+
+
+def shaders(_):
+    """Those that were compiled here."""
+    return {"tar": base64.b64encode(shader_cache.packed(shader_cache.folder())).decode()}
+
+
+def take_shaders(_):
+    """Those that follow the question."""
+    return {"taken": shader_cache.unpack(sys.stdin.buffer.read(), shader_cache.folder())}
+
+
+def filled(request, words):
+    """The words with the folders of this host in them."""
+    into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(place(request) / "files"), "@OUT@": str(place(request) / "out")}
+    done = []
+    for word in words:
+        for mark, folder in into.items():
+            word = word.replace(mark, folder)
+        done.append(word)
+    return done
+
+
+def check(request):
+    """Lets each node check its options and files, all at once."""
+    started = {}
+    for name, words in request["nodes"].items():
+        words = filled(request, words)
+        at = words.index("--out")
+        started[name] = subprocess.Popen(words[:at] + words[at + 2:] + ["--check"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                         stderr=subprocess.PIPE, text=True, errors="replace")
+    said = {}
+    for name, process in started.items():
+        patience_s = READ_SCENE_S if name == "sim_node" else CHECK_S
+        try:
+            text = process.communicate(timeout=patience_s)[1].strip()
+        except subprocess.TimeoutExpired:
+            process.kill()
+            text = f"{name}: does not finish its checks in {patience_s} s"
+        if process.returncode != 0:
+            said[name] = text.split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}"
+        elif name == "sim_node" and text:
+            said["warnings"] = text
+    return said
+
+
+def prepare(request):
+    """A supervisor with every node as a service that is down: whichever is wanted here can be started at once."""
+    if record(request):
+        return {"prepared": False}
+    home = place(request)
+    out = home / "out"
+    kept = clear_of_before(home, out)
+    (out / "logs").mkdir(parents=True, exist_ok=True)
+    (home / "files").mkdir(exist_ok=True)
+    services.remove_leftovers()
+    folder = services.make_folder(out)
+    lock = services.hold(folder)
+    for name, words in request["nodes"].items():
+        services.Service(folder, name, filled(request, words), out / "logs" / f"{name}.log", home)
+    net = network.choose("auto", request["port"]) if request["private"] else network.Network(False, [], "the host's")
+    words = [*net.unshare, str(build_folder(request) / "share" / "inside"), str(folder), "private" if net.private else "host"]
+    with open(out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
+        holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, pass_fds=[lock.fileno()])
+    names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in net.unshare]
+    url = URL.format(**request)
+    (folder / "address").write_text(f"holder={holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={request['run_id']}\nurl={url}\n"
+                                    f"port={request['port']}\nout={out}\n", encoding="utf-8")
+    (out / "cluster").unlink(missing_ok=True)
+    (out / "cluster").symlink_to(folder)
+    run = {"run_id": request["run_id"], "build": request["build"], "services": str(folder), "holder": holder.pid, "here": [], "began": time.time(),
+            "namespaces": net.unshare}
+    write_record(request, run)
+    controls = [folder / "services" / name / "supervise" / "control" for name in request["nodes"]]
+    if not services.wait_until(lambda: all(p.exists() for p in controls), 15):
+        raise Refusal(f"the supervisor does not take up its services; see {out}/logs/supervisor.log there")
+    return {"prepared": True, "kept": kept}
+
+
+def clear_of_before(home, out):
+    """Results of a run before: gone when they were gathered, else kept beside; where, or ""."""
+    marker = home / "gathered"
+    gathered = marker.exists()
+    marker.unlink(missing_ok=True)
+    if not out.exists() or not any(out.iterdir()):
+        return ""
+    if gathered:
+        shutil.rmtree(out)
+        return ""
+    aside = home / time.strftime("out.%Y-%m-%d_%H-%M-%S")
+    out.rename(aside)
+    return str(aside)
+
+
+def write_record(request, kept):
+    path = place(request) / "run.json"
+    path.with_suffix(".new").write_text(json.dumps(kept), encoding="utf-8")
+    path.with_suffix(".new").rename(path)
+
+
+class Running(services.Service):
+    """One that is there already."""
+
+    def __init__(self, folder, name, log):  # pylint: disable=super-init-not-called
+        self.name, self.log, self.path = name, log, folder / "services" / name
+
+    def is_up(self):
+        return not self.is_down()
+
+    def pid(self):
+        try:
+            return int((self.path / "supervise" / "pid").read_text(encoding="ascii") or 0)
+        except (OSError, ValueError):
+            return 0
+
+
+def running(request, name):
+    kept = record(request)
+    if not kept:
+        raise Refusal(f"nothing of the cluster {request['cluster']} runs here; tactus cluster up starts it")
+    service = Running(pathlib.Path(kept["services"]), name, place(request) / "out" / "logs" / f"{name}.log")
+    if not service.path.is_dir():
+        raise Refusal(f"there is no node {name} in this cluster")
+    return service
+
+
+def start(request):
+    """Starts nodes here, and remembers that they belong here. Returns when each has said something."""
+    kept = record(request)
+    members = [running(request, name) for name in request["names"]]
+    since = {**kept.get("since", {}), **{n: time.time() for n in request["names"] if n not in kept["here"]}}
+    write_record(request, {**kept, "here": list(dict.fromkeys([*kept["here"], *request["names"]])), "since": since})
+    members = [s for s in members if s.is_down()]
+    before = {s.name: s.log.stat().st_size if s.log.exists() else 0 for s in members}
+    for s in members:
+        (s.path / "lost").unlink(missing_ok=True)
+        if not s.start():
+            raise Refusal(f"{s.name}: the supervisor does not start it")
+    services.wait_until(lambda: all(s.log.exists() and s.log.stat().st_size > before[s.name] for s in members), request.get("patience", END_S))
+    return {}
+
+
+def stop(request):
+    """Asks nodes to end, waits, and kills those that do not; they belong here no longer if leave."""
+    kept = record(request)
+    if not kept:
+        return {"killed": []}
+    members = [s for s in (running(request, name) for name in request["names"]) if s.is_up()]
+    if request.get("leave"):
+        write_record(request, {**kept, "here": [n for n in kept["here"] if n not in request["names"]]})
+    for s in members:
+        (s.path / "asked").touch()  # no death: services.FINISH
+    services.ask_to_end(members, request.get("patience", END_S))
+    stubborn = [s for s in members if not s.is_down()]
+    for s in stubborn:
+        s.order("k")
+    services.wait_until(lambda: all(s.is_down() for s in stubborn), 2)
+    return {"killed": [s.name for s in stubborn]}
+
+
+def restart(request):
+    """stop and start, with one question."""
+    return stop(request) | start(request)
+
+
+def order(request):
+    """A letter of runsv(8) to nodes: p pause, c continue, k kill, t end (it starts again)."""
+    for name in request["names"]:
+        if not running(request, name).order(request["letter"]):
+            raise Refusal(f"{name}: its supervisor does not listen")
+    return {}
+
+
+def state(request):
+    """How every node fares that belongs here, as the supervisor sees it."""
+    kept = record(request)
+    nodes = {}
+    for name in kept.get("here", []):
+        s = running(request, name)
+        nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_taken_down(), "last": s.last_words()[-200:],
+                       "begun": name == "sim_node" and s.has_said("sim_node: the world begins")}
+    return {"run": kept, "nodes": nodes, "load": os.getloadavg()[0], "cores": os.cpu_count()}
+
+
+def logs(request):
+    folder = place(request) / "out" / "logs"
+    found = {}
+    for path in sorted(folder.glob("*.log")):
+        if not request["names"] or path.stem in request["names"]:
+            text = path.read_text(encoding="utf-8", errors="replace")
+            offset = request.get("offsets", {}).get(path.stem)
+            lines = text[offset:].splitlines() if offset is not None else text.splitlines()[-request["lines"]:]
+            found[path.stem] = {"lines": lines, "offset": len(text)}
+    return found
+
+
+def on_the_bus(request):
+    """What a program that speaks to the bus says, run where the cluster's network is."""
+    kept = record(request)
+    words = filled(request, request["words"])
+    for name, text in request.get("files", {}).items():  # that the words name
+        (place(request) / "files").mkdir(parents=True, exist_ok=True)
+        (place(request) / "files" / name).write_text(text, encoding="utf-8")
+    if "--net" in kept.get("namespaces", []):
+        ns = f"/proc/{kept['holder']}/ns"
+        words = ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in kept["namespaces"] else []), *words]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=request["patience"], check=False)
+    except subprocess.TimeoutExpired:
+        raise Refusal(f"{pathlib.Path(words[0]).name}: does not end within {request['patience_s']} s") from None
+    return {"status": done.returncode, "out": done.stdout, "err": done.stderr}
+
+
+def end(request):
+    """Ends the supervisor; what was recorded stays."""
+    kept = record(request)
+    if kept:
+        folder = pathlib.Path(kept["services"])
+        with contextlib.suppress(OSError):
+            (folder / "stopping").touch()
+        holder = kept["holder"]
+        children = pathlib.Path(f"/proc/{holder}/task/{holder}/children")
+        pids = [int(p) for p in children.read_text(encoding="ascii").split()] if kept["namespaces"] and children.exists() else [holder]
+        for pid in pids:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGHUP)
+        if not services.wait_until(lambda: not is_held(folder), END_S):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(holder, signal.SIGKILL)
+        shutil.rmtree(folder, ignore_errors=True)
+        (place(request) / "out" / "cluster").unlink(missing_ok=True)
+    (place(request) / "run.json").unlink(missing_ok=True)
+    return {"was_there": bool(kept)}
+
+
+def collect(request):
+    """All results as a tar, instead of an answer."""
+    with gzip.GzipFile(fileobj=sys.stdout.buffer, mode="wb", compresslevel=1) as packed, tarfile.open(fileobj=packed, mode="w|") as tar:
+        out = place(request) / "out"
+        for path in sorted(out.rglob("*")):
+            if path.is_file() and not path.is_symlink():
+                tar.add(path, str(path.relative_to(out)))
+    (place(request) / "gathered").touch()
+
+
+QUESTIONS = {f.__name__: f for f in (nothing, look, receive, shaders, take_shaders, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}
+
+
+def main(request):
+    if request["what"] == "collect":
+        collect(request)
+        return
+    try:
+        answer = QUESTIONS[request["what"]](request)
+    except Refusal as refusal:
+        answer = {"refusal": str(refusal)}
+    except OSError as error:
+        answer = {"refusal": f"{error.filename or request['what']}: {error.strerror or error}"}
+    json.dump(answer, sys.stdout)

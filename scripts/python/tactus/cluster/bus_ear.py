@@ -1,0 +1,40 @@
+"""Hears the bus as LCM's own programs do, bound to any address, and counts what the intruder forged, for tests/measure/measure_private_path.
+
+  tactus --module tactus.cluster.bus_ear GROUP PORT [DEVICE_ADDRESS]     until stdin is closed; prints {kind: count} as JSON
+
+With the address of a device it joins the group there too, as a program with business of its own on the open network does.
+"""
+import json
+import select
+import socket
+import sys
+
+from tactus.cluster import intruder
+
+
+def main(words):
+    group, port = words[0], int(words[1])
+    ears = []
+    for number in (port, port + 1):
+        ear = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        ear.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
+        ear.bind(("", number))
+        for device in ["0.0.0.0", *words[2:3]]:
+            try:
+                ear.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(group) + socket.inet_aton(device))
+            except OSError:
+                if device == "0.0.0.0":
+                    raise  # that of the route is the other one already
+        ears.append(ear)
+    print("{}", flush=True)
+    heard = dict.fromkeys(intruder.KINDS, 0)
+    while True:
+        ready = select.select([*ears, sys.stdin], [], [])[0]
+        if sys.stdin in ready:
+            break
+        for ear in ready:
+            at = (data := ear.recv(65536)).find(intruder.MARK)
+            if at >= 0:
+                heard[intruder.KINDS[int(data[at + len(intruder.MARK):].split(b"\0")[0])]] += 1
+    print(json.dumps(heard))

@@ -1,0 +1,264 @@
+"""The cluster file: which hosts there are, which nodes run where and how. Checked whole before anything starts."""
+import dataclasses
+import pathlib
+import shlex
+
+from tactus.cluster import sites
+from tactus.launch import arguments, hands, scene, walls
+from tactus.refusal import Refusal
+
+SCHEMA = pathlib.Path(__file__).with_name("cluster.xsd")
+SHIPPED = pathlib.Path(__file__).with_name("clusters")
+LARGEST_BYTES = 1_000_000
+MOST_HOSTS = 250  # one for each address of a small network
+RECORDER, SYNC, WORLD = "recorder", "sync_node", "sim_node"
+NEEDED = (WORLD, RECORDER)
+RUN_OPTIONS = ("seed", "realtime", "degrade", "policy", "aligner", "base", "budget", "soa", "split_mb", "split_minutes", "keep", "max_mb", "tags")
+
+
+@dataclasses.dataclass(frozen=True)
+class Host:
+    name: str
+    reach: str    # local, ssh or namespace
+    address: str  # for ssh: as on its command line; of a namespace: its name
+    folder: str   # where it keeps builds and results; "": in the home
+    build: str    # folder of a build of its own; "": ours is installed
+    site: str     # hosts of a site hear each other's multicast; "": the site that is not named
+
+
+@dataclasses.dataclass(frozen=True)
+class Placed:
+    """A node and how it runs."""
+    host: str
+    realtime: str     # "": as the run
+    cpus: str         # of taskset; "": any
+    nice: int
+    options: tuple    # words for the node
+    environment: tuple  # (name, value)
+
+
+@dataclasses.dataclass(frozen=True)
+class Bus:
+    group: str
+    port: int
+    ttl: int
+
+
+@dataclasses.dataclass(frozen=True)
+class Cluster:
+    name: str
+    path: pathlib.Path
+    bus: Bus
+    hosts: dict  # {name: Host}, in the order of the file
+    nodes: dict  # {process: Placed}, sync_nodes among them
+    plan: object  # arguments.Plan: the same checks as of scripts/run
+    relays: object  # sites.Relays; None: there is one site
+
+    def of_host(self, host):
+        return [name for name, placed in self.nodes.items() if placed.host == host]
+
+    def is_private(self):
+        """All on this machine, and nothing leaves it: in a network of its own, where that can be."""
+        return len(self.hosts) == 1 and self.bus.ttl == 0 and all(h.reach == "local" for h in self.hosts.values())
+
+    def sync_node_of(self, host):
+        return sync_name(host, self.nodes[RECORDER].host)
+
+
+def sync_name(host, first):
+    """Every host has one, with a name of its own: a process is known by its name."""
+    return SYNC if host == first else f"{SYNC}_{host}"
+
+
+def find(text):
+    """A file, or the name of a shipped one."""
+    path = pathlib.Path(text)
+    if not path.is_file() and path.name == text:
+        for name in (text, text + ".xml"):
+            if (SHIPPED / name).is_file():
+                return SHIPPED / name
+    return path
+
+
+def read(text, out="."):
+    """Cluster of the file, or of the shipped one of that name. Raises Refusal, with the line."""
+    from lxml import etree  # only who reads a file needs it
+    path = find(text)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
+        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a cluster file, or one of {shipped}") from None
+    if len(data) > LARGEST_BYTES:
+        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; that is no cluster file")
+    try:
+        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True))
+    except etree.XMLSyntaxError as error:
+        raise Refusal(f"{text}:{error.lineno}: {error.msg}") from None
+    schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
+    if not schema.validate(root):
+        first = schema.error_log[0]
+        raise Refusal(f"{text}:{first.line}: {plain(first.message)}")
+    return Reading(text, path, root, out).cluster()
+
+
+def plain(message):
+    """libxml2's sentence without what only schemas know."""
+    for word in ("[facet 'pattern'] ", "[facet 'enumeration'] ", "[facet 'maxInclusive'] ", "[facet 'minInclusive'] "):
+        message = message.replace(word, "")
+    return message.rstrip(".")
+
+
+class Reading:
+    """What a form cannot say, checked on a tree that has the right one."""
+
+    def __init__(self, text, path, root, out):
+        self.text, self.path, self.root, self.out = text, path.resolve(), root, out
+
+    def refuse(self, element, sentence):
+        raise Refusal(f"{self.text}:{element.sourceline}: {sentence}")
+
+    def one(self, tag):
+        found = self.root.findall(tag)
+        if len(found) > 1:
+            self.refuse(found[1], f"there is a second <{tag}>; leave one away")
+        return found[0] if found else None
+
+    def cluster(self):
+        hosts = {e.get("name"): self.host(e) for e in self.root.findall("host")}
+        if not hosts:
+            self.refuse(self.root, "there is no <host>; name at least one")
+        if len(hosts) > MOST_HOSTS:
+            self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MOST_HOSTS} speak on one bus, more need relays between sites")
+        placed, words = {}, []
+        self.settings = {}  # {process: words of --set}
+        known = (WORLD, RECORDER, *arguments.SENSES, *hands.processes(scene.tools(self.scene())))
+        for element in self.root.findall("node"):
+            name = element.get("name")
+            if name not in known and not name.startswith(SYNC):
+                self.refuse(element, f"there is no node \"{name}\"; there are {', '.join(known)}, and {SYNC}, of which every host has one anyway")
+            placed[name] = self.placed(element, hosts)
+            self.take_settings(element, name)
+            if element.get("device") is not None:
+                words += self.device(element)
+        words += self.walls(placed, hosts)
+        for name in NEEDED:
+            if name not in placed:
+                self.refuse(self.root, f"{name} is on no host; add <node name=\"{name}\" host=\"...\"/>")
+        bus = self.bus(hosts)
+        plan = self.plan(placed, words, bus)
+        relays = sites.read(self, hosts)
+        if relays and bus.port <= relays.port <= bus.port + 3:
+            self.refuse(self.one("relays"), f"port=\"{relays.port}\" is one of the bus'; choose another")
+        first = placed[RECORDER].host
+        for e in self.root.findall("node"):
+            if e.get("name").startswith(SYNC) and e.get("name") != sync_name(e.get("host"), first):
+                self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; call it so, or leave it away: every host has one")
+        for host in hosts:
+            placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or Placed(host, "", "", 0, (), ())
+        placed |= {name: Placed(relay.host, "", "", 0, (), ()) for name, relay in (relays.by_name if relays else {}).items()}
+        return Cluster(self.root.get("name"), self.path, bus, hosts, placed, plan, relays)
+
+    def host(self, e):
+        reach, address = e.get("reach"), e.get("address", "")
+        if reach == "local" and address:
+            self.refuse(e, f"the host {e.get('name')} is local and has an address; leave one away")
+        if reach == "local" and next(h for h in self.root.findall("host") if h.get("reach") == "local") is not e:
+            self.refuse(e, f"the host {e.get('name')} is a second one that is local; there is one such machine: leave it away, or give it a network namespace")
+        for attribute in ("folder", "build"):
+            if e.get(attribute) and not e.get(attribute).startswith(("/", "~/")):
+                self.refuse(e, f"{attribute}=\"{e.get(attribute)}\" of the host {e.get('name')} is not absolute; begin it with / or ~/")
+        # Namespaces share this machine's disk, and each keeps what is its own.
+        folder = e.get("folder", f"~/.local/share/tactus/hosts/{e.get('name')}" if reach == "namespace" else "")
+        return Host(e.get("name"), reach, address or e.get("name"), folder, e.get("build", ""), e.get("site", ""))
+
+    def bus(self, hosts):
+        e = self.one("bus")
+        get = lambda name, default: default if e is None else e.get(name, default)
+        bus = Bus(get("group", "239.255.76.67"), int(get("port", "7667")), int(get("ttl", "0")))  # as in lcmtypes/channels.h
+        if any(int(part) > 255 for part in bus.group.split(".")):
+            self.refuse(e, f"group=\"{bus.group}\" is no address; multicast groups go from 224.0.0.0 to 239.255.255.255")
+        if len(hosts) > 1 and bus.ttl == 0:
+            self.refuse(self.root if e is None else e, "there are several hosts and ttl is 0, with which nothing leaves a host; add "
+                        "<bus ttl=\"1\"/> (this network, no further) where everyone on it may hear and disturb the run, or read docs/between_sites.md")
+        return bus
+
+    def placed(self, e, hosts):
+        if e.get("host") not in hosts:
+            self.refuse(e, f"there is no host \"{e.get('host')}\"; there are {', '.join(hosts)}")
+        above = e.getparent() if e.tag == "wall" else None
+        get = lambda name, default: e.get(name, default if above is None else above.get(name, default))
+        environment = [*([] if above is None else above.findall("environment")), *e.findall("environment")]
+        try:
+            options = tuple(shlex.split(get("options", "")))
+        except ValueError as error:
+            self.refuse(e, f"options: {str(error).lower()}; close the quotation")
+        return Placed(e.get("host"), get("realtime", ""), get("cpus", ""), int(get("nice", "0")), options,
+                      tuple((v.get("name"), v.get("value")) for v in environment))
+
+    def take_settings(self, e, process):
+        """The names are checked here, the values by the node itself."""
+        program = next((n for n in (hands.FIRST, walls.FIRST) if process.startswith(n)), process)
+        for s in e.findall("set"):
+            try:
+                words = arguments.settings([f"{program}.{s.get('name')}={s.get('value')}"], {})[program]
+            except Refusal as refusal:
+                self.refuse(s, str(refusal))
+            self.settings[process] = self.settings.get(process, []) + words
+
+    def device(self, e):
+        name = e.get("name")
+        if name == hands.FIRST:
+            return ["--device", e.get("device")]
+        others = hands.processes(scene.tools(self.scene()))
+        if name not in others:
+            self.refuse(e, f"{name} has no device; only the hands do: {', '.join((hands.FIRST, *others))}")
+        return ["--device", f"{others[name]}={e.get('device')}"]
+
+    def walls(self, placed, hosts):
+        e = self.one("walls")
+        if e is None:
+            return []
+        if walls.FIRST in placed:
+            self.refuse(e, f"{walls.FIRST} is placed as a node and its walls too; leave one away")
+        try:
+            room, names = walls.room(self.path.parent, e.get("room"))
+        except ValueError as error:
+            self.refuse(e, str(error))
+        process_of = {wall: process for process, wall in walls.processes(names).items()}
+        words = ["--room", room]
+        for w in e.findall("wall"):
+            if w.get("name") not in process_of:
+                self.refuse(w, f"the room {e.get('room')} has no wall \"{w.get('name')}\"; it has {', '.join(names)}")
+            process = process_of[w.get("name")]
+            placed[process] = self.placed(w, hosts)
+            self.take_settings(e, process)
+            self.take_settings(w, process)  # comes last, and so wins
+        for wall in names:
+            if process_of[wall] not in placed:
+                self.refuse(e, f"the wall {wall} is on no host; add <wall name=\"{wall}\" host=\"...\"/>")
+        return words
+
+    def scene(self):
+        run = self.one("run")
+        return arguments.scene_file(self.path.parent, "dark_room.sdf" if run is None else run.get("scene", "dark_room.sdf"))
+
+    def plan(self, placed, words, bus):
+        """By the command line of scripts/run that would run the same on one machine."""
+        run = self.one("run")
+        get = lambda name: None if run is None else run.get(name)
+        line = [str(self.scene()), "--port", str(bus.port), *words]
+        for option in RUN_OPTIONS:
+            if get(option) is not None:
+                line += ["--" + option.replace("_", "-"), get(option)]
+        if get("listen") in ("true", "1"):
+            line.append("--listen")
+        others = hands.processes(scene.tools(self.scene()))
+        for process in others:  # the scene's other hands: with the first unless they have a place of their own
+            if process not in placed and hands.FIRST in placed:
+                placed[process] = dataclasses.replace(placed[hands.FIRST], options=())
+        line += [word for name in arguments.SENSES if name not in placed for word in ("--without", name)]
+        line += ["--out", str(self.out)]
+        plan = arguments.parse(line, self.path.parent)
+        plan.settings.update(self.settings)
+        return plan

@@ -1,0 +1,124 @@
+"""What is on the wires of a large cluster, and how long messages take through them: queues in a row, each served in order.
+
+Sources: sizes and rates are those of the default scene's log (traffic.csv). A queue of constant service with random arrivals waits
+rho s / (2 (1 - rho)) in the mean (Pollaczek and Khinchine for M/D/1; Kleinrock, Queueing Systems I, 1975, equation 5.63), against
+which the tests hold it.
+"""
+import csv
+import dataclasses
+import math
+import pathlib
+import random
+
+ON_THE_WIRE = 8 + 20 + 14 + 4 + 8 + 12 + 8 + 12  # LCM's head and a channel, IP, Ethernet with check and gap, UDP: RFC 768, RFC 791, IEEE 802.3
+FEW_CLOCKS, MOST_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_sync/clock_probe.h, sync/tools/sync_node_main.cpp
+
+
+@dataclasses.dataclass(frozen=True)
+class Flow:
+    """One channel of one kind of sender."""
+    channel: str
+    of: str         # world, hand, node, host or pair
+    per_s: float    # of one sender
+    bytes: int      # of the message
+    thin_per_s: float  # what a relay lets pass of it
+
+
+def flows():
+    with open(pathlib.Path(__file__).with_name("traffic.csv"), newline="", encoding="utf-8") as file:
+        return [Flow(r["channel"], r["of"], float(r["per_s"] or 0), int(r["bytes"]), float(r["thin_per_s"] or 0)) for r in csv.DictReader(file)]
+
+
+def senders(of, hosts):
+    """The default scene has two hands."""
+    return {"world": 1, "hand": 2, "node": hosts, "host": hosts, "pair": hosts}[of]
+
+
+def rate(flow, hosts, thin=False):
+    """Messages a second of one sender in a site of so many hosts. Clocks of other sites are known by their relays' hosts alone."""
+    others = min(hosts - 1, MOST_CLOCKS)
+    stretch = max(1, others // FEW_CLOCKS)
+    if flow.channel == "CLOCK_PROBE":
+        return 0.0 if thin else PROBES / (PERIOD_S * stretch) * (1 + others)  # its questions, and its answers to those of all others
+    if flow.channel == "CLOCK_MAP":
+        return 0.0 if thin else MAPS_PER_S / stretch * others
+    return flow.thin_per_s if thin else flow.per_s
+
+
+def bits(flow):
+    return 8 * (flow.bytes + ON_THE_WIRE)
+
+
+def offered_bit_s(hosts, has_world, thin=False):
+    """Of a site's own senders, on the wire."""
+    return sum(senders(f.of, hosts) * rate(f, hosts, thin) * bits(f) for f in flows() if has_world or f.of not in ("world", "hand"))
+
+
+def arrivals(hosts, has_world, seconds, seed, thin=False):
+    """[(time in s, bits, flow)] of one site's senders, in order: each sender periodic, from a random phase on."""
+    dice = random.Random(seed)
+    found = []
+    for f in flows():
+        if not has_world and f.of in ("world", "hand"):
+            continue
+        each = rate(f, hosts, thin)
+        if each <= 0:
+            continue
+        for _ in range(senders(f.of, hosts)):
+            t = dice.random() / each
+            while t < seconds:
+                found.append((t, bits(f), f))
+                t += 1 / each
+    found.sort(key=lambda m: m[0])
+    return found
+
+
+class Queue:
+    """A link or a processor: serves one after the other, forgets what would wait longer than `most_s`."""
+
+    def __init__(self, bit_per_s, most_s=float("inf"), each_s=0.0):
+        self.bit_per_s, self.most_s, self.each_s = bit_per_s, most_s, each_s
+        self.free = self.busy_s = 0.0
+        self.lost = 0
+
+    def serve(self, at, size):
+        """When it is through; None when it is lost."""
+        begin = max(at, self.free)
+        if begin - at > self.most_s:
+            self.lost += 1
+            return None
+        took = size / self.bit_per_s + self.each_s
+        self.free = begin + took
+        self.busy_s += took
+        return self.free
+
+
+class Bucket(Queue):
+    """Tokens: so many bits at once, so many a second. What does not fit waits, `most_s` at the longest."""
+
+    def __init__(self, bit_per_s, burst_bits, most_s):
+        super().__init__(bit_per_s, most_s)
+        self.tokens, self.burst, self.last = burst_bits, burst_bits, 0.0
+
+    def serve(self, at, size):
+        at_work = max(at, self.free)
+        self.tokens = min(self.burst, self.tokens + (at_work - self.last) * self.bit_per_s)
+        wait = max(0.0, (size - self.tokens) / self.bit_per_s)
+        if at_work + wait - at > self.most_s:
+            self.last = at_work
+            self.lost += 1
+            return None
+        self.tokens += wait * self.bit_per_s - size
+        self.last = self.free = at_work + wait
+        self.busy_s += size / self.bit_per_s
+        return self.free
+
+
+class Ticks:
+    """Who wakes so often and handles what has come: at the next tick, from a phase on."""
+
+    def __init__(self, rate_hz, phase_s):
+        self.period_s, self.phase_s = 1 / rate_hz, phase_s
+
+    def serve(self, at, _):
+        return math.ceil((at - self.phase_s) / self.period_s) * self.period_s + self.phase_s

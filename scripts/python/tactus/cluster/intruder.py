@@ -1,0 +1,149 @@
+"""Somebody on the network without a key, for tests/measure/measure_private_path: takes down every frame, and puts forged ones on the wire.
+
+  tactus --module tactus.cluster.intruder DEVICE KNOWN.json     orders on stdin: "hear", "forge SECONDS", "tell"; each is answered by a line of JSON on stdout
+
+KNOWN.json says what he may know of the hosts: {"hosts": [{"mac", "address", "inside"}], "group", "port", "listen"}.
+"""
+import itertools
+import json
+import os
+import random
+import re
+import socket
+import struct
+import sys
+import threading
+import time
+
+ETHERNET, IP, EVERYTHING = 14, 0x0800, 0x0003
+OUTGOING = 4               # PACKET_OUTGOING of packet(7)
+BUFFER_BYTES = 64 << 20
+RATE_HZ = 300              # of forged frames
+KEPT = 500                 # frames to send again
+MARK = b"FORGED_"          # channels that nobody but the intruder uses, with the number of the kind behind it
+# A message of LCM, wherever it lies: magic number, number, name of the channel; or a fragment: magic number, number, size and offset below
+# 16 MB, number and count below 256. The magic number alone is in one of 4 GB of what is sealed.
+MESSAGE = re.compile(rb"LC02[\s\S]{4}[A-Z]+_[A-Z_]+\0|LC03[\s\S]{4}(?:\0[\s\S]{3}){2}(?:\0[\s\S]){2}")
+CHANNELS = re.compile(rb"TOUCH_MODEL|CONTACT_EVENTS|WORLD_STATE|TOOL_STATE|PRESENTED|NODE_HEALTH|SYNC_REPORT|CLOCK_PROBE|CLOCK_MAP|THERMAL_STATE|SCENE_MANIFEST")
+TEXTS = re.compile(rb"sim_node|haptic_node|audio_node|visual_node|thermal_node|steel_ball")
+KINDS = ("multicast", "multicast in a host's name", "multicast in the path's name", "multicast to a host's card", "unicast", "unicast to the path's address",
+         "through a host into the path", "as if of the host itself", "sent again", "the path's packets")
+
+
+def marked(kind):
+    return b"LC02" + os.urandom(4) + MARK + str(kind).encode() + b"\0" + os.urandom(64)
+
+
+def frame(to, by, source, destination, port, data, source_port=40000):
+    """An Ethernet frame with one UDP datagram; without its checksum, which IPv4 allows."""
+    udp = struct.pack(">HHHH", source_port, port, 8 + len(data), 0) + data
+    head = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(udp), random.randrange(65536), 0, 64, 17, 0, socket.inet_aton(source),
+                       socket.inet_aton(destination))
+    total = sum(struct.unpack(">10H", head))
+    total = (total & 0xFFFF) + (total >> 16)
+    head = head[:10] + struct.pack(">H", ~(total + (total >> 16)) & 0xFFFF) + head[12:]
+    return to + by + struct.pack(">H", IP) + head + udp
+
+
+def unsummed(data):
+    """A frame of UDP without its checksum, which virtual cables leave open for a card that there is not."""
+    return data[:40] + b"\0\0" + data[42:]
+
+
+class Intruder:
+    def __init__(self, device, known):
+        self.known, self.frames, self.lock = known, [], threading.Lock()
+        self.wire = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(EVERYTHING))
+        self.wire.setsockopt(socket.SOL_SOCKET, 33, BUFFER_BYTES)  # SO_RCVBUFFORCE
+        self.wire.bind((device, EVERYTHING))
+        self.wire.setsockopt(263, 1, struct.pack("iHH8s", socket.if_nametoindex(device), 1, 0, b""))  # SOL_PACKET, PACKET_ADD_MEMBERSHIP: promiscuous
+        self.mac = self.wire.getsockname()[4]
+        self.address = known["own"]
+        threading.Thread(target=self.take, daemon=True).start()
+
+    def take(self):
+        while True:
+            try:
+                data, sender = self.wire.recvfrom(65536)
+            except OSError:
+                return  # the lab ends
+            if sender[2] != OUTGOING:
+                with self.lock:
+                    self.frames.append(data)
+
+    def hear(self):
+        """From here on."""
+        with self.lock:
+            self.frames = []
+        return {}
+
+    def tell(self):
+        """What was heard, and how much of it could be read."""
+        with self.lock:
+            frames, self.frames = self.frames, []
+        said = [data for data in frames if MARK not in data]
+        return {"frames": len(said), "bytes": sum(map(len, said)), "messages": sum(bool(MESSAGE.search(d)) for d in said),
+                "channels": sum(bool(CHANNELS.search(d)) for d in said), "texts": sum(bool(TEXTS.search(d)) for d in said)}
+
+    def forged(self, kind, port):
+        """Frames of this kind, one for each host."""
+        hosts, group = self.known["hosts"], self.known["group"]
+        to_group = bytes([1, 0, 0x5E, socket.inet_aton(group)[1] & 0x7F, *socket.inet_aton(group)[2:]])
+        for host, other in zip(hosts, reversed(hosts)):
+            mac, data = bytes.fromhex(host["mac"].replace(":", "")), marked(kind)
+            yield {"multicast": lambda: frame(to_group, self.mac, self.address, group, port, data),
+                   "multicast in a host's name": lambda: frame(to_group, self.mac, host["address"], group, port, data),
+                   "multicast in the path's name": lambda: frame(to_group, self.mac, host["inside"], group, port, data),
+                   "multicast to a host's card": lambda: frame(mac, self.mac, self.address, group, port, data),
+                   "unicast": lambda: frame(mac, self.mac, self.address, host["address"], port, data),
+                   "unicast to the path's address": lambda: frame(mac, self.mac, self.address, host["inside"], port, data),
+                   "through a host into the path": lambda: frame(mac, self.mac, self.address, other["inside"], port, data),
+                   "as if of the host itself": lambda: frame(mac, self.mac, "127.0.0.1", group, port, data)}[KINDS[kind]]()
+
+    def of_path(self, kind, heard):
+        """To the port of OpenVPN: bits turned in what was heard, noise, a new connection, an Ethernet frame without a key."""
+        host = self.known["hosts"][0]
+        mac = bytes.fromhex(host["mac"].replace(":", ""))
+        inner = frame(b"\xff" * 6, self.mac, host["inside"], self.known["group"], self.known["port"], marked(kind))
+        forged = [os.urandom(random.randrange(1, 1400)), b"\x38" + os.urandom(53), b"\x48\0\0\0\0\0\0\1" + inner, b"\x30" + inner]
+        for data in forged:
+            yield frame(mac, self.mac, self.known["hosts"][-1]["address"], host["address"], self.known["listen"], data, random.randrange(1024, 65536))
+        if heard:
+            turned = bytearray(random.choice(heard))
+            turned[random.randrange(min(42, len(turned) - 1), len(turned))] ^= 1 << random.randrange(8)
+            yield bytes(turned)
+
+    def forge(self, seconds):
+        """Frames of every kind in turn. Returns how many of each."""
+        count = dict.fromkeys(KINDS, 0)
+        with self.lock:
+            heard = [unsummed(d) for d in self.frames[-KEPT:] if d[12:14] == b"\x08\0" and d[14] == 0x45 and d[23] == 17]
+        begin = time.monotonic()
+        for n in itertools.count():
+            kind = n % len(KINDS)
+            if KINDS[kind] == "sent again":
+                frames = [random.choice(heard)] if heard else []
+            elif KINDS[kind] == "the path's packets":
+                frames = list(self.of_path(kind, heard))
+            else:
+                frames = list(self.forged(kind, self.known["port"] + n // len(KINDS) % 2))
+            for data in frames:
+                try:
+                    self.wire.send(data)
+                    count[KINDS[kind]] += 1
+                except OSError:  # longer than the wire bears: the kernel had put it together
+                    pass
+            ahead_s = sum(count.values()) / RATE_HZ - (time.monotonic() - begin)
+            if ahead_s > 0:
+                time.sleep(ahead_s)
+            if time.monotonic() - begin > seconds:
+                return count
+
+
+def main(words):
+    device, known = words
+    with open(known, encoding="utf-8") as file:
+        intruder = Intruder(device, json.load(file))
+    for line in sys.stdin:
+        what, *rest = line.split()
+        print(json.dumps(getattr(intruder, what)(*map(float, rest))), flush=True)

@@ -1,0 +1,29 @@
+"""An Ethernet that the kernel encrypts (IEEE 802.1AE), as commands of iproute2."""
+import os
+
+from tactus.cluster import path_files
+
+DEVICE = "macsec0"
+SUBNET = "10.76.68"  # beside that of path_files.py
+KEY_BYTES = 32       # of GCM-AES-256
+
+
+def commands(hosts, device, port):
+    """For each host, which has to learn the others' hardware addresses. Keys are fresh with each call."""
+    keys = {name: os.urandom(KEY_BYTES).hex() for name in hosts}
+    lines = [f"# MACsec on the Ethernet of {', '.join(hosts)}; run each part as root on its host, and keep all of it secret.",
+             f"# MAC_OF_HOST: what `cat /sys/class/net/{device}/address` prints there. Keys of one's own serve as long as 2^32 frames go out",
+             "# of each host (a month at 1,500 a second); wpa_supplicant's MKA renews them by itself."]
+    for number, name in enumerate(hosts, 1):
+        lines += ["", f"# on {name}",
+                  f"ip link add link {device} {DEVICE} type macsec cipher gcm-aes-256 encrypt on validate strict replay on window 64",
+                  f"ip macsec add {DEVICE} tx sa 0 pn 1 on key {number:032x} {keys[name]}"]
+        for other_number, other in enumerate(hosts, 1):
+            if other != name:
+                who = f"port 1 address MAC_OF_{other}"
+                lines += [f"ip macsec add {DEVICE} rx {who}",
+                          f"ip macsec add {DEVICE} rx {who} sa 0 pn 1 on key {other_number:032x} {keys[other]}"]
+        lines += [f"ip addr add {SUBNET}.{number}/24 dev {DEVICE} && ip link set {DEVICE} up",
+                  f"ip route replace {path_files.MULTICAST} dev {DEVICE}",
+                  "nft -f - << 'RULES'", path_files.rules(DEVICE, port) + "RULES"]
+    return "\n".join(lines)

@@ -1,0 +1,362 @@
+"""What tactus cluster can be told to do."""
+import base64
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+from tactus.cluster import commands, shipment
+from tactus.cluster.cluster_file import RECORDER, SYNC, WORLD
+from tactus.cluster.reach import Failed, Reach, Unreachable, of_all
+from tactus.launch import results
+from tactus.launch.arguments import SENSES
+from tactus.refusal import Refusal
+from tactus.terminal import tell
+
+SEND_S = 600          # a build over a slow line
+CHECK_S = 620         # agent.READ_SCENE_S, and the way
+START_S, STOP_S = 40, 25
+LOADING_S = 600
+SHADERS_S = 20
+PICTURE = "visual_node"
+LISTEN_S = 1.2        # NODE_HEALTH comes ten times a second
+ENDED_BEFORE_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
+
+
+class Operator:
+    """Whoever gives the orders: knows the file, reaches the hosts; all that runs is known by the hosts alone."""
+
+    def __init__(self, cluster, ssh_config=None, quiet=False):
+        self.cluster, self.quiet = cluster, quiet
+        self.reaches = {name: Reach(host, ssh_config) for name, host in cluster.hosts.items()}
+        self.files = self.identity = None
+        self.began = 0.0  # when a node was last asked to end, for a restart or a move
+
+    def say(self, text):
+        if not self.quiet:
+            tell(f"cluster: {text}")
+
+    def common(self, host):
+        """What an agent is told each time."""
+        return {"cluster": self.cluster.name, "build": self.identity or "", "own_build": self.cluster.hosts[host].build}
+
+    def ask(self, host, what, patience_s=10, **request):
+        return self.reaches[host].ask(what, patience_s=patience_s, **self.common(host), **request)
+
+    def ask_all(self, what, hosts=None, patience_s=10, **request):
+        """{host: answer or error}; values of the request that are functions are called with the host's name."""
+        hosts = self.reaches if hosts is None else {h: self.reaches[h] for h in hosts}
+        made = {h: {k: v(h) if callable(v) else v for k, v in request.items()} for h in hosts}
+        return of_all(hosts, lambda reach: reach.ask(what, patience_s=patience_s, **self.common(reach.host.name), **made[reach.host.name]))
+
+    def insist(self, answers):
+        """The answers; raises Refusal with the first that is an error."""
+        for answer in answers.values():
+            if isinstance(answer, Exception):
+                raise Refusal(str(answer))
+        return answers
+
+    def states(self, patience_s=10):
+        return self.ask_all("state", patience_s=patience_s)
+
+    # up
+
+    def up(self, git, forced=()):
+        """Starts what does not run. Hosts that cannot be reached are left out and named, but for those that hold what a run needs."""
+        self.files = shipment.parts()
+        self.identity = shipment.identity(self.files)
+        looked = self.ask_all("look", patience_s=15)
+        away = {h: a for h, a in looked.items() if isinstance(a, Exception)}
+        for host, error in away.items():
+            needed = [n for n in (WORLD, RECORDER) if self.cluster.nodes[n].host == host]
+            if needed:
+                raise Refusal(f"{error}; {needed[0]} is to run there")
+            self.say(f"{error}; left out, tactus cluster up takes it in later")
+        hosts = [h for h in looked if h not in away]
+        runs = {h: looked[h]["run"] for h in hosts if looked[h]["run"]}
+        self.refuse_mixed(looked, hosts, runs)
+        run_ids = {kept["run_id"] for kept in runs.values()}
+        if len(run_ids) > 1:
+            raise Refusal(f"two runs of {self.cluster.name} go on ({', '.join(f'{r} on {h}' for h, r in ((h, k['run_id']) for h, k in runs.items()))}); "
+                          "end both with tactus cluster down")
+        run_id = run_ids.pop() if run_ids else time.time_ns()
+        self.install(looked, hosts)
+        own, there = shipment.of_run(self.cluster)
+        words = commands.of_nodes(self.cluster, run_id, git, there)
+        new = [h for h in hosts if h not in runs]
+        if own_files(there):
+            self.insist(self.send(new, "files", own))
+        placed = self.placement(self.ask_all("state", hosts)) if runs else {}
+        self.end_doubles(runs)
+        wanted = {h: [n for n in self.cluster.of_host(h) if placed.get(n, h) == h] for h in hosts}
+        self.check(new, words, wanted)
+        if not runs:
+            self.refuse_others(hosts, run_id)
+        url = {"group": self.cluster.bus.group, "port": self.cluster.bus.port, "ttl": self.cluster.bus.ttl}
+        answers = self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
+        for host, answer in answers.items():
+            if answer.get("kept"):
+                self.say(f"{host}: results of a run before, which nobody gathered, lie there in {answer['kept']}")
+        self.start_all(hosts, wanted)
+        return away
+
+    def end_doubles(self, runs):
+        """A host that could not be reached when its node was placed elsewhere still runs it: the later place holds."""
+        holders = {}
+        for host, kept in runs.items():
+            for name in kept["here"]:
+                holders.setdefault(name, []).append((kept.get("since", {}).get(name, 0.0), host))
+        for name, places in holders.items():
+            for _, host in sorted(places)[:-1]:
+                self.ask(host, "stop", patience_s=STOP_S, names=[name], leave=True, patience=3)
+                self.say(f"{name} ran on {host} too, from where it had been moved; it was ended there")
+
+    def refuse_mixed(self, looked, hosts, runs):
+        ours = shipment.messages()
+        for host in hosts:
+            a = looked[host]
+            if not a["runit"]:
+                raise Refusal(f"{host}: runit is not installed there; run there: apt install runit")
+            own = self.cluster.hosts[host].build
+            if own and not a["messages"]:
+                raise Refusal(f"{host}: its build=\"{own}\" is not there or does not run; build it, or leave build= away and ours is installed")
+            if own and a["messages"] != ours:
+                raise Refusal(f"{host}: its build speaks otherwise: {difference(ours, a['messages'])}; build the same version there, or leave build= "
+                              "away and ours is installed")
+            if host in runs and runs[host]["build"] != self.identity and not own:
+                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this is {self.identity}; a cluster runs one build: first tactus cluster "
+                              "down")
+            if not own and a["machine"] != os.uname().machine:
+                raise Refusal(f"{host}: is a {a['machine']}, and this build is for {os.uname().machine}; build there, and name its folder with build=")
+
+    def install(self, looked, hosts):
+        lacking = [h for h in hosts if not looked[h]["build"]]
+        if lacking:
+            packed = shipment.packed(self.files)
+            self.say(f"installing this build ({len(packed) / 1e6:.0f} MB) on {', '.join(lacking)}")
+            self.insist(self.send(lacking, "build", packed))
+            looked |= self.insist(self.ask_all("look", lacking, patience_s=15))
+        for host, answer in ((h, looked[h]) for h in hosts):
+            if answer["missing"]:
+                raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; install there: apt install {' '.join(packages(answer['missing']))}")
+            if not answer["messages"]:
+                raise Refusal(f"{host}: the programs installed there do not run; its processor or its C library may be older than ours: build there, "
+                              "and name the folder with build=")
+
+    def send(self, hosts, into, data):
+        reaches = {h: self.reaches[h] for h in hosts}
+        return of_all(reaches, lambda reach: reach.ask("receive", patience_s=SEND_S, data=data, into=into, **self.common(reach.host.name)))
+
+    def check(self, hosts, words, wanted):
+        """Each node checks its options where it is to run."""
+        answers = self.insist(self.ask_all("check", hosts, patience_s=CHECK_S, nodes=lambda h: {n: words[n] for n in wanted[h]}))
+        for host, said in answers.items():
+            warnings = said.pop("warnings", "")
+            for name, sentence in said.items():
+                raise Refusal(f"{host}: {sentence}")
+            if warnings:
+                tell(warnings, sys.stderr)
+
+    def refuse_others(self, hosts, run_id):
+        """Two clusters on one port of one network would hear each other."""
+        if self.cluster.is_private():
+            return
+        words = ["@BUILD@/bin/watch", "--once", "--run-id", "0", "--group", self.cluster.bus.group, "--port", str(self.cluster.bus.port)]
+        answers = self.ask_all("on_the_bus", hosts, patience_s=15, patience=10, words=words)
+        for host, a in answers.items():
+            if isinstance(a, Exception):
+                raise Refusal(f"{a}")
+            if a["status"] == 0:
+                raise Refusal(f"{host}: another cluster speaks already on {self.cluster.bus.group}, port {self.cluster.bus.port}; choose another port= of "
+                              "<bus>, or end that one")
+            if "route" in a["err"] or "join" in a["err"]:
+                raise Refusal(f"{host}: {a['err'].strip().splitlines()[-1]}")
+
+    def start_all(self, hosts, wanted):
+        for group in self.groups():
+            names = {h: [n for n in wanted[h] if n in group] for h in hosts}
+            at = [h for h in hosts if names[h]]
+            if at:
+                self.insist(self.ask_all("start", at, patience_s=START_S, names=lambda h, names=names: names[h], patience=5))
+
+    def groups(self):
+        """In the order of starting."""
+        syncs = [n for n in self.cluster.nodes if n == SYNC or n.startswith(SYNC + "_")]
+        senses = [n for n in self.cluster.nodes if n.startswith(SENSES)]
+        return ([RECORDER, *syncs, *self.relays()], senses, [WORLD])
+
+    def relays(self):
+        return list(self.cluster.relays.by_name) if self.cluster.relays else []
+
+    def wait_for_world(self):
+        """False when it does not begin."""
+        host, begin = self.cluster.nodes[WORLD].host, time.monotonic()
+        said = begin
+        while time.monotonic() < begin + LOADING_S:
+            answer = self.ask_all("state", [host], patience_s=5)[host]
+            node = {} if isinstance(answer, Exception) else answer["nodes"].get(WORLD, {})
+            if node.get("begun"):
+                return True
+            if node.get("lost"):
+                raise Refusal(f"{WORLD}: {node['lost']} ({node['last']})")
+            if time.monotonic() > said + 5:
+                said = time.monotonic()
+                self.say(f"{WORLD} is still reading the scene ({said - begin:.0f} s)")
+            time.sleep(0.1)
+        return False
+
+    # what runs where
+
+    def placement(self, states):
+        """{node: host} of what belongs where by the hosts' own word: a move may have changed what the file says."""
+        found = {}
+        for host, s in states.items():
+            if not isinstance(s, Exception):
+                for name in s["nodes"]:
+                    found.setdefault(name, host)
+        return found
+
+    def where(self, node):
+        """The host that runs it. Raises Refusal."""
+        if node not in self.cluster.nodes:
+            raise Refusal(f"{node}: there is no such node in {self.cluster.name}; there are {', '.join(self.cluster.nodes)}")
+        states = self.states()
+        if all(isinstance(s, Exception) for s in states.values()):
+            raise Refusal(str(next(iter(states.values()))))
+        host = self.placement(states).get(node)
+        if host is None:
+            away = [h for h, s in states.items() if isinstance(s, Exception)]
+            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot); --lost moves it all the same, and up ends it there later" if away else "; tactus cluster up starts it"))
+        return host
+
+    def restart(self, node):
+        host = self.where(node)
+        self.began = time.monotonic()
+        self.ask(host, "restart", patience_s=STOP_S + START_S, names=[node], patience=3)
+        self.say(f"{node} was started anew on {host}, {time.monotonic() - self.began:.1f} s after it was asked to end")
+
+    def move(self, node, to, anew=False, lost=False):
+        if to not in self.cluster.hosts:
+            raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
+        if node.startswith(SYNC):
+            raise Refusal(f"{node}: every host has a sync_node of its own; it is not moved")
+        if node in self.relays():
+            raise Refusal(f"{node}: it stands where the other sites' relays look for it; place it elsewhere in the file and begin another run")
+        if node == RECORDER:
+            raise Refusal(f"{node}: its recording lies on its host; end the run, place it elsewhere in the file and begin another")
+        if node == WORLD and not anew:
+            raise Refusal(f"{node}: elsewhere its world would begin anew; say so with --anew")
+        origin = None if lost else self.where(node)
+        if lost and any(node in s["nodes"] for s in self.states().values() if not isinstance(s, Exception)):
+            raise Refusal(f"{node}: its host can be reached; leave --lost away")
+        if origin == to:
+            raise Refusal(f"{node}: runs on {to} already")
+        state = self.ask(to, "state")
+        if not state["run"]:
+            raise Refusal(f"{to}: nothing of the cluster runs there yet; first tactus cluster up")
+        self.identity = state["run"]["build"]
+        if not lost and node.startswith(PICTURE):
+            self.carry_shaders(origin, to)
+        self.began = time.monotonic()
+        killed = [] if lost else self.ask(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
+        try:
+            self.ask(to, "start", patience_s=START_S, names=[node])
+        except (Unreachable, Failed) as error:
+            self.ask(to, "stop", patience_s=STOP_S, names=[node], leave=True)
+            if not lost:
+                self.ask(origin, "start", patience_s=START_S, names=[node])
+            raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
+        self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - self.began:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+
+    def carry_shaders(self, origin, to):
+        """Before the picture ends where it is: a host that never drew would compile them for seconds."""
+        try:
+            data = base64.b64decode(self.ask(origin, "shaders", patience_s=SHADERS_S)["tar"])
+            self.ask(to, "take_shaders", patience_s=SHADERS_S, data=data)
+        except (Unreachable, Failed) as error:
+            self.say(f"shaders were not carried along ({error}); the picture may need seconds to begin")
+
+    def tell(self, words, files):
+        """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""
+        host = self.cluster.nodes[RECORDER].host
+        state = self.ask(host, "state")
+        if not state["run"]:
+            raise Refusal(f"nothing of {self.cluster.name} runs; tactus cluster up starts it")
+        self.identity = state["run"]["build"]
+        bus = self.cluster.bus
+        words = ["@BUILD@/bin/" + words[0], *words[1:], "--group", bus.group, "--port", str(bus.port), "--ttl", str(bus.ttl), "--run-id", str(state["run"]["run_id"])]
+        return self.ask(host, "on_the_bus", patience_s=40, patience=30, words=words, files=files)
+
+    # down
+
+    def down(self, out):
+        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each, and for
+        sum_up() how long it ran, which nodes are not expected at its end and which were started again; None: nothing ran."""
+        states = self.states()
+        runs = {h: s["run"] for h, s in states.items() if not isinstance(s, Exception) and s["run"]}
+        wrong = [str(s) + "; what runs there goes on until tactus cluster down reaches it" for s in states.values() if isinstance(s, Exception)]
+        if not runs:
+            return wrong or [f"nothing of {self.cluster.name} runs"], None
+        nodes = {name: (h, node) for h, s in states.items() if h in runs for name, node in s["nodes"].items()}
+        seconds = time.time() - min(kept["began"] for kept in runs.values())
+        lost = [n for n, (_, node) in nodes.items() if node["lost"] or node["taken_down"]]
+        for group in ([WORLD], [n for n in nodes if n.startswith(SENSES)], [n for n in nodes if n.startswith(SYNC)], self.relays(), [RECORDER]):
+            at = {h: [n for n in group if n in nodes and nodes[n][0] == h] for h in runs}
+            answers = self.ask_all("stop", [h for h in at if at[h]], patience_s=STOP_S, names=lambda h, at=at: at[h], patience=15)
+            for host, a in answers.items():
+                wrong += [str(a)] if isinstance(a, Exception) else [f"{n}: did not end when asked and was killed; see {out}/{host}/logs" for n in a["killed"]]
+            if group == [WORLD]:
+                time.sleep(ENDED_BEFORE_S)
+        for host, a in self.ask_all("end", list(runs), patience_s=STOP_S).items():
+            wrong += [str(a)] if isinstance(a, Exception) else []
+        wrong += self.gather(out, list(runs))
+        restarts = {n: node["deaths"] for n, (_, node) in nodes.items() if node["deaths"]}
+        missing = [n for n in self.cluster.plan.nodes() if n not in nodes]
+        return wrong, {"seconds": seconds, "lost": {*lost, *missing}, "restarts": restarts}
+
+    def sum_up(self, out, git, seconds, lost, restarts):
+        """Summary and tables, as scripts/run makes them. Returns what went wrong, a sentence each."""
+        for name, count in restarts.items():
+            self.say(f"{name} died and was started again, {count} times" if count > 1 else f"{name} died once and was started again")
+        self.cluster.plan.out, self.cluster.plan.seconds = out, seconds
+        return results.sum_up(self.cluster.plan, git, lost, restarts, [])
+
+    def gather(self, out, hosts):
+        """What the recorder's host has lies in the folder itself; what the others have in one of their names."""
+        first = self.cluster.nodes[RECORDER].host
+        wrong = []
+        for host in hosts:
+            into = out if host == first else out / host
+            into.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile() as file:
+                try:
+                    self.reaches[host].ask("collect", patience_s=SEND_S, to=file, **self.common(host))
+                    file.seek(0)
+                    done = subprocess.run(["tar", "-xz", "-C", str(into)], stdin=file, capture_output=True, check=False)
+                    if done.returncode != 0:
+                        wrong.append(f"{host}: its results did not arrive whole; they lie there in its folder")
+                except (Unreachable, Failed) as error:
+                    wrong.append(f"{error}; its results lie there")
+        return wrong
+
+
+def own_files(there):
+    return any(path.startswith("@FILES@") for path in there.values())
+
+
+def difference(ours, theirs):
+    """The first line in which two builds' messages differ, in words."""
+    for mine, other in zip(ours.splitlines(), theirs.splitlines()):
+        if mine != other:
+            return f"\"{other.strip()}\" where ours says \"{mine.strip()}\""
+    return "it knows other messages"
+
+
+def packages(libraries):
+    """Debian packages of shared libraries, as this machine has them."""
+    found = []
+    for name in libraries:
+        said = subprocess.run(["dpkg", "-S", name], capture_output=True, text=True, check=False).stdout
+        found.append(said.partition(":")[0] if said else name)
+    return sorted(set(found))

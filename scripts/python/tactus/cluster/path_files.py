@@ -1,0 +1,171 @@
+"""What each host of a private path gets: what starts it, the configuration of OpenVPN with its keys in it, and the rules that keep the
+bus inside."""
+import os
+import pathlib
+import subprocess
+import tempfile
+
+AUTHORITY = "authority"  # the folder of what signs; no host needs it
+DEVICE = "tactus0"
+SUBNET = "10.76.67"      # of the path itself: the numbers of LCM's group 239.255.76.67
+MOST_HOSTS = 250
+MULTICAST = "224.0.0.0/4"
+START = """\
+#!/bin/sh
+# Starts the private path of the bus on {name}, as root: rules, device, route; then it is openvpn(8). All but openvpn stays when
+# that ends: the bus then goes nowhere, not out openly, and who listens hears the others again as soon as it is back.
+# `start prepare` makes rules, device and route, and ends.
+set -e
+PATH=$PATH:/usr/sbin:/sbin
+cd "$(dirname "$0")"
+nft -f tactus.nft
+ip link show dev {device} >/dev/null 2>&1 || ip tuntap add dev {device} mode tap
+ip addr replace {address}/24 dev {device}
+ip link set {device} up
+ip route replace {multicast} dev {device}
+[ "${{1-}}" != prepare ] || exit 0
+# Before what is drawn and built here, and after what has real-time priority.
+exec nice -n -10 openvpn --config tactus.conf "$@"
+"""
+# A host that is lost is noticed within 5 s, and dialled again each second: the bus has no use for more patience.
+COMMON = """\
+dev {device}
+dev-type tap
+ifconfig-noexec
+proto udp4
+# A datagram of 1500 bytes goes in two: fragments of IP would carry no seal of their own.
+fragment 1400 mtu
+mssfix 1400 mtu
+tls-version-min 1.3
+data-ciphers AES-256-GCM:CHACHA20-POLY1305
+auth SHA256
+# As the nodes ask for (sync/bus/udp_port.cpp).
+sndbuf 4194304
+rcvbuf 4194304
+persist-tun
+persist-key
+user nobody
+group nogroup
+verb 1
+mute 10
+mute-replay-warnings
+"""
+LISTENS = """\
+# {name}, which listens on the private path of the bus. Keep it secret: the key is in it.
+mode server
+tls-server
+lport {listen}
+client-to-client
+keepalive 1 5
+remote-cert-tls client
+dh none
+"""
+DIALS = """\
+# {name}, which dials {first} on the private path of the bus. Keep it secret: the key is in it.
+client
+nobind
+remote {server} {listen}
+ping 1
+ping-restart 5
+connect-retry 1 1
+explicit-exit-notify 1
+remote-cert-tls server
+verify-x509-name {first} name
+"""
+# LCM's own programs hear what is sent to any address of the host, and all send to wherever the route leads.
+RULES = """\
+# What is of the bus stays on the private path and on this host, whether the path is up or not; and nothing is routed into it.
+table inet tactus
+delete table inet tactus
+table inet tactus {{
+  chain input {{
+    type filter hook input priority filter
+    iifname != {{ "lo", "{device}" }} udp dport {{ {port}, {next} }} counter drop
+  }}
+  chain output {{
+    type filter hook output priority filter
+    oifname != {{ "lo", "{device}" }} udp dport {{ {port}, {next} }} counter drop
+  }}
+  chain forward {{
+    type filter hook forward priority filter
+    iifname "{device}" counter drop
+    oifname "{device}" counter drop
+  }}
+}}
+"""
+EXTENSIONS = {"ca": "basicConstraints=critical,CA:TRUE\nkeyUsage=critical,keyCertSign",
+              "server": "basicConstraints=critical,CA:FALSE\nkeyUsage=critical,digitalSignature\nextendedKeyUsage=serverAuth",
+              "client": "basicConstraints=critical,CA:FALSE\nkeyUsage=critical,digitalSignature\nextendedKeyUsage=clientAuth"}
+
+
+def write(folder, a):
+    """All of a path into a new folder that only its owner reads. Raises subprocess.CalledProcessError, OSError."""
+    keys = Keys(a.days)
+    for number, name in enumerate(a.hosts, 1):
+        first = number == 1
+        values = {"name": name, "first": a.hosts[0], "server": a.server, "listen": a.listen, "device": DEVICE, "multicast": MULTICAST,
+                  "address": f"{SUBNET}.{number}"}
+        key, certificate = keys.of(name, "server" if first else "client")
+        text = (LISTENS if first else DIALS).format(**values) + COMMON.format(**values)
+        for element, content in (("ca", keys.certificate), ("cert", certificate), ("key", key), ("tls-crypt", keys.shared)):
+            text += f"<{element}>\n{content.strip()}\n</{element}>\n"
+        keep(folder / name / "tactus.conf", text)
+        keep(folder / name / "tactus.nft", rules(DEVICE, a.port))
+        keep(folder / name / "start", START.format(**values), 0o700)
+    keep(folder / AUTHORITY / "ca.key", keys.key)
+    keep(folder / AUTHORITY / "ca.crt", keys.certificate)
+
+
+def rules(device, port):
+    return RULES.format(device=device, port=port, next=port + 1)
+
+
+def keep(path, text, mode=0o600):
+    path.parent.parent.mkdir(mode=0o700, exist_ok=True)
+    path.parent.mkdir(mode=0o700, exist_ok=True)
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "w", encoding="ascii") as file:
+        file.write(text)
+
+
+class Keys:
+    """An authority, whose key signs those of the hosts."""
+
+    def __init__(self, days):
+        self.days = days
+        self.key = new_key()
+        self.certificate = self.sign("Tactus private path", self.key, "ca")
+        self.shared = "-----BEGIN OpenVPN Static key V1-----\n" + "\n".join(os.urandom(16).hex() for _ in range(16)) + \
+            "\n-----END OpenVPN Static key V1-----\n"
+
+    def of(self, name, use):
+        """(key, certificate)."""
+        key = new_key()
+        return key, self.sign(name, key, use)
+
+    def sign(self, name, key, use):
+        with tempfile.TemporaryDirectory() as folder:  # only its owner looks into it
+            at = pathlib.Path(folder)
+            files = {"own.key": key, "ca.key": self.key, "extensions": EXTENSIONS[use], **({} if use == "ca" else {"ca.crt": self.certificate})}
+            for file, text in files.items():
+                keep(at / "keys" / file, text)
+            openssl("req", "-new", "-key", at / "keys" / "own.key", "-subj", f"/CN={name}", "-out", at / "request")
+            signer = ["-signkey", at / "keys" / "ca.key"] if use == "ca" else ["-CA", at / "keys" / "ca.crt", "-CAkey", at / "keys" / "ca.key"]
+            return openssl("x509", "-req", "-in", at / "request", *signer, "-days", str(self.days), "-set_serial", "0x" + os.urandom(16).hex(),
+                           "-sha256", "-extfile", at / "keys" / "extensions")
+
+
+def new_key():
+    return openssl("genpkey", "-algorithm", "EC", "-pkeyopt", "ec_paramgen_curve:P-256")
+
+
+def openssl(*words):
+    return subprocess.run(["openssl", *map(str, words)], capture_output=True, text=True, check=True).stdout
+
+
+def guide(out, a):
+    """What to do with them, for people."""
+    return (f"{len(a.hosts)} hosts; {a.hosts[0]} listens at {a.server}, UDP port {a.listen}. Give each its folder of {out}, over a way that nobody else\n"
+            f"reads, and keep {out / AUTHORITY} away from all of them. As root on each:\n\n"
+            f"  {a.hosts[0]}/start              # until Ctrl-C, or\n"
+            f"  cp -rT {a.hosts[0]} /etc/tactus/path && tactus units install --only path && systemctl enable --now tactus-path\n\n"
+            f"The nodes then get --ttl 1 --port {a.port}.")

@@ -1,0 +1,120 @@
+"""The default scene over two hosts of a lab, for tests/measure/measure_private_path: the simulation and the recorder on the first, all senses on the
+second."""
+import collections
+import contextlib
+import json
+import struct
+import subprocess
+import time
+
+from tactus.cluster import intruder
+from tactus.paths import BIN, SCENES
+
+GROUP, PORT = "239.255.76.67", 7667
+FIRST, SECOND = ("sync_node", "recorder", "sim_node"), ("sync_node_two", "haptic_node", "haptic_node_lamp", "audio_node", "visual_node", "thermal_node")
+OPTIONS = {"sync_node_two": ["--name", "sync_node_two"], "haptic_node_lamp": ["--name", "haptic_node_lamp", "--tool", "lamp"],
+           "audio_node": ["--audio-device", "virtual"],
+           # Drawn on the processor that all hosts share: as cheap as it can be.
+           "visual_node": ["--no-video", *(w for s in ("width=320", "height=240", "rate=30", "quality=3") for w in ("--set", s))]}
+SCENE = SCENES / "dark_room.sdf"
+PATIENCE_S = 60  # on a machine that others use too
+SELF_TEST = b"LCM_SELF_TEST"  # of a node that begins, the same on both ports
+STARVED = 0.1    # of its ticks missed
+EVENT, SYNC = 28, 0xEDA1DA01  # LCM's log format
+
+
+class Trouble(Exception):
+    """One sentence."""
+
+
+def wait_until(holds, what, patience_s=PATIENCE_S):
+    end = time.monotonic() + patience_s
+    while not holds():
+        if time.monotonic() > end:
+            raise Trouble(f"{what} within {patience_s} s")
+        time.sleep(0.05)
+
+
+class Run:
+    """The default scene on both hosts, until it is ended."""
+
+    def __init__(self, hosts, folder):
+        self.hosts, self.folder, self.nodes = hosts, folder, {}
+        self.read_to, self.seen, self.count = 0, set(), collections.Counter()
+        folder.mkdir()
+        for host, names in ((hosts[0], FIRST[:2]), (hosts[1], SECOND), (hosts[0], FIRST[2:])):
+            for name in names:
+                self.start(host, name)
+        wait_until(lambda: "the world begins" in self.said("sim_node"), "sim_node: its world does not begin")
+        wait_until(lambda: self.presentations() > 0, "no sense presents anything")
+
+    def start(self, host, name):
+        program = next(p for p in ("sync_node", "haptic_node", name) if name.startswith(p))
+        out = self.folder / name
+        out.mkdir()
+        words = [*host.inside(), f"--time=/proc/{host.pid}/ns/time", str(BIN / program), *OPTIONS.get(name, []), *([str(SCENE)] if name == "sim_node" else []),
+                 "--ttl", "1", "--port", str(PORT), "--out", str(self.folder if name == "recorder" else out)]
+        with open(self.folder / f"{name}.log", "w", encoding="utf-8") as log:
+            self.nodes[name] = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+    def said(self, name):
+        return (self.folder / f"{name}.log").read_text(encoding="utf-8", errors="replace")
+
+    def read_on(self):
+        """Takes in what the recorder wrote since."""
+        with contextlib.suppress(FileNotFoundError), open(self.folder / "run.lcmlog", "rb") as file:
+            file.seek(self.read_to)
+            data, at = file.read(), 0
+            while at + EVENT <= len(data):
+                sync, _, _, name, size = struct.unpack(">IqqII", data[at:at + EVENT])
+                if sync != SYNC:
+                    raise Trouble("the log is damaged")
+                end = at + EVENT + name + size
+                if end > len(data):
+                    break
+                event = data[at + EVENT:end]
+                self.count["recorded"] += 1
+                self.count["presentations"] += event.startswith(b"PRESENTED")
+                self.count["forged"] += event.startswith(intruder.MARK)
+                # A header says sender and number: two alike are one that was sent again.
+                digest = hash(event)
+                self.count["repeated"] += digest in self.seen and not event.startswith(SELF_TEST)
+                self.seen.add(digest)
+                at = end
+            self.read_to += at
+
+    def presentations(self):
+        self.read_on()
+        return self.count["presentations"]
+
+    def end(self):
+        """Figures of the bus as the recorder heard it, and of the events that the senses owed."""
+        for names in (FIRST[2:], SECOND, FIRST[:1], FIRST[1:2]):
+            for name in names:
+                if self.nodes[name].poll() is not None:
+                    raise Trouble(f"{name}: ended by itself: {(self.said(name).strip() or 'silently').splitlines()[-1]}")
+            time.sleep(0.3)  # for the last to be presented
+            for name in names:
+                self.nodes[name].terminate()
+            for name in names:
+                self.nodes[name].wait(PATIENCE_S)
+        self.read_on()
+        subprocess.run([BIN / "summarise", self.folder, "--out", self.folder / "summary.json"], capture_output=True, check=False)
+        try:
+            summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+        except OSError:
+            raise Trouble("summarise: made no summary of the log") from None
+        age = summary["nodes"]["haptic_node"]["input_age_ms"].get("TOUCH_MODEL", {}).get("p50")  # from host to host
+        senses = {}
+        for sense, debt in summary["contacts"]["by_modality"].items():
+            node = summary["nodes"][f"{sense}_node"]
+            # One that the processors had no time for loses events without anybody's help.
+            starved = node["missed_ticks"] > STARVED * (node["ticks"] + node["missed_ticks"])
+            senses[sense] = {**{what: debt[what] for what in ("owed", "presented", "lost")}, "starved": starved}
+        return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses, "touch_age_ms": age}
+
+    def kill(self):
+        for process in self.nodes.values():
+            if process.poll() is None:
+                process.kill()
+                process.wait()

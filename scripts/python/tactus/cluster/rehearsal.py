@@ -1,0 +1,137 @@
+"""A cluster in a lab, for measurements and tests: hosts whose cables can be cut, and an observer on the switch who hears them all."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+from tactus.cluster import cluster_file, lab
+from tactus.cluster.orders import Operator
+from tactus.cluster.reach import Failed, Unreachable  # noqa: F401  for whoever gives orders that may fail
+from tactus.paths import BIN
+
+PATIENCE_S = 60
+STAYS_S = 0.3
+SILENT_S = 3.0  # the observer hears nothing at all
+
+
+class Rehearsal:
+    """The cluster of the file, in a lab that has its hosts. Only inside of lab.enter()."""
+
+    def __init__(self, file, folder, ordinary=()):
+        self.folder = pathlib.Path(folder)
+        os.environ["HOME"] = str(self.folder / "home")  # of whoever gives the orders; hosts have homes of their own
+        (self.folder / "home").mkdir(parents=True, exist_ok=True)
+        self.cluster = cluster_file.read(str(file), self.folder / "plan")
+        self.lab = lab.Lab([name for name, host in self.cluster.hosts.items() if host.reach == "ssh"], ordinary)
+        self.operator = Operator(self.cluster, str(self.lab.folder / "ssh_config"), quiet=True)
+        self.placement = {}
+        self.watch = None
+
+    def up(self):
+        """Seconds that it took from nothing until the world began."""
+        begin = time.monotonic()
+        self.operator.up("rehearsal")
+        self.operator.wait_for_world()
+        took = time.monotonic() - begin
+        self.placement = self.operator.placement(self.operator.states())
+        self.watch = Watch(self.cluster, self.run_id())
+        return took
+
+    def run_id(self):
+        return next(s["run"]["run_id"] for s in self.operator.states().values() if not isinstance(s, Exception) and s["run"])
+
+    def nodes_of(self, host):
+        return [n for n, h in self.placement.items() if h == host]
+
+    def whole(self):
+        return self.watch.all_run(self.placement)
+
+    def wait_until_whole(self, patience_s=PATIENCE_S):
+        """Seconds until it is whole and stays so for a moment, or None when it does not become whole."""
+        begin, since = time.monotonic(), None
+        while time.monotonic() < begin + patience_s:
+            if not self.whole():
+                since = None
+            elif since is None:
+                since = time.monotonic()
+            elif time.monotonic() - since > STAYS_S:
+                return since - begin
+            time.sleep(0.02)
+        return None
+
+    def record(self, name, seconds=None, until=None):
+        """What the observer hears in so many seconds, or until an event is set, as summary.json says it; the log stays in the folder."""
+        out = self.folder / name
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir(parents=True)
+        c = self.cluster
+        words = [BIN / "recorder", "--out", out, "--name", "observer", "--run-id", self.watch.run_id, "--group", c.bus.group, "--port", c.bus.port,
+                 "--ttl", "0", "--tags", "none", "--seconds", 1]
+        with open(out / "observer.log", "w", encoding="utf-8") as log:
+            observer = subprocess.Popen([str(w) for w in words], stderr=log, stdout=log)
+        if until is None:
+            time.sleep(seconds)
+        else:
+            until.wait()
+        observer.send_signal(signal.SIGINT)
+        observer.wait(20)
+        subprocess.run([BIN / "summarise", out, "--out", out / "summary.json"], capture_output=True, check=False)
+        return json.loads((out / "summary.json").read_text(encoding="utf-8"))
+
+    def down(self, out):
+        """What went wrong, a sentence each. The results of all hosts are in the folder, with the tables of events and clocks."""
+        wrong = self.operator.down(out)[0]
+        subprocess.run([BIN / "export_events", out, "--out", out], capture_output=True, check=False)
+        return wrong
+
+    def close(self):
+        if self.watch:
+            self.watch.close()
+        self.lab.close()
+
+
+class Watch:
+    """What the nodes say of themselves, ten times a second."""
+
+    def __init__(self, cluster, run_id):
+        self.run_id = run_id
+        self.newest, self.heard = {}, 0.0
+        words = [BIN / "watch", "--json", "--period", "0.1", "--run-id", run_id, "--group", cluster.bus.group, "--port", cluster.bus.port]
+        self.process = subprocess.Popen([str(w) for w in words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        threading.Thread(target=self.listen, daemon=True).start()
+
+    def listen(self):
+        for line in self.process.stdout:
+            try:
+                self.newest, self.heard = json.loads(line)["nodes"], time.monotonic()
+            except (ValueError, KeyError):
+                continue  # it was just ended
+
+    def state(self, node):
+        return self.newest.get(node, {}).get("state", "not heard") if time.monotonic() < self.heard + SILENT_S else "not heard"
+
+    def all_run(self, nodes):
+        return all(self.state(n) == "running" for n in nodes)
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+def enter(script, words):
+    """Starts the script again in namespaces of its own, unless it is there already; with status 77 where that cannot be."""
+    if lab.is_inside():
+        del os.environ["TACTUS_LAB_INSIDE"]
+        for number in (signal.SIGTERM, signal.SIGHUP):  # the first process of a namespace is ended by what it answers to only
+            signal.signal(number, lambda *_: sys.exit("ended from outside"))
+        return
+    try:
+        lab.enter([sys.executable, os.path.abspath(script), *words])
+    except lab.Error as error:
+        print(f"skipped: {error}")
+        sys.exit(77)

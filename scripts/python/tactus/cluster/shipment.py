@@ -1,0 +1,93 @@
+"""What a host needs to run any node: programs, sounds, scenes, rooms; made of one build, and known by what is in it."""
+import hashlib
+import io
+import os
+import pathlib
+import subprocess
+import tarfile
+import tempfile
+
+from tactus.cluster import sites
+from tactus.paths import BIN, REPOSITORY, SCRIPTS
+from tactus.refusal import Refusal
+
+PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
+            "playout", "set", "message_types", "probe_pairs", "relay")
+FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
+LEFT_OUT = {".py", ".md"}
+# What `tactus doctor` imports beside its own package.
+DOCTOR = ("__init__.py", "refusal.py", "commands/__init__.py", "commands/dispatch.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/network.py")
+LARGEST_SCENE_BYTES = 500_000_000
+
+
+def parts():
+    """{path there: path here} of all files."""
+    found = {f"bin/{name}": BIN / name for name in PROGRAMS}
+    found |= {f"bin/{path.name}": path for path in BIN.glob("lib*.so")}
+    found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
+    for there, here in FOLDERS.items():
+        found |= {f"{there}/{path.relative_to(here)}": path for path in sorted(here.rglob("*")) if path.is_file() and path.suffix not in LEFT_OUT}
+    package = SCRIPTS / "python" / "tactus"
+    for path in (SCRIPTS / "tactus", *(package / name for name in DOCTOR), *(package / "doctor").glob("*.py")):
+        found[f"share/scripts/{path.relative_to(SCRIPTS)}"] = path
+    found["share/inside"] = package / "launch" / "inside"
+    for name, path in found.items():
+        if not path.is_file():
+            raise Refusal(f"{path.name}: {path} is not built; run scripts/build --programs")
+    return found
+
+
+def identity(files):
+    """Of a build: the same for the same files."""
+    total = hashlib.sha256()
+    for there, here in sorted(files.items()):
+        total.update(there.encode() + b"\0" + hashlib.sha256(here.read_bytes()).digest())
+    return total.hexdigest()[:16]
+
+
+def messages():
+    """What this build says of its messages."""
+    return subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
+
+
+def packed(files):
+    """The files as one compressed tar, programs without what only a debugger reads."""
+    into = io.BytesIO()
+    with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
+        for there, here in sorted(files.items()):
+            data, mode = stripped(here), 0o755 if os.access(here, os.X_OK) else 0o644
+            entry = tarfile.TarInfo(there)
+            entry.size, entry.mode = len(data), mode
+            tar.addfile(entry, io.BytesIO(data))
+    return into.getvalue()
+
+
+def stripped(path):
+    whole = path.read_bytes()
+    if whole[:4] != b"\x7fELF":
+        return whole
+    with tempfile.NamedTemporaryFile() as small:
+        done = subprocess.run(["strip", "--strip-all", "-o", small.name, str(path)], capture_output=True, check=False)
+        return pathlib.Path(small.name).read_bytes() if done.returncode == 0 else whole
+
+
+def of_run(cluster):
+    """(tar of what this run has of its own, {path here: path there}): a scene that is not shipped, with its folder, the profile, a room."""
+    into, there = io.BytesIO(), {}
+    with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
+        scene = cluster.plan.scene
+        for folder, here in FOLDERS.items():
+            there[str(here)] = f"@BUILD@/{folder}"
+        if FOLDERS["share/scenes"] not in scene.parents:
+            size = sum(p.stat().st_size for p in scene.parent.rglob("*") if p.is_file())
+            if size > LARGEST_SCENE_BYTES:
+                raise Refusal(f"sim_node: the folder {scene.parent} of the scene holds {size // 1_000_000} MB, and goes to every host; put the scene "
+                              "and what it needs into a folder of their own")
+            tar.add(scene.parent, "scene")
+            there[str(scene.parent)] = "@FILES@/scene"
+        rules = cluster.relays.rules if cluster.relays and sites.SHIPPED not in cluster.relays.rules.parents else None
+        for name, path in (("profile.xml", cluster.plan.degrade), ("room.csv", cluster.plan.room if os.sep in cluster.plan.room else None), ("relay.xml", rules)):
+            if path:
+                tar.add(path, name)
+                there[str(path)] = f"@FILES@/{name}"
+    return into.getvalue(), there

@@ -1,0 +1,79 @@
+"""One table over all hosts: what their supervisors say of each node, and what the bus says."""
+import json
+
+from tactus.cluster.cluster_file import RECORDER
+
+COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input age ms", "rendered", "restarts", "note")
+
+
+def gather(operator):
+    """{host: state or error}, and what the bus says as watch --json: of the hosts the first that answers."""
+    states = operator.states(patience_s=3)  # who answers later is shown as not reached
+    first = operator.cluster.nodes[RECORDER].host
+    bus = {}
+    for host in sorted(states, key=lambda h: h != first):
+        s = states[host]
+        if isinstance(s, Exception) or not s["run"]:
+            continue
+        c = operator.cluster
+        operator.identity = s["run"]["build"]
+        words = ["@BUILD@/bin/watch", "--once", "--json", "--run-id", str(s["run"]["run_id"]), "--group", c.bus.group, "--port", str(c.bus.port)]
+        try:
+            said = operator.ask(host, "on_the_bus", words=words, patience_s=5, patience=4)
+            bus = {"host": host, **json.loads(said["out"] or "{}")}
+            break
+        except Exception:  # pylint: disable=broad-except  # the next one may know
+            continue
+    return states, bus
+
+
+def rows(cluster, states, bus):
+    """Dictionaries of COLUMNS, in the order of the file; a node that is nowhere has no host that runs it."""
+    heard = bus.get("nodes", {})
+    found = []
+    seen = set()
+    for host, s in states.items():
+        if isinstance(s, Exception):
+            found.append({"host": host, "node": "", "process": "NOT REACHED", "note": str(s).partition(": ")[2]})
+            continue
+        for name, node in s["nodes"].items():
+            seen.add(name)
+            found.append(row(host, name, node, heard.get(name)))
+        if not s["run"]:
+            found.append({"host": host, "node": "", "process": "nothing runs", "note": "tactus cluster up"})
+    away = [h for h, s in states.items() if isinstance(s, Exception)]
+    for name, placed in cluster.nodes.items():
+        if name not in seen:
+            by_ear = heard.get(name)
+            found.append(row(placed.host if placed.host in away else "", name, None, by_ear))
+    return found
+
+
+def row(host, name, node, heard):
+    process = "not seen" if node is None else "LEFT DOWN" if node["lost"] else "taken down" if node["taken_down"] else "up" if node["up"] else "starting"
+    r = {"host": host, "node": name, "process": process, "restarts": "" if node is None else node["deaths"]}
+    if heard:
+        r |= {"on the bus": heard["state"], "rate Hz": heard["rate_hz"], "missed": heard["missed_ticks"], "input age ms": heard["input_age_ms"],
+              "rendered": heard["contacts_rendered"], "note": heard["note"]}
+    if node and (node["lost"] or not node["up"]):
+        r["note"] = node["lost"] or node["last"]
+    return r
+
+
+def text(found, width=160):
+    """Lines of the table."""
+    shown = [[cell(r.get(c)) for c in COLUMNS] for r in found]
+    widths = [max(len(c), *(len(r[i]) for r in shown)) if shown else len(c) for i, c in enumerate(COLUMNS)]
+    line = lambda cells: "  ".join(v.ljust(w) for v, w in zip(cells, widths)).rstrip()[:width]
+    return "\n".join([line(COLUMNS), *map(line, shown)])
+
+
+def cell(value):
+    return "" if value is None else f"{value:.1f}" if isinstance(value, float) else str(value)
+
+
+def whole(cluster, states, bus):
+    """Every node of the file runs, and is heard."""
+    up = {n for s in states.values() if not isinstance(s, Exception) for n, node in s["nodes"].items() if node["up"]}
+    heard = bus.get("nodes", {})
+    return all(n in up and heard.get(n, {}).get("state") == "running" for n in cluster.nodes)

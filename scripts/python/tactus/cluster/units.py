@@ -1,0 +1,167 @@
+"""The command line of tactus units.
+
+  tactus units install [--root DIR] [--only KIND,KIND,...] [--prefix DIR] [--out DIR] [--units-only]
+                        [--group ADDRESS] [--port N] [--ttl N] [--run-id N] [--scene FILE] [--host NAME]
+
+Writes units of systemd for an installation that stays, and copies the programs of the build. Enables and starts nothing: it
+says how to do that.
+
+  --only        of sim, haptic, audio, visual, thermal, sync, recorder, relay, path; default: all but relay and path
+  --root        where the system's root is (default /)
+  --prefix      where the programs go (default /opt/tactus)
+  --out         where the nodes write (default /var/lib/tactus)
+  --units-only  copies no programs: they are in PREFIX already
+  --group, --port, --ttl, --run-id, --scene   as the nodes take them; they go to /etc/tactus/tactus.env, which is kept where it is
+                there already: edit it then
+  --host        a name for this host, where it is not that of the recorder: its sync_node is then called sync_node_NAME
+
+units/README.md describes the units.
+"""
+import argparse
+import ipaddress
+import pathlib
+import re
+import shutil
+import sys
+
+from tactus import terminal
+from tactus.refusal import Refusal, sentence_of
+
+UNITS = pathlib.Path(__file__).with_name("units")
+KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
+LEFT_OUT = ("relay", "path")  # unless they are asked for
+TEMPLATES = ("haptic", "visual")  # of a second hand, of another wall
+SYSTEM, ETC = "etc/systemd/system", "etc/tactus"
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refusal(f"{message}; see tactus units --help")
+
+
+def parsed(words):
+    parser = Parser(add_help=False, allow_abbrev=False, prog="units")
+    commands = parser.add_subparsers(dest="command", required=True, parser_class=Parser)
+    c = commands.add_parser("install", add_help=False, allow_abbrev=False)
+    c.add_argument("--root", default="/")
+    c.add_argument("--only", default=",".join(k for k in KINDS if k not in LEFT_OUT))
+    c.add_argument("--prefix", default="/opt/tactus")
+    c.add_argument("--out", default="/var/lib/tactus")
+    c.add_argument("--units-only", action="store_true")
+    c.add_argument("--group", default="239.255.76.67")  # as in lcmtypes/channels.h
+    c.add_argument("--port", type=int, default=7667)
+    c.add_argument("--ttl", type=int, default=0)
+    c.add_argument("--run-id", type=int, default=1)
+    c.add_argument("--scene")
+    c.add_argument("--host")
+    a = parser.parse_args(words)
+    a.only = a.only.split(",")
+    for kind in a.only:
+        if kind not in KINDS:
+            raise Refusal(f"--only: there is no unit of \"{kind[:40]}\"; there are {', '.join(KINDS)}")
+    for option in ("prefix", "out", "scene"):
+        path = getattr(a, option)
+        if path is not None and not re.fullmatch(r"/[A-Za-z0-9._/+-]+", path):
+            raise Refusal(f"--{option} {path[:80]}: give an absolute path of letters, digits and ._/+-")
+    a.scene = a.scene or f"{a.prefix}/share/scenes/dark_room.sdf"
+    for option, value, least, most in (("--port", a.port, 1, 65534), ("--ttl", a.ttl, 0, 255), ("--run-id", a.run_id, 1, 2**63 - 1)):
+        if not least <= value <= most:
+            raise Refusal(f"{option} {value}: give a number from {least} to {most}")
+    try:
+        if not ipaddress.IPv4Address(a.group).is_multicast:
+            raise ValueError
+    except ValueError:
+        raise Refusal(f"--group {a.group[:40]}: is no multicast group; they go from 224.0.0.0 to 239.255.255.255") from None
+    if a.host is not None and not re.fullmatch(r"[A-Za-z0-9-]{1,32}", a.host):
+        raise Refusal(f"--host {a.host[:40]}: give a name of letters, digits and hyphens")
+    return a
+
+
+def sections(text):
+    """{section: its lines} of a unit or of common.conf."""
+    found, name = {"": []}, ""
+    for line in text.splitlines():
+        if re.fullmatch(r"\[\w+\]", line):
+            name = line
+            found[name] = []
+        else:
+            found[name].append(line)
+    return {name: "\n".join(lines).strip() for name, lines in found.items()}
+
+
+def with_common(name):
+    """A service with what every unit has; its own lines come after, and so prevail."""
+    common = sections((UNITS / "common.conf").read_text(encoding="ascii").replace(f" {name}", ""))  # none comes after itself
+    own = sections((UNITS / name).read_text(encoding="ascii"))
+    parts = [own.pop("")] + [f"{name}\n{common[name]}\n{own.get(name, '')}".strip() for name in ("[Unit]", "[Service]", "[Install]")]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def filled(text, a):
+    values = {"PREFIX": a.prefix, "OUT": a.out, "GROUP": a.group, "PORT": a.port, "TTL": a.ttl, "RUN_ID": a.run_id, "SCENE": a.scene,
+              "SYNC_OPTIONS": f"--name sync_node_{a.host}" if a.host else ""}
+    return re.sub(r"@([A-Z_]+)@", lambda m: str(values[m[1]]), text)
+
+
+def files(a):
+    """{path below the root: text} of all that is written."""
+    read = lambda name: filled((UNITS / name).read_text(encoding="ascii"), a)
+    found = {f"{SYSTEM}/tactus.target": read("tactus.target")}
+    for kind in a.only:
+        for name in (f"tactus-{kind}.service", *([f"tactus-{kind}@.service"] if kind in TEMPLATES else [])):
+            found[f"{SYSTEM}/{name}"] = filled(with_common(name), a)
+    return found | {f"{ETC}/tactus.env": read("tactus.env"), "etc/sysusers.d/tactus.conf": read("sysusers.conf"),
+                    "etc/tmpfiles.d/tactus.conf": read("tmpfiles.conf")}
+
+
+def install(a):
+    root = pathlib.Path(a.root)
+    if not root.is_dir():
+        raise Refusal(f"--root {root}: is no folder; make it first")
+    # One that is there already is somebody's work.
+    kept = (root / ETC / "tactus.env").exists()
+    texts = {path: text for path, text in files(a).items() if not (kept and path.endswith("tactus.env"))}
+    if not a.units_only:
+        copy_programs(root / a.prefix.lstrip("/"))
+    for path, text in texts.items():
+        into = root / path
+        into.parent.mkdir(parents=True, exist_ok=True)
+        fresh = into.with_name(f".{into.name}.new")
+        fresh.write_text(text, encoding="ascii")
+        fresh.chmod(0o644)
+        fresh.rename(into)
+    units = [f"tactus-{kind}" for kind in a.only]
+    where = "" if root == pathlib.Path("/") else " (in that system)"
+    terminal.tell((f"{root / ETC / 'tactus.env'} was there, and is as it was\n" if kept else "") +
+                  f"units of {', '.join(a.only)} are in {root / SYSTEM}; nothing is enabled. As root{where}:\n\n"
+                  "  systemd-sysusers && systemd-tmpfiles --create && systemctl daemon-reload\n"
+                  f"  systemctl enable {' '.join(units)} tactus.target && systemctl start tactus.target")
+
+
+def copy_programs(prefix):
+    """Those of the build, without what only a debugger reads. A program that runs keeps its own file until it ends."""
+    from tactus.cluster import shipment
+    for there, here in shipment.parts().items():
+        into = prefix / there
+        into.parent.mkdir(parents=True, exist_ok=True)
+        fresh = into.with_name(f".{into.name}.new")
+        fresh.write_bytes(shipment.stripped(here))
+        shutil.copymode(here, fresh)
+        fresh.rename(into)
+    shutil.copy(UNITS / "README.md", prefix / "share" / "units.md")
+
+
+def main(words):
+    terminal.prepare()
+    if not words or {"-h", "--help"} & set(words):
+        terminal.tell(__doc__.split("\n", 2)[2].strip("\n"), None if words else sys.stderr)
+        return 0 if words else 1
+    try:
+        install(parsed(words))
+        return 0
+    except Refusal as refusal:
+        wrong = str(refusal)
+    except OSError as error:
+        wrong = sentence_of(error)
+    terminal.complain(f"units: {wrong}")
+    return 1

@@ -1,0 +1,99 @@
+"""Runs a command inside the network of a running cluster."""
+import fcntl
+import glob
+import os
+import pathlib
+import shutil
+
+from tactus.commands import prepare
+from tactus.paths import BIN, TACTUS
+from tactus.refusal import Refusal
+
+USAGE = """Usage: tactus attach [OUT_DIR] CMD [ARG]...
+
+Runs CMD inside the network of the running cluster that writes to OUT_DIR; default: the one that was started last. CMD sees
+only the cluster's processes. Its environment names the bus (LCM_DEFAULT_URL, for LCM's own tools; TACTUS_GROUP, TACTUS_PORT, TACTUS_TTL), the run
+(TACTUS_RUN_ID) and the services (SVDIR, for sv), and its PATH begins with Tactus' own programs. For example:
+
+  tactus attach watch                            the live table
+  tactus attach lcm-logger heard.lcmlog          record with LCM's own logger
+  tactus attach sv down sim_node                 take the simulation away, and then
+  tactus attach lcm-logplayer old/run.lcmlog     replay a log into the senses: beside a living world they would render now
+                                                  the one, now the other
+  tactus attach sv pause visual_node             freeze a sense; sv cont visual_node lets it go on
+  tactus attach pkill -x audio_node              kill one; the supervisor starts it again"""
+
+
+def address(folder):
+    """{key: value} of a cluster that runs and is seen from here: its folder is locked as long as it runs. None: there is none."""
+    try:
+        text = (folder / "address").read_text(encoding="utf-8", errors="surrogateescape")
+        with open(folder / "in_use", "r", encoding="ascii") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return None
+    except BlockingIOError:
+        pass
+    except OSError:
+        return None
+    found = dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
+    return found if os.path.isdir(f"/proc/{found.get('holder', 'none')}") else None
+
+
+def cluster_of(out):
+    """(folder, address) of the cluster that writes there. Raises Refusal."""
+    folder = pathlib.Path(os.path.realpath(os.path.join(out, "cluster")))
+    found = address(folder)
+    if found is None:
+        raise Refusal(f"no cluster is running that writes to {out}; start one with scripts/run --out {out}")
+    return folder, found
+
+
+def newest():
+    """(folder, address) of the cluster that was started last. Raises Refusal."""
+    folders = [pathlib.Path(f) for f in glob.glob(os.path.join(glob.escape(os.environ.get("TMPDIR") or "/tmp"), "tactus-*-*")) if os.path.isdir(f)]
+    for folder in sorted(folders, key=lambda f: f.stat().st_mtime, reverse=True):
+        found = address(folder)
+        if found is not None:
+            return folder, found
+    raise Refusal("no cluster is running; start one with scripts/run, or name its output folder")
+
+
+def environment(folder, found):
+    bus = found["url"].removeprefix("udpm://")
+    return {**os.environ, "TACTUS_GROUP": bus.partition(":")[0], "TACTUS_TTL": bus.rpartition("ttl=")[2], "LCM_DEFAULT_URL": found["url"],
+            "TACTUS_PORT": found["port"], "TACTUS_RUN_ID": found["run_id"], "SVDIR": str(folder / "services"),
+            "PATH": f"{BIN}:{os.environ.get('PATH', '')}"}
+
+
+def entering(found):
+    """Words that run a command in the namespaces of the cluster."""
+    if found["namespaces"] == "none":
+        return []
+    ns = f"/proc/{found['holder']}/ns"
+    words = ["nsenter", f"--pid={ns}/pid_for_children", f"--mount={ns}/mnt", f"--wdns={os.getcwd()}"]
+    if "net" in found["namespaces"]:
+        words.append(f"--net={ns}/net")
+    if "user" in found["namespaces"]:
+        words += [f"--user={ns}/user", "--preserve-credentials"]
+    return words
+
+
+def main(words):
+    if not words or words[0] in ("--help", "-h"):
+        return prepare.show(USAGE, asked=bool(words))
+    try:
+        if os.path.isdir(words[0]) and "/" in words[0] or os.path.islink(os.path.join(words[0], "cluster")):
+            out, *words = words
+            if not words:
+                raise Refusal("name a command to run; see tactus attach --help")
+            folder, found = cluster_of(out)
+        else:
+            folder, found = newest()
+        there = environment(folder, found)
+        if words[0] == "tactus":  # this one, wherever it is installed
+            words = [str(TACTUS), *words[1:]]
+        if not shutil.which(words[0], path=there["PATH"]):
+            raise Refusal(f"there is no command {words[0]}; see tactus attach --help for examples")
+    except Refusal as refusal:
+        return prepare.refuse("attach", refusal)
+    prepare.become([*entering(found), *words], there)

@@ -1,0 +1,15 @@
+"""Installs what is missing, builds, and runs a scene on several hosts."""
+import pathlib
+
+import tactus.cluster
+from tactus.commands import prepare
+
+
+def main(words):
+    if not words or {"--help", "-h"} & set(words):
+        usage = pathlib.Path(tactus.cluster.__file__).with_name("usage.txt")
+        return prepare.show(usage.read_text(encoding="utf-8").rstrip("\n"), asked=bool(words))
+    if words[0] == "up":
+        prepare.install_and_build()
+    from tactus.cluster import main as operator
+    return operator.main(words)

@@ -1,0 +1,42 @@
+"""The command line of `tactus`: finds the command and runs it."""
+import difflib
+import importlib
+import os
+import pathlib
+import sys
+
+from tactus.commands.table import BY_NAME, GROUPS
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3]
+MODULE = "--module"  # for this package's own processes: the module to run, then its words
+
+
+def usage():
+    width = max(map(len, BY_NAME))
+    lines = ["Usage: tactus COMMAND [ARGUMENT]...", ""]
+    for group, commands in GROUPS.items():
+        lines += [group, *(f"  {c.name:{width}}  {c.summary}" for c in commands), ""]
+    return "\n".join([*lines, "tactus COMMAND --help describes a command."])
+
+
+def unknown(name):
+    """One sentence."""
+    near = difflib.get_close_matches(name.replace("_", "-"), BY_NAME, 1, 0.5)
+    return f"tactus: there is no command '{name}'; " + (f"did you mean '{near[0]}'?" if near else "tactus --help lists them")
+
+
+def main(words):
+    if not words or words[0] in ("--help", "-h"):
+        print(usage(), file=sys.stdout if words else sys.stderr)
+        return 0 if words else 1
+    name, *words = words
+    if name == MODULE:
+        return importlib.import_module(words[0]).main(words[1:])
+    if name not in BY_NAME:
+        print(unknown(name), file=sys.stderr)
+        return 1
+    target = BY_NAME[name].target
+    if "." not in target:
+        script = str(SCRIPTS / target)
+        os.execv(script, [script, *words])
+    return importlib.import_module(target).main(words)

@@ -1,0 +1,73 @@
+"""Makes tables of the log of a run."""
+import glob
+import os
+import subprocess
+
+from tactus.commands import prepare
+from tactus.paths import BIN
+from tactus.refusal import Refusal
+
+VALUES = ("--channels", "--since", "--until")
+USAGE = """Usage: tactus export LOG... [option]...
+
+Makes tables of a log for pandas, R, MATLAB and PlotJuggler: one of each channel, one of all tagged variables, and those of the
+contact events and of what every sense presented of them. docs/export.md describes them, schema.json beside them too.
+
+  LOG                    run.lcmlog of a run, or its folder: all parts of its recording
+  --out DIR              folder for the tables; default: tables, beside the log
+  --channels REGEX       only channels whose whole name matches: 'TOOL_STATE|CONTACT.*'; default: all
+  --since S, --until S   from and up to this second of the log
+  --wide                 a row for each message with a column for each field that is in no list, as PlotJuggler wants it, instead
+                         of a row for each value
+  --help                 this text
+
+Damaged logs are read as far as they are whole; what is missing is said at the end."""
+
+
+def parsed(words):
+    """(logs, options of export_log, folder of the tables or ""). Raises Refusal."""
+    logs, options, out, words = [], [], "", list(words)
+    while words:
+        word = words.pop(0)
+        if word in ("--out", *VALUES) and not words:
+            raise Refusal("--out needs a folder" if word == "--out" else f"{word} needs a value")
+        if word == "--out":
+            out = words.pop(0)
+        elif word in VALUES:
+            options += [word, words.pop(0)]
+        elif word == "--wide":
+            options.append(word)
+        elif word.startswith("-"):
+            raise Refusal(f"there is no option {word}; see tactus export --help")
+        else:
+            logs.append(word)
+    if not logs:
+        raise Refusal("name a log; see tactus export --help")
+    for log in logs:
+        is_log = os.access(log, os.R_OK) and not os.path.isdir(log)
+        if not is_log and not glob.glob(os.path.join(glob.escape(log), "run*.lcmlog")):
+            raise Refusal(f"cannot read {log}; give the run.lcmlog of a run, or its folder")
+    return logs, options, out
+
+
+def main(words):
+    if {"--help", "-h"} & set(words):
+        return prepare.show(USAGE)
+    try:
+        logs, options, out = parsed(words)
+        out = out or os.path.join(logs[0] if os.path.isdir(logs[0]) else os.path.dirname(logs[0]), "tables")
+        try:
+            os.makedirs(out, exist_ok=True)
+        except OSError:
+            raise Refusal(f"cannot make {out}; give --out a folder that can be written") from None
+    except Refusal as refusal:
+        return prepare.refuse("export", refusal)
+    prepare.install_and_build()
+    for name, own in (("export_log", options), ("export_events", []), ("export_csv", [])):
+        try:
+            status = subprocess.run([BIN / name, *logs, "--out", out, *own], check=False).returncode
+        except OSError as error:
+            return prepare.refuse("export", f"{BIN / name}: {error.strerror}; run scripts/build")
+        if status != 0:
+            return status
+    return 0

@@ -1,0 +1,63 @@
+"""A page without a browser: opens the live page's WebSocket as a page does, shows what it is told, and counts.
+
+  tactus live follow URL [--watch NAME]... [--seconds S] [--json FILE]
+
+URL is what scripts/run --live prints. It watches NAMEs ("sim_node.work.collision", "TOOL_STATE:force_N.z") and takes the pictures,
+and at its end prints how many frames, values and pictures came, and how many frames the server left out because this page was slow.
+"""
+import argparse
+import asyncio
+import json
+import sys
+import time
+import urllib.parse
+
+import websockets
+
+# What the page shows when it is opened first, and the work of each sense.
+USUAL = ["TOOL_STATE:force_N.z", "TOOL_STATE:proxy.position_m.z", "THERMAL_STATE:skin_degC",
+         *(f"{node}_node.work.other" for node in ("sim", "haptic", "audio", "visual", "thermal"))]
+
+
+async def follow(url, names, seconds, counted):
+    place = urllib.parse.urlsplit(url)
+    address = f"ws://{place.netloc}/ws?{place.query}"
+    async with websockets.connect(address, origin=f"http://{place.netloc}", max_size=1 << 24) as socket:
+        end = time.monotonic() + seconds
+        await socket.send(json.dumps({"t": "watch", "names": names}))
+        while (left := end - time.monotonic()) > 0:
+            try:
+                message = await asyncio.wait_for(socket.recv(), left)
+            except asyncio.TimeoutError:
+                return
+            if isinstance(message, bytes):
+                counted["pictures"] += 1
+                continue
+            said = json.loads(message)
+            if said["t"] == "frame":
+                counted["frames"] += 1
+                counted["values"] += len(said.get("values") or [])
+                counted["dropped"] = (said.get("pages") or {}).get("dropped", counted["dropped"])
+            elif said["t"] == "reply" and not said.get("good", True):
+                print(f"follow: {said.get('text')}", file=sys.stderr)
+
+
+def main(words):
+    parser = argparse.ArgumentParser(prog="tactus live follow", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("url", metavar="URL")
+    parser.add_argument("--watch", metavar="NAME", action="append", help="a tagged variable or a field; default: what a page shows first")
+    parser.add_argument("--seconds", type=float, default=10, help="default: 10")
+    parser.add_argument("--json", metavar="FILE", help="the same, for programs")
+    options = parser.parse_args(words)
+    counted = {"frames": 0, "values": 0, "pictures": 0, "dropped": 0}
+    try:
+        asyncio.run(follow(options.url, options.watch or USUAL, options.seconds, counted))
+    except (OSError, ValueError, websockets.WebSocketException) as error:
+        # The run may end before its page; what came is told all the same.
+        print(f"follow: {options.url.split('?')[0]} does not answer any more ({error})", file=sys.stderr)
+    print("  ".join(f"{name} {value}" for name, value in counted.items()))
+    if options.json:
+        with open(options.json, "w", encoding="utf-8") as file:
+            json.dump({**counted, "seconds": options.seconds}, file, indent=2)
+    return 0 if counted["frames"] else 1
+

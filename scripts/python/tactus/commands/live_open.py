@@ -1,0 +1,19 @@
+"""Shows a log in a web page."""
+import subprocess
+import sys
+
+from tactus.commands import prepare
+from tactus.paths import BIN, SCRIPTS
+
+USAGE = """Usage: tactus live open LOG [--http-port N]
+
+Serves a web page that shows a log as the live page shows a run, with a seek bar; prints its address. Ctrl-C ends it."""
+
+
+def main(words):
+    if not words or words[0] in ("--help", "-h"):
+        return prepare.show(USAGE, asked=bool(words))
+    prepare.install_and_build("live_server")
+    if subprocess.run([SCRIPTS / "live" / "bundle"], check=False).returncode != 0:
+        sys.exit(1)
+    prepare.become([str(BIN / "live_server"), *words, "--page", str(SCRIPTS / "live" / "page" / "dist")])

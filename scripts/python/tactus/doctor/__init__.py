@@ -1,0 +1,1 @@
+"""Checks whether a machine is fit to run a cluster."""

@@ -1,0 +1,301 @@
+"""The command line of scripts/run: what may be asked for, checked before anything starts."""
+import argparse
+import csv
+import dataclasses
+import os
+import pathlib
+import time
+import xml.etree.ElementTree
+
+from tactus.launch import hands, scene, walls
+from tactus.paths import REPOSITORY, SCENES
+from tactus.refusal import Refusal
+
+SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
+PARTICIPANT = "participant"
+REMOVABLE = ("sim_node", *SENSES, "sync_node")
+LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
+LONGEST_S = 86400  # a day of log fills most disks
+RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
+WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # and the most of each: scripts/virtual_time/virtual_time_main.cpp
+PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
+
+
+@dataclasses.dataclass
+class Plan:
+    """What one run does. All paths are absolute."""
+    scene: pathlib.Path
+    shaders: pathlib.Path  # folder of the scene's own shaders, or None
+    seconds: float
+    out: pathlib.Path
+    out_is_ours: bool  # nobody named it: another name does as well
+    without: list
+    devices: dict  # of --device, by tool; "": the first tool's
+    hands: dict  # {process: tool} of the tools after the first
+    room: str  # of --room; "": none
+    walls: dict  # {process: wall}, all of its walls; the first is visual_node's
+    degrade: pathlib.Path  # profile of what is wrong on purpose, or None
+    playout: list  # options of sync_node: when each sense presents
+    window: bool
+    listen: bool
+    realtime: str
+    seed: int
+    network: str
+    port: int
+    settings: dict  # node: list of "name=value"
+    world: str = "sim_node"  # the process that says what happens: the simulation, or replay
+    replay: list = dataclasses.field(default_factory=list)  # command line of replay
+    recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: how long its files get
+    live: int = None  # port of the live page, 0: any that is free; None: there is none
+    player: bool = False  # a simulated person holds the first tool's device
+    virtual: list = None  # options of virtual_time; None: the run lasts as long as it says
+
+    def nodes(self):
+        """Names of the processes of this run; the order is that of starting."""
+        return [n for n in ("recorder", "sync_node", *self.senses(), *self.people(), self.world) if n not in self.without]
+
+    def people(self):
+        """Names of the processes that are in the place of a person."""
+        return [PARTICIPANT] if self.player else []
+
+    def senses(self):
+        """Names of the processes of all senses, those that are left out too."""
+        each = {hands.FIRST: self.hands, walls.FIRST: self.walls}
+        return [name for sense in SENSES for name in dict.fromkeys((sense, *each.get(sense, ())))]
+
+    def program(self, name):
+        """What is started under that name."""
+        return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refusal(f"{message}; see scripts/run --help")
+
+
+def parse(words, here):
+    """Plan from the command line; `here` is the caller's directory. Raises Refusal."""
+    parser = Parser(add_help=False, allow_abbrev=False, prog="run")
+    parser.add_argument("scene", nargs="?", default=str(SCENES / "dark_room.sdf"))
+    parser.add_argument("--seconds", default="20")
+    parser.add_argument("--out")
+    parser.add_argument("--without", action="append", default=[])
+    parser.add_argument("--device", action="append", default=[])
+    parser.add_argument("--room")
+    parser.add_argument("--degrade")
+    for option in PLAYOUT:
+        parser.add_argument(f"--{option}")
+    for option in RECORDING:
+        parser.add_argument("--" + option.replace("_", "-"))
+    parser.add_argument("--tags", action="append", default=[])
+    parser.add_argument("--player", action="store_true")
+    parser.add_argument("--virtual-time", action="store_true")
+    for option in WIRE:
+        parser.add_argument(f"--{option}")
+    parser.add_argument("--window", action="store_true")
+    parser.add_argument("--live")
+    parser.add_argument("--listen", action="store_true")
+    parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
+    parser.add_argument("--port", default="7667")
+    parser.add_argument("--set", action="append", default=[])
+    for word in words:
+        if any(ord(c) < 32 or ord(c) == 127 for c in word):
+            raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
+    a = parser.parse_args(with_live_port(words))
+    here = pathlib.Path(here)
+    scene_path = scene_file(here, a.scene)
+    tools = scene.tools(scene_path)
+    others = hands.processes(tools)
+    room, pictures = of_room(here, a.room)
+    several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
+    for node in a.without:
+        if node == "recorder":
+            raise Refusal("--without recorder: it cannot be left out, all results are made from what it records")
+        if node not in (*REMOVABLE, *several):
+            raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *several))}")
+    if hands.FIRST in a.without:  # the sense of touch, all of it
+        others = {}
+    if walls.FIRST in a.without:  # the sense of sight, likewise
+        pictures = {}
+    others = {process: tool for process, tool in others.items() if process not in a.without}
+    pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
+    plan = Plan(scene=scene_path, shaders=scene.shader_folder(scene_path),
+                seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
+                out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
+                devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
+                degrade=profile(here, a.degrade), playout=playout(a),
+                window=a.window, recorder=recording(a), live=live_port(a.live), listen=a.listen, realtime=a.realtime,
+                seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player)
+    if plan.player:
+        if plan.devices or hands.FIRST in plan.without:
+            raise Refusal("--player holds the first tool's device itself; leave --device and --without haptic_node away")
+        plan.devices = {"": f"external:{PARTICIPANT}"}
+    if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
+                      "--window away and look at video.mp4")
+    return plan
+
+
+def with_live_port(words):
+    """--live may stand alone: then the port is any that is free."""
+    return [part for word, following in zip(words, [*words[1:], ""])
+            for part in ((word, "0") if word == "--live" and not following.isdigit() else (word,))]
+
+
+def live_port(text):
+    return None if text is None else int(number("--live", text, 0, 65535, "", whole=True))
+
+
+def number(option, text, least, most, unit, whole=False):
+    try:
+        value = int(text) if whole else float(text)
+    except ValueError:
+        value = None
+    if value is None or not least <= value <= most:
+        kind = "a whole number" if whole else "a number"
+        raise Refusal(f"{option} {text}: give {kind} from {least} to {most} {unit}".rstrip())
+    return value
+
+
+def scene_file(here, text):
+    path = here / text
+    if not path.is_file() and not os.path.dirname(text) and (SCENES / text).is_file():
+        path = SCENES / text
+    if not path.is_file():
+        names = ", ".join(sorted(p.name for p in SCENES.glob("*.sdf"))) or "none yet"
+        raise Refusal(f"sim_node: the scene {text} is not a file; give the path of an SDF world (in {SCENES}: {names})")
+    if not os.access(path, os.R_OK):
+        raise Refusal(f"sim_node: the scene {text} cannot be read; change its permissions")
+    return path.absolute()
+
+
+def profile(here, text):
+    """The nodes themselves check what is in it."""
+    if text is None:
+        return None
+    path = here / text
+    if not path.is_file() or not os.access(path, os.R_OK):
+        raise Refusal(f"--degrade {text}: is not a file that can be read; give the path of a profile (XML)")
+    return path.absolute()
+
+
+def strangers(plan):
+    """What profile and asynchronies name that is none of this run's senses. One's own may join later; a misspelt one never will."""
+    named = {part.partition("=")[0] for word in plan.playout if word.startswith("--soa=") for part in word[len("--soa="):].split(",")}
+    try:
+        if plan.degrade is not None:
+            named |= {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
+    except (xml.etree.ElementTree.ParseError, OSError):
+        pass  # the nodes say what is wrong with it, with the line
+    except (LookupError, ValueError):
+        raise Refusal(f"--degrade {plan.degrade}: says an encoding in which it cannot be read; save it as UTF-8") from None
+    return sorted(named - {node.removesuffix("_node") for node in SENSES})
+
+
+def of_room(here, text):
+    """(room, {process: wall}) of --room."""
+    if text is None:
+        return "", {}
+    try:
+        name, names = walls.room(here, text)
+    except ValueError as error:
+        raise Refusal(f"visual_node: {error}") from None
+    return name, walls.processes(names)
+
+
+def playout(a):
+    """The options for sync_node, which checks itself what is in them."""
+    words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
+    if words and "sync_node" in a.without:
+        raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: it says when each sense "
+                      "presents; leave one away")
+    return words
+
+
+def virtual(a):
+    """The options for virtual_time; None: the run is live."""
+    given = {option: value for option in WIRE if (value := getattr(a, option.replace("-", "_"))) is not None}
+    if not a.virtual_time:
+        if given:
+            raise Refusal(f"--{next(iter(given))} is of the simulated bus, which only --virtual-time has; on a real one "
+                          "--degrade says what is wrong with a sense")
+        return None
+    for option, value in (("--window", a.window), ("--listen", a.listen), ("--live", a.live is not None), ("--room", a.room),
+                          ("--realtime require", a.realtime == "require"), ("--network host", a.network == "host"),
+                          ("--device external", any("external:" in device for device in a.device))):
+        if value:
+            raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; leave one away")
+    return [word for option, value in given.items()
+            for word in (f"--{option}", f"{number(f'--{option}', value, 0, WIRE[option], ''):g}")]
+
+
+def recording(a):
+    """The options for the recorder."""
+    bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/tools/recorder/recorder_node.cpp
+    given = {name: number("--" + name.replace("_", "-"), value, *bounds[name], "", whole=name == "keep")
+             for name in RECORDING if (value := getattr(a, name)) is not None}
+    splits = "split_mb" in given or "split_minutes" in given
+    if "keep" in given and not splits:
+        raise Refusal("--keep needs --split-mb or --split-minutes: it says how many files of the recording stay")
+    if splits and given.get("max_mb", 1e9) < 2 * given.get("split_mb", 0):
+        raise Refusal("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written")
+    words = [word for name, value in given.items() for word in ("--" + name.replace("_", "-"), f"{value:g}")]
+    return words + [word for pattern in a.tags for word in ("--tags", pattern)]
+
+
+def out_folder(here, text):
+    """Where the results go; it is not made yet."""
+    path = here / text if text else here / "out" / time.strftime("%Y-%m-%d_%H-%M-%S")
+    while not text and path.exists():
+        path = path.with_name(path.name + "+")
+    if path.exists() and not path.is_dir():
+        raise Refusal(f"recorder: --out {path} is a file; name a folder")
+    if path.is_dir() and any(path.glob("run*.lcmlog")):
+        raise Refusal(f"recorder: --out {path} already holds a run; name another folder or remove that one")
+    existing = path
+    while not existing.exists():
+        existing = existing.parent
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise Refusal(f"recorder: the folder {path} for the results cannot be written; name another with --out")
+    disk = os.statvfs(existing)
+    if disk.f_bavail * disk.f_frsize < LEAST_FREE_BYTES:
+        raise Refusal(f"recorder: the disk of {path} is full; make room there or name another with --out")
+    return path.absolute()
+
+
+def devices(words, without, tools):
+    """The nodes themselves check what the devices are."""
+    if words and hands.FIRST in without:
+        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
+    try:
+        return hands.devices(words, tools)
+    except ValueError as error:
+        raise Refusal(f"haptic_node: {error}") from None
+
+
+def settings(words, others):
+    """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check). What is said of
+    haptic_node or visual_node holds for every hand or wall; what is said of one by its own name comes last there, and so wins.
+    others: the processes beside the first of its kind."""
+    found, own = {}, {}
+    program = lambda node: next((n for n in (hands.FIRST, walls.FIRST) if node in others and node.startswith(n)), node)
+    for word in words:
+        left, equals, value = word.partition("=")
+        node, _, name = left.rpartition(".")
+        if not (equals and node and name):
+            raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
+        if node not in ("sim_node", *SENSES, *others):
+            raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
+        with open(REPOSITORY / program(node) / "settings.csv", newline="", encoding="utf-8") as file:
+            names = [row["name"] for row in csv.DictReader(file)]
+        if name not in names:
+            raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
+        if node in others:
+            own.setdefault(node, []).append(f"{name}={value}")
+            continue
+        for process in (node, *(other for other in others if program(other) == node)):
+            found.setdefault(process, []).append(f"{name}={value}")
+    return {process: found.get(process, []) + own.get(process, []) for process in {**found, **own}}

@@ -1,0 +1,250 @@
+"""The running cluster: its processes, in the order in which they start and end."""
+import contextlib
+import ctypes
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+from tactus.launch import arguments, services, walls
+from tactus.launch.arguments import SENSES
+from tactus.paths import BIN, tactus_command
+from tactus.refusal import Interrupted, Refusal
+from tactus.terminal import complain, say
+
+INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
+# Simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
+# Each group has so long to end before the next is asked: a sense that still closes its video has said all it had to say.
+WORLDS = ("sim_node", "replay")
+STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
+SCATTER_M = "0.08"  # design: the balls of the dark room stay apart from each other and from what stands there
+PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
+PATIENCE_S = 15           # to close a video on a busy machine
+CHECK_S, READ_SCENE_S = 60, 600
+PROGRESS_S = 10
+WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/tools/replay_main.cpp
+
+
+def common(plan, run_id):
+    """The words that all nodes have."""
+    return ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime, "--out", str(plan.out)]
+
+
+def commands(plan, run_id, git):
+    """{name: words} of every process of the plan."""
+    own = {
+        "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git, *plan.recorder],
+        "haptic_node": device_words(plan, ""),
+        # A run makes no noise unless it is asked to; with --listen the node finds the card.
+        "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
+        "visual_node": ["--window"] if plan.window else [],
+        "sim_node": [str(plan.scene)],
+        # Nobody plays from memory: the seed says where the balls lie.
+        arguments.PARTICIPANT: [str(plan.scene), "--device", arguments.PARTICIPANT, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
+        "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
+    }
+    own["sync_node"] = list(plan.playout)
+    for name, tool in plan.hands.items():
+        own[name] = ["--name", name, "--tool", tool, *device_words(plan, tool)]
+    for name, wall in plan.walls.items():
+        own[name] = [*own.get(name, []), *(["--name", name] if name != plan.program(name) else []), "--set", f"room={plan.room}", "--set", f"wall={wall}"]
+    if plan.shaders:
+        for name in {walls.FIRST, *plan.walls}:
+            own[name] = [*own.get(name, []), "--set", f"shader_folder={plan.shaders}"]
+    if plan.degrade:
+        for name in (*plan.senses(), *plan.people(), "sync_node"):
+            own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
+    return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
+                   *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
+
+
+def device_words(plan, tool):
+    return ["--device", plan.devices[tool]] if tool in plan.devices else []
+
+
+def names_sound_card(plan):
+    return any(s.startswith("device=") for s in plan.settings.get("audio_node", []))
+
+
+def check(words, stop):
+    """Lets every node check its options and files. Raises Refusal with the sentence of the first that objects."""
+    started = {}
+    try:
+        for name, command in words.items():
+            at = command.index("--out")
+            # A session of its own: Ctrl-C is ours to answer.
+            started[name] = subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
+                                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+                                             start_new_session=True, preexec_fn=die_with_parent)
+        said = {name: last_of_check(name, process, stop) for name, process in started.items()}
+    finally:
+        for process in started.values():
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+            process.stderr.close()
+    for name, process in started.items():
+        if process.returncode != 0:
+            raise Refusal(said[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
+    if said.get("sim_node"):
+        complain(said["sim_node"])  # warnings of the scene
+
+
+def last_of_check(name, process, stop):
+    """What the check says, once it has ended. Raises Interrupted when asked to stop."""
+    now = begin = time.monotonic()
+    at_most_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
+    while now < begin + at_most_s:
+        try:
+            said = process.communicate(timeout=0.1)[1].strip()
+            if stop.asked:
+                raise Interrupted
+            return said
+        except subprocess.TimeoutExpired:
+            now = time.monotonic()
+        if stop.asked:
+            raise Interrupted
+        if name == "sim_node" and now > next_said:
+            say(f"sim_node is still reading the scene ({now - begin:.0f} s)")
+            next_said += PROGRESS_S
+    process.kill()
+    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {at_most_s} s"
+
+
+def die_with_parent():
+    """For Popen: the child is killed when this process is, whatever kills it."""
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+
+
+class Cluster:
+    def __init__(self, plan, network, words, run_id):
+        self.plan, self.network, self.run_id = plan, network, run_id
+        self.folder = services.make_folder(plan.out)
+        self.in_use = None
+        self.holder = self.table = self.page = None
+        try:
+            self.in_use = services.hold(self.folder)
+            logs = plan.out / "logs"
+            logs.mkdir(exist_ok=True)
+            here = pathlib.Path.cwd()
+            self.services = {name: services.Service(self.folder, name, command, logs / f"{name}.log", here)
+                             for name, command in words.items()}
+        except OSError as error:
+            self.clean()
+            raise Refusal(f"supervision: cannot prepare the run in {self.folder} ({error.strerror}); make room there, or set "
+                          "TMPDIR to another folder") from None
+
+    def start(self):
+        """Supervisor, recorder and sync_node, the senses, the simulation. Raises Refusal."""
+        words = [*self.network.unshare, str(INSIDE), str(self.folder),
+                 "private" if self.network.private else "host"]
+        if not self.network.unshare:
+            # Without a process namespace runsvdir must pass the end on to all below it: that is what HUP means to it.
+            words = ["setpriv", "--pdeathsig", "HUP", *words]
+        with open(self.plan.out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
+            self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+                                           preexec_fn=die_with_parent if self.network.unshare else None)
+        for group in (("recorder", "sync_node"), (*self.plan.senses(), *self.plan.people()), (self.plan.world,)):
+            members = [self.services[name] for name in group if name in self.services]
+            for service in members:
+                if not service.start():
+                    raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
+                if not (self.folder / "address").exists():  # the supervisor is there, and so is the network: who joins finds both
+                    self.write_address()
+            if group != (self.plan.world,):  # nobody waits for the scene here
+                services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
+
+    def write_address(self):
+        """Where tactus attach finds the cluster."""
+        names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in self.network.unshare]
+        (self.folder / "address").write_text(
+            f"holder={self.holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={self.run_id}\n"
+            f"url=udpm://239.255.76.67:{self.plan.port}?ttl=0\nport={self.plan.port}\nout={self.plan.out}\n",
+            encoding="utf-8", errors="surrogateescape")
+        link = self.plan.out / "cluster"
+        link.unlink(missing_ok=True)
+        link.symlink_to(self.folder)
+
+    def show_table(self):
+        """The live table, once a second, until the end."""
+        words = [*tactus_command("attach"), str(self.plan.out), str(BIN / "watch")]
+        self.table = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
+
+    def end_table(self):
+        if self.table is not None:
+            kill_group(self.table)
+            self.table = None
+
+    def expects_world(self):
+        """False: there is no simulation, or it was left down."""
+        return self.plan.world in self.services and not self.services[self.plan.world].lost()
+
+    def world_has_begun(self):
+        world = self.plan.world
+        return world in self.services and self.services[world].has_said(WORLD_BEGINS[world])
+
+    def alive(self):
+        return self.holder is not None and self.holder.poll() is None
+
+    def lost(self):
+        """{node: why} of the nodes that could not be kept running."""
+        return {name: s.lost() for name, s in self.services.items() if s.lost()}
+
+    def taken_down(self):
+        """The nodes that somebody took away and did not bring back. To be asked before all are stopped."""
+        return [name for name, s in self.services.items() if s.is_taken_down()] if self.alive() else []
+
+    def stop(self):
+        """Ends everything in order and reaps it. Returns the nodes that had to be killed."""
+        self.end_table()
+        with contextlib.suppress(OSError):  # a full disk: deaths are counted on, no more
+            (self.folder / "stopping").touch()
+        if not self.alive():
+            return []
+        for names, grace_s in STOP_ORDER:
+            names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
+            services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
+            if names == WORLDS:
+                time.sleep(PRESENT_THE_LAST_S)
+        stubborn = services.make_end(self.services.values(), PATIENCE_S)
+        self.end_supervisor()
+        return stubborn
+
+    def end_supervisor(self):
+        for pid in children(self.holder.pid) if self.network.unshare else [self.holder.pid]:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGHUP)
+        try:
+            self.holder.wait(5)
+        except subprocess.TimeoutExpired:
+            self.holder.kill()
+            self.holder.wait()
+
+    def clean(self):
+        """Removes what only a running cluster needs."""
+        with contextlib.suppress(OSError):
+            (self.plan.out / "cluster").unlink(missing_ok=True)
+        shutil.rmtree(self.folder, ignore_errors=True)
+        if self.in_use:
+            self.in_use.close()
+
+
+def children(pid):
+    try:
+        return [int(p) for p in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()]
+    except OSError:
+        return []
+
+
+def kill_group(process):
+    try:
+        os.killpg(process.pid, signal.SIGTERM)
+        process.wait(2)
+    except ProcessLookupError:
+        process.wait()
+    except subprocess.TimeoutExpired:  # it hangs in a terminal that is held
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

@@ -1,0 +1,85 @@
+"""Orders to a running replay: keys of the terminal, or lines of a pipe on stdin, written to the named pipe that it reads."""
+import os
+import select
+import stat
+import termios
+import tty
+
+LONGEST = 65536  # what is read and not yet a whole line
+OF_KEY = {b" ": "toggle", b".": "step", b"\x1b[C": "seek +5", b"\x1b[D": "seek -5", b"0": "seek 0", b"1": "speed 1", b"m": "speed max",
+          b"\x1b[H": "seek 0"}
+SLOWEST, FASTEST = 1 / 64, 64
+
+
+class Orders:
+    """While it is open the terminal gives keys, not lines."""
+
+    def __init__(self, control):
+        self.control = control
+        self.stdin = self.before = None
+        self.speed, self.loop, self.rest = 1.0, False, b""
+
+    def __enter__(self):
+        try:
+            kind = os.fstat(0).st_mode
+            if os.isatty(0) and os.tcgetpgrp(0) == os.getpgrp():
+                self.before = termios.tcgetattr(0)
+                tty.setcbreak(0)
+                self.stdin = 0
+            elif stat.S_ISFIFO(kind):
+                self.stdin = 0
+        except (OSError, termios.error):
+            pass  # no stdin: nobody speaks
+        return self
+
+    def __exit__(self, *_):
+        if self.before is not None:
+            termios.tcsetattr(0, termios.TCSADRAIN, self.before)
+
+    def pass_on(self):
+        """Passes on what has been said since. True: it shall end."""
+        if self.stdin is None or not select.select([self.stdin], [], [], 0)[0]:
+            return False
+        read = os.read(self.stdin, 4096)
+        if not read:
+            self.stdin = None
+            return False
+        orders = self.of_keys(read) if self.before is not None else self.of_lines(read)
+        for order in orders:
+            if order == "quit":
+                return True
+            self.send(order)
+        return False
+
+    def of_keys(self, read):
+        while read:
+            key = read[:3] if read.startswith(b"\x1b[") else read[:1]
+            read = read[len(key):]
+            if key in OF_KEY:
+                self.speed = 1.0 if key == b"1" else self.speed
+                yield OF_KEY[key]
+            elif key in b"+-":
+                self.speed = min(FASTEST, max(SLOWEST, self.speed * (2 if key == b"+" else 0.5)))
+                yield f"speed {self.speed}"
+            elif key == b"l":
+                self.loop = not self.loop
+                yield f"loop {'on' if self.loop else 'off'}"
+            elif key == b"q":
+                yield "quit"
+
+    def of_lines(self, read):
+        *lines, self.rest = (self.rest + read).split(b"\n")
+        self.rest = self.rest[:LONGEST]
+        return [line.decode("utf-8", "replace").strip() for line in lines]
+
+    def send(self, order):
+        try:
+            pipe = os.open(self.control, os.O_WRONLY | os.O_NONBLOCK)
+        except OSError:
+            return  # it is not there yet, or not any more
+        try:
+            os.write(pipe, f"{order}\n".encode())
+        except OSError:
+            pass  # it has just gone, or reads no more: nobody waits for it
+        finally:
+            os.close(pipe)

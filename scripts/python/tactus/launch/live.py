@@ -1,0 +1,80 @@
+"""The live page of a running cluster (scripts/run --live): its socket is opened here, outside of the cluster's network, and
+inherited by the server inside."""
+import os
+import signal
+import socket
+import subprocess
+import time
+
+from tactus.launch.cluster import die_with_parent
+from tactus.paths import BIN, SCRIPTS, tactus_command
+from tactus.refusal import Refusal
+from tactus.terminal import say
+
+PAGE = SCRIPTS / "live" / "page" / "dist"
+ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp
+PATIENCE_S = 10
+AGAIN_S = 1  # a server that died is started again, no faster than this
+
+
+class Page:
+    def __init__(self, port):
+        """Raises Refusal when the port is taken, or there is no page."""
+        for path in (BIN / "live_server", PAGE / "main.js"):
+            if not path.is_file():
+                raise Refusal(f"--live: {path} is not there; run scripts/build live_server and scripts/live/bundle")
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        try:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self.socket.bind(("127.0.0.1", port))
+            self.socket.listen(16)
+        except OSError as error:
+            self.socket.close()
+            raise Refusal(f"--live {port}: cannot listen on this port ({error.strerror}); choose another, or leave the number "
+                          "away") from None
+        self.token = os.urandom(16).hex()
+        self.process = None
+        self.out = None
+        self.started = 0.0
+
+    def start(self, out):
+        """Inside the cluster that writes to `out`; says where the page is."""
+        self.out = out
+        self.launch()
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end and self.process.poll() is None:
+            with open(self.log(), encoding="utf-8", errors="replace") as file:
+                if ADDRESS in file.read():
+                    say(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
+                    return
+            time.sleep(0.05)
+        say(f"the live page does not start; the others go on (see {self.log()})")
+
+    def log(self):
+        return self.out / "logs" / "live_server.log"
+
+    def launch(self):
+        self.started = time.monotonic()
+        words = [*tactus_command("attach"), str(self.out), str(BIN / "live_server"), "--page", str(PAGE),
+                 "--listen-fd", str(self.socket.fileno())]
+        with open(self.log(), "a", encoding="utf-8") as log:
+            self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+                                            env={**os.environ, "TACTUS_LIVE_TOKEN": self.token},
+                                            pass_fds=(self.socket.fileno(),), preexec_fn=die_with_parent)
+
+    def keep(self):
+        """Starts it again when it died: the page finds it under the same address."""
+        if self.process is not None and self.process.poll() is not None and time.monotonic() > self.started + AGAIN_S:
+            self.launch()
+
+    def stop(self):
+        if self.process is not None and self.process.poll() is None:
+            try:
+                os.killpg(self.process.pid, signal.SIGTERM)
+                self.process.wait(2)
+            except ProcessLookupError:
+                self.process.wait()
+            except subprocess.TimeoutExpired:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+        self.socket.close()

@@ -1,0 +1,166 @@
+"""What scripts/run does once all is built: checks, starts, shows, stops, sums up."""
+import os
+import signal
+
+INTERRUPTED = 130  # as a shell names an end by Ctrl-C
+# Until there is something to stop, Ctrl-C ends this at once, also while the rest is imported.
+signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
+
+import fcntl
+import time
+
+from tactus import terminal
+from tactus.launch import arguments, cluster, equipment, hands, live, network, priority, services, virtual, walls
+from tactus.launch.results import git_commit, sum_up
+from tactus.refusal import Interrupted, Refusal, sentence_of
+from tactus.terminal import say
+
+LONGEST_LOADING_S = 600
+PROGRESS_S = 5
+
+
+class Stop:
+    """Set by Ctrl-C and its like; looked at by the loop."""
+
+    def __init__(self):
+        self.asked = False
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, self.ask)
+
+    def ask(self, *_):
+        self.asked = True
+
+
+def watch_over(running, seconds, stop):
+    """Returns when the world is so old, or earlier when asked to. A large scene takes minutes to load before the world
+    begins; a world that there will not be is not waited for. Names each node that is lost as it happens. False: the world
+    never began."""
+    now = loading_since = time.monotonic()
+    next_said = now + PROGRESS_S
+    end = None
+    named = set()
+    while not stop.asked and (end is None or now < end):
+        now = time.monotonic()
+        if end is None and (running.world_has_begun() or not running.expects_world()):
+            end = now + seconds
+            running.show_table()
+        elif end is None and now > loading_since + LONGEST_LOADING_S:
+            raise Refusal(f"sim_node: its world has not begun after {LONGEST_LOADING_S // 60} minutes; see "
+                          f"{running.plan.out}/logs/sim_node.log")
+        elif end is None and now > next_said:
+            say(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
+            next_said += PROGRESS_S
+        if running.page is not None:
+            running.page.keep()
+        if not running.alive():
+            raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
+        for name, why in running.lost().items():
+            if name not in named:
+                named.add(name)
+                say(f"{name}: {why}; the others go on ({running.services[name].last_words()})")
+        time.sleep(0.1)
+    return end is not None
+
+
+def claim_out(plan):
+    """Makes the folder of the results and keeps others out of it until the descriptor returned is closed, or this process
+    is no more: of two runs that start in the same second the later takes the next name. Raises Refusal."""
+    while True:
+        try:
+            plan.out.mkdir(parents=True, exist_ok=not plan.out_is_ours)
+            claim = os.open(plan.out, os.O_RDONLY | os.O_DIRECTORY)
+        except FileExistsError:
+            plan.out = plan.out.with_name(plan.out.name + "+")
+            continue
+        except OSError as error:
+            raise Refusal(f"recorder: the folder {plan.out} cannot be made ({error.strerror}); name another with --out") from None
+        try:
+            fcntl.flock(claim, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(claim)
+            raise Refusal(f"recorder: another run is writing to --out {plan.out}; name another folder") from None
+        except OSError:
+            pass  # a file system without locks
+        return claim
+
+
+def run(plan, watch=watch_over):
+    """One run; watch says how long it lasts, as watch_over does. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
+    if plan.virtual is not None:
+        return virtual.run(plan, Stop(), claim_out)
+    stop = Stop()
+    git = git_commit()
+    run_id = time.time_ns()
+    for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
+        if not os.access(cluster.BIN / name, os.X_OK):
+            raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
+    cluster.check(cluster.commands(plan, run_id, git), stop)
+    for name in arguments.strangers(plan):
+        say(f"{name!r} is named, which is none of this run's senses")
+    expectation = priority.expectation(plan.realtime)
+    net = network.choose(plan.network, plan.port)
+    services.remove_leftovers()
+    page = live.Page(plan.live) if plan.live is not None else None
+    claim = claim_out(plan)
+    warnings = equipment.lacking(plan)
+    running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
+    say(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
+    say(expectation)
+    for warning in warnings:
+        say(warning)
+    wrong = []
+    try:
+        running.start()
+        if page is not None:
+            running.page = page
+            page.start(plan.out)
+        if not watch(running, plan.seconds, stop):
+            wrong.append("interrupted before the world began")
+    except Refusal as refusal:
+        wrong.append(str(refusal))
+    except OSError as error:
+        wrong.append(sentence_of(error))
+    finally:
+        if page is not None:
+            page.stop()
+        taken = running.taken_down()
+        stubborn = running.stop()
+        lost = running.lost()
+        restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
+        words_of = {name: running.services[name].last_words() for name in lost}
+        running.clean()
+    wrong += [f"{name}: could not be kept running: {why} ({words_of[name]}); see {plan.out}/logs/{name}.log"
+              for name, why in lost.items()]
+    wrong += [f"{name}: did not end when asked and was killed; see {plan.out}/logs/{name}.log" for name in stubborn]
+    for name, count in restarts.items():
+        if name not in lost:
+            say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
+    for name in taken:
+        say(f"{name} was taken down and not brought back")
+    wrong += sum_up(plan, git, {*lost, *taken}, restarts, warnings)
+    say(f"results in {plan.out}")
+    os.close(claim)
+    return wrong
+
+
+def names_its_speaker(sentence):
+    speaker = sentence.split(":")[0]
+    return speaker.endswith("_node") or speaker.startswith((f"{hands.FIRST}_", f"{walls.FIRST}_")) or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
+
+
+def main(words):
+    only_arguments = words[:1] == ["--arguments-only"]
+    terminal.prepare()
+    try:
+        plan = arguments.parse(words[1:] if only_arguments else words, os.getcwd())
+        wrong = [] if only_arguments else run(plan)
+    except Refusal as refusal:
+        wrong = [str(refusal)]
+    except OSError as error:
+        wrong = [sentence_of(error)]
+    except Interrupted:
+        terminal.complain("run: interrupted; nothing was started")
+        return INTERRUPTED
+    for sentence in wrong:
+        terminal.complain(sentence if names_its_speaker(sentence) else f"run: {sentence}")
+    return 1 if wrong else 0

@@ -1,0 +1,82 @@
+"""The cluster's own network and process namespaces, or the machine's network.
+
+A private network has only a loopback interface with a multicast route: nobody else hears or disturbs it, and no setting of
+the system is changed. The namespaces die with the process that made them, and with them all that runs inside.
+"""
+import dataclasses
+import os
+import shutil
+import socket
+import struct
+import subprocess
+
+from tactus.refusal import Refusal
+
+GROUP = "239.255.76.67"  # as in lcmtypes/channels.h
+PATH = os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"  # an ordinary user's path may lack ip
+ROUTE = "ip link set lo up && ip route add 224.0.0.0/4 dev lo"
+
+
+@dataclasses.dataclass
+class Network:
+    private: bool
+    unshare: list  # command words before the program that is to run inside; empty: no namespaces
+    how: str       # for people
+
+
+def choose(wish, port):
+    """The best network that this system allows. Raises Refusal."""
+    if wish != "host":
+        for flags, how in candidates(net=True):
+            if allowed(flags, ROUTE):
+                return Network(True, flags, f"private ({how})")
+        if wish == "private":
+            raise Refusal("--network private: this system allows neither root nor users a network namespace; use --network "
+                          "host, or allow user namespaces (sysctl user.max_user_namespaces)")
+    check_host(port)
+    for flags, how in candidates(net=False):
+        if allowed(flags, "true"):
+            return Network(False, flags, f"the machine's ({how})")
+    return Network(False, [], "the machine's, without a process namespace")
+
+
+def candidates(net):
+    """Ways to make the namespaces, the best first: (command words, name)."""
+    # A user stays who he is, so that files and sound servers know him, and keeps the right to set up his own network;
+    # an older unshare can only make him root in there.
+    users = [([], "root")] if os.geteuid() == 0 else [(["--user", "--map-current-user", "--keep-caps"], "user namespace")]
+    users.append((["--user", "--map-root-user"], "user namespace"))
+    for user, how in users:
+        # A /proc of their own lets pkill and the like, run inside, see only the cluster.
+        for proc in (["--mount-proc"], ["--mount"]):
+            yield ["unshare", *user, *(["--net"] if net else []), "--pid", "--fork", "--kill-child", *proc], how
+
+
+def allowed(flags, command):
+    if not shutil.which("unshare"):
+        return False
+    # A mount that is refused leaves the status 0 in some versions, but never an empty stderr.
+    test = subprocess.run([*flags, "sh", "-c", command], env={**os.environ, "PATH": PATH}, capture_output=True, timeout=10)
+    return test.returncode == 0 and not test.stderr
+
+
+def check_host(port):
+    """Raises Refusal unless the machine's network carries multicast and both ports are free."""
+    for number in (port, port + 1):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+            try:
+                s.bind(("", number))
+            except OSError as error:
+                raise Refusal(f"network: UDP port {number} is in use ({error.strerror}), perhaps by another run; choose "
+                              "another --port, or --network private") from None
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+        s.settimeout(1)
+        try:
+            s.bind((GROUP, port))
+            s.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + struct.pack("=I", 0))
+            s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            s.sendto(b"tactus", (GROUP, port))
+            s.recv(16)
+        except OSError as error:
+            raise Refusal(f"network: multicast to {GROUP} does not come back to this machine ({error}); use --network "
+                          "private, or add a route: ip route add 224.0.0.0/4 dev lo") from None

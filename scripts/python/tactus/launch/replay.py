@@ -1,0 +1,153 @@
+"""What tactus replay does once all is built: reads what the log says of itself, then does as scripts/run, with `replay` in the
+place of the simulation."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+from tactus import terminal
+from tactus.launch import arguments, cluster, hands, keys, main as supervisor
+from tactus.refusal import Refusal, sentence_of
+from tactus.terminal import say
+
+SENSES = arguments.SENSES
+OF_REPLAY = ("speed", "start", "end", "channels", "leave_out", "also", "most")
+OVER = "replay: over"   # sync/tools/replay_main.cpp
+ENDS = "replay: ends"
+AFTERWARDS_S = 0.5      # what is heard and seen last comes a while after it was said
+LONGEST_S = arguments.LONGEST_S
+
+
+def described(log):
+    """What the log says of itself. Raises Refusal."""
+    program = cluster.BIN / "replay"
+    if not os.access(program, os.X_OK):
+        raise Refusal(f"replay: {program} is not built; run scripts/build")
+    done = subprocess.run([program, str(log), "--describe"], capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode != 0:
+        raise Refusal(done.stderr.strip().split("\n")[-1] or f"replay: cannot read {log}")
+    return json.loads(done.stdout)
+
+
+def parse(words, here):
+    """(plan, seconds it lasts at the most, whether it ends by itself). Raises Refusal."""
+    parser = arguments.Parser(add_help=False, allow_abbrev=False, prog="replay")
+    parser.error = lambda message: (_ for _ in ()).throw(Refusal(f"{message}; see tactus replay --help"))
+    parser.add_argument("log")
+    for option in (*OF_REPLAY, "out", "degrade", *arguments.PLAYOUT):
+        parser.add_argument("--" + option.replace("_", "-"))
+    for option in ("only", "without", "rename", "device", "set"):
+        parser.add_argument("--" + option, action="append", default=[])
+    for option in ("loop", "paused", "as-recorded", "verbatim", "stay", "window", "listen"):
+        parser.add_argument("--" + option, action="store_true")
+    parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
+    parser.add_argument("--seed")
+    parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
+    parser.add_argument("--port", default="7667")
+    for word in words:
+        if any(ord(c) < 32 or ord(c) == 127 for c in word):
+            raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
+    a = parser.parse_args(words)
+    here = pathlib.Path(here)
+    log = here / a.log  # of a folder replay itself takes all parts
+    says = described(log)
+    others = hands.processes(says["tools"])
+    known = (*SENSES, *others, "sync_node")
+    for node in (*a.only, *a.without):
+        if node not in known:
+            raise Refusal(f"--only or --without {node}: there is no such node in a replay; choose from {', '.join(known)}")
+    without = [*a.without]
+    if a.only:
+        wanted = {*a.only, *(name for name in others if hands.FIRST in a.only)}
+        without += [n for n in (*SENSES, *others) if n not in wanted]
+        if hands.FIRST in without and wanted & set(others):
+            raise Refusal(f"--only {', '.join(sorted(wanted & set(others)))}: the first hand is {hands.FIRST}; name it too")
+    elif hands.FIRST in without:
+        without += [*others]
+    if a.degrade and a.as_recorded:
+        raise Refusal("--degrade and --as-recorded contradict each other; leave one away")
+    others = {process: tool for process, tool in others.items() if process not in without}
+    words = [str(log), "--stay"]
+    for option in OF_REPLAY:
+        if (value := getattr(a, option)) is not None:
+            words += ["--" + option.replace("_", "-"), value]
+    words += [f"--{option.replace('_', '-')}" for option in ("loop", "paused", "as_recorded", "verbatim") if getattr(a, option)]
+    words += [word for rename in a.rename for word in ("--rename", rename)]
+    own_without = argparse_like(a, without)
+    return arguments.Plan(
+        scene=pathlib.Path(says["scene"] or log.name), shaders=None, seconds=LONGEST_S,
+        out=arguments.out_folder(here, a.out), out_is_ours=not a.out, without=without,
+        devices=arguments.devices(a.device, without, says["tools"]), hands=others, room="", walls={},
+        degrade=arguments.profile(here, a.degrade), playout=arguments.playout(own_without), window=a.window, listen=a.listen,
+        realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(says["seed"]), 0, 2**63 - 1, "", whole=True)),
+        network=a.network, port=int(arguments.number("--port", a.port, 1024, 65534, "", whole=True)),
+        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, says
+
+
+def argparse_like(a, without):
+    a.without = without
+    return a
+
+
+def watcher(control, stay):
+    """For main.run: watches a replay to its end and passes on what is said to it."""
+    def watch_over(running, _seconds, stop):
+        world = running.services["replay"]
+        begun, over_since = False, None
+        named = set()
+        with keys.Orders(control) as orders:
+            while not stop.asked:
+                if not begun and running.world_has_begun():
+                    begun = True
+                    running.show_table()
+                if orders.pass_on() or world.has_said(ENDS):
+                    break
+                over = OVER in world.last_words()
+                over_since = (over_since or time.monotonic()) if over else None
+                if over and not stay and time.monotonic() > over_since + AFTERWARDS_S:
+                    break
+                if not running.alive():
+                    raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
+                for name, why in running.lost().items():
+                    if name not in named:
+                        named.add(name)
+                        say(f"{name}: {why}; the others go on ({running.services[name].last_words()})")
+                if world.lost():
+                    break
+                time.sleep(0.05)
+        return begun
+    return watch_over
+
+
+def main(words):
+    terminal.prepare()
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-replay-"))
+    control = folder / "control"
+    try:
+        os.mkfifo(control)
+        plan, stay, says = parse(words, os.getcwd())
+        plan.replay += ["--control", str(control)]
+        if says["recovered"]:
+            say(says["recovered"])
+        plan.out.mkdir(parents=True, exist_ok=True)
+        (plan.out / "control").unlink(missing_ok=True)
+        (plan.out / "control").symlink_to(control)
+        plan.out_is_ours = False
+        wrong = supervisor.run(plan, watcher(control, stay))
+        (plan.out / "control").unlink(missing_ok=True)
+    except Refusal as refusal:
+        wrong = [str(refusal)]
+    except OSError as error:
+        wrong = [sentence_of(error)]
+    except supervisor.Interrupted:
+        terminal.complain("replay: interrupted; nothing was started")
+        return supervisor.INTERRUPTED
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    for sentence in wrong:
+        terminal.complain(sentence if supervisor.names_its_speaker(sentence) or sentence.startswith("replay:")
+                          else f"replay: {sentence}")
+    return 1 if wrong else 0

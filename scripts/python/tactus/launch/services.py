@@ -1,0 +1,179 @@
+"""Service folders for runit, and orders to the services in them.
+
+A node runs as a service: runsv starts it again when it dies. Its `finish` script notes each death and, when there are more
+than MOST_DEATHS within WINDOW_S, leaves the node down and says so in the file `lost`.
+"""
+import fcntl
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import tempfile
+import time
+
+from tactus.refusal import Refusal
+
+MOST_DEATHS = 5
+WINDOW_S = 10
+
+FINISH = """#!/bin/sh
+# {name} died with exit code $1 (-1: by signal $2); runsv starts it again when this ends.
+[ -e ../../stopping ] && exit 0
+[ -e asked ] && rm asked && exit 0
+date +%s >>deaths
+since=$(($(date +%s) - {window}))
+recent=$(awk -v since="$since" '$1 >= since' deaths | wc -l)
+[ "$recent" -le {most} ] && exit 0
+how="exit code $1"
+[ "$1" = -1 ] && how="signal $2"
+echo "left down after $recent deaths in {window} s, the last by $how" >lost
+printf d >supervise/control
+"""
+
+RUN = """#!/bin/sh
+# Appends what {name} says to its log. It dies with its supervisor.
+exec >>{log} 2>&1 </dev/null
+cd {folder} || exit 1
+exec setpriv --pdeathsig KILL -- {command}
+"""
+
+
+def make_folder(out):
+    """A new folder on a file system that has named pipes and executable files, which --out may lack."""
+    for parent in (tempfile.gettempdir(), str(out)):
+        folder = None
+        try:
+            folder = pathlib.Path(tempfile.mkdtemp(prefix=f"tactus-{os.getuid()}-", dir=parent))
+            os.mkfifo(folder / "pipe")
+            write_script(folder / "script", "#!/bin/sh\n")
+            subprocess.run([folder / "script"], check=True)
+            (folder / "services").mkdir()
+        except (OSError, subprocess.SubprocessError):
+            if folder:
+                shutil.rmtree(folder, ignore_errors=True)
+            continue
+        return folder
+    raise Refusal(f"supervision: neither {tempfile.gettempdir()} nor {out} can hold executable files and named pipes, or "
+                  "both are full; set TMPDIR to a folder that can")
+
+
+def hold(folder):
+    """Marks the folder as in use until the file returned is closed, or this process is no more. Process numbers would not
+    do: other process namespaces have others."""
+    lock = open(folder / "new", "w", encoding="ascii")
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    (folder / "new").rename(folder / "in_use")  # never there without the lock
+    return lock
+
+
+def remove_leftovers():
+    """Removes the folders of clusters whose run was killed outright."""
+    for folder in pathlib.Path(tempfile.gettempdir()).glob(f"tactus-{os.getuid()}-*"):
+        try:
+            with open(folder / "in_use", "r", encoding="ascii") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(folder, ignore_errors=True)
+        except OSError:
+            continue  # in use, or not quite made
+
+
+def write_script(path, text):
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")  # names of files are bytes
+    path.chmod(0o755)
+
+
+class Service:
+    """One node under runsv."""
+
+    def __init__(self, folder, name, command, log, working_folder):
+        self.name, self.log = name, log
+        self.path = folder / "services" / name
+        self.path.mkdir()
+        (self.path / "down").touch()  # runsv waits for our order
+        write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
+                                                   folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
+        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MOST_DEATHS))
+
+    def order(self, letter):
+        """A command of runsv(8): u, d, t, k, p, c. False when no runsv listens."""
+        try:
+            pipe = os.open(self.path / "supervise" / "control", os.O_WRONLY | os.O_NONBLOCK)
+        except OSError:
+            return False
+        with os.fdopen(pipe, "w") as control:
+            control.write(letter)
+        return True
+
+    def start(self, patience_s=5.0):
+        """True once the order is taken; runsv needs a moment to be there."""
+        return wait_until(lambda: self.order("u"), patience_s)
+
+    def is_down(self):
+        try:
+            return (self.path / "supervise" / "stat").read_text(encoding="utf-8").startswith("down")
+        except OSError:
+            return True
+
+    def is_taken_down(self):
+        """By somebody who told it to stay down; one that died is wanted up."""
+        try:
+            stat = (self.path / "supervise" / "stat").read_text(encoding="utf-8")
+        except OSError:
+            return False
+        return stat.startswith("down") and "want up" not in stat and not self.lost()
+
+    def has_spoken(self):
+        return self.log.exists() and self.log.stat().st_size > 0
+
+    def has_said(self, line):
+        try:
+            return line in self.log.read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return False
+
+    def last_words(self):
+        try:
+            lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
+        except OSError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+    def deaths(self):
+        try:
+            return len((self.path / "deaths").read_text(encoding="utf-8").split())
+        except OSError:
+            return 0
+
+    def lost(self):
+        """Why the node was left down; "": it was not."""
+        try:
+            return (self.path / "lost").read_text(encoding="utf-8").strip()
+        except OSError:
+            return ""
+
+
+def ask_to_end(services, patience_s):
+    """Asks all to end and waits for it, no longer than patience_s."""
+    for s in services:
+        s.order("d")
+    wait_until(lambda: all(s.is_down() for s in services), patience_s)
+
+
+def make_end(services, patience_s):
+    """Waits until all have ended and kills those that do not. Returns the names of these."""
+    wait_until(lambda: all(s.is_down() for s in services), patience_s)
+    stubborn = [s for s in services if not s.is_down()]
+    for s in stubborn:
+        s.order("k")
+    wait_until(lambda: all(s.is_down() for s in services), 2.0)
+    return [s.name for s in stubborn]
+
+
+def wait_until(condition, at_most_s):
+    end = time.monotonic() + at_most_s
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.02)
+    return True

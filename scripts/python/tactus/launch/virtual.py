@@ -1,0 +1,75 @@
+"""A run in virtual time: all nodes in one process, as fast as they compute."""
+import json
+import os
+import signal
+import subprocess
+import time
+
+from tactus.launch import arguments, cluster
+from tactus.launch.results import git_commit, sum_up
+from tactus.refusal import Refusal
+from tactus.terminal import complain, say
+
+POLL_S = 0.1
+PROGRAMS = ("virtual_time", "summarise", "export_csv", "export_events")
+
+
+def commands(plan, git):
+    """{name: words} of every node: those of a live run, whose number is drawn from the clock, but for what a screen shows."""
+    words = cluster.commands(plan, plan.seed + 1, git)
+    for name in words:
+        if plan.program(name) == "visual_node":
+            words[name].append("--no-pictures")
+    return words
+
+
+def run(plan, stop, claim_out):
+    """One run, in a folder that claim_out keeps others out of. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
+    for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), *PROGRAMS]:
+        if not os.access(cluster.BIN / name, os.X_OK):
+            raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
+    git = git_commit()
+    words = commands(plan, git)
+    cluster.check(words, stop)
+    for name in arguments.strangers(plan):
+        say(f"{name!r} is named, which is none of this run's senses")
+    claim = claim_out(plan)
+    for name in words:  # a run of the same second may have had its name
+        words[name][words[name].index("--out") + 1] = str(plan.out)
+    (plan.out / "logs").mkdir(exist_ok=True)
+    plan_file = plan.out / "logs" / "virtual_time.json"
+    plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
+    say(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
+    wrong = play(plan, plan_file, stop)
+    wrong += sum_up(plan, git, set(), {}, [])
+    say(f"results in {plan.out}")
+    os.close(claim)
+    return wrong
+
+
+def play(plan, plan_file, stop):
+    """Runs it and passes its progress on. Returns what went wrong."""
+    command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
+    log = plan.out / "logs" / "virtual_time.log"
+    with open(log, "w", encoding="utf-8") as said, open(log, encoding="utf-8", errors="replace") as heard:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True,
+                                   preexec_fn=cluster.die_with_parent)
+        asked = False
+        while process.poll() is None:
+            if stop.asked and not asked:
+                process.send_signal(signal.SIGTERM)
+                asked = True
+            tell(heard)
+            time.sleep(POLL_S)
+        tell(heard)
+    if process.returncode == 0:
+        return []
+    last = log.read_text(encoding="utf-8", errors="replace").strip().split("\n")[-1]
+    return [f"virtual_time: ended with status {process.returncode} ({last}); see {log}"]
+
+
+def tell(heard):
+    """What virtual_time itself says; what its nodes say is in the log."""
+    for line in heard:
+        if line.startswith("virtual_time:"):
+            complain(line.rstrip("\n"))

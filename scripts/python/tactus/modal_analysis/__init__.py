@@ -1,0 +1,1 @@
+"""Finds the modes of a struck object in a recording."""

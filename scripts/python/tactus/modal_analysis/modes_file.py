@@ -1,0 +1,67 @@
+"""Measured modes as files: a table (CSV), which a scene's material names, and the material itself (XML)."""
+import csv
+import math
+import os
+import re
+from xml.sax.saxutils import quoteattr
+
+from tactus.refusal import Refusal
+from tactus.paths import SCENES
+
+COLUMNS = ("frequency_Hz", "damping_1_s", "amplitude", "decay_frequency_Hz", "decay_damping_1_s", "agrees")
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_ .-]*")
+
+
+def number(value):
+    return f"{value:.6g}" if math.isfinite(value) else ""
+
+
+def rows_of(modes):
+    for m in modes:
+        yield [f"{m.frequency_Hz:.4f}", number(m.damping_1_s), number(m.amplitude), number(m.decay_frequency_Hz), number(m.decay_damping_1_s),
+               int(m.agrees)]
+
+
+def write_csv(path, modes):
+    try:
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            writer.writerows(rows_of(modes))
+    except OSError as e:
+        raise Refusal(f"{path} cannot be written: {e.strerror}; name another file") from e
+
+
+def builtin_materials():
+    with open(SCENES / "materials.csv", newline="", encoding="utf-8") as file:
+        return [row["name"] for row in csv.DictReader(file)]
+
+
+def write_xml(path, analysis, name, base):
+    """The material as an element for the world of a scene, and its modes beside it as NAME.modes.csv."""
+    known = builtin_materials()
+    if not NAME.fullmatch(name):
+        raise Refusal(f'a material cannot be called "{name}"; use letters, digits, dots, spaces, - and _')
+    if base is None and name not in known:
+        raise Refusal(f'"{name}" is a new material, and a sound does not tell its stiffness or friction; say which it resembles: '
+                      f"--base {'|'.join(known)}")
+    if base is not None and base not in known:
+        raise Refusal(f'there is no material "{base}"; --base is one of {", ".join(known)}')
+    table = os.path.splitext(path)[0] + ".modes.csv"
+    write_csv(table, analysis.modes)
+    law = analysis.law
+    words = [f"name={quoteattr(name)}"] + ([f"base={quoteattr(base)}"] if base else [])
+    words += [f'rayleigh_alpha="{law["rayleigh_alpha_1_s"]:.6g}"', f'rayleigh_beta="{law["rayleigh_beta_s"]:.6g}"',
+              f"modes={quoteattr(os.path.basename(table))}"]
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(f"<tactus:material {' '.join(words)}/>\n")
+    except OSError as e:
+        raise Refusal(f"{path} cannot be written: {e.strerror}; name another file") from e
+    return table
+
+
+def as_json(analysis):
+    clean = lambda x: x if not isinstance(x, float) or math.isfinite(x) else None
+    return {"rate_Hz": analysis.rate, "begins_s": analysis.begins / analysis.rate,
+            "modes": [{c: clean(getattr(m, c)) for c in COLUMNS} for m in analysis.modes], "damping": analysis.law}

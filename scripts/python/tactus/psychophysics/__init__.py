@@ -1,0 +1,1 @@
+"""Psychometric functions, fits and intervals, and the procedures that choose levels."""

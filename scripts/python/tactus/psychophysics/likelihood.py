@@ -1,0 +1,115 @@
+"""The most likely parameters of psychometric functions: many sets of answers at once, by Fisher scoring within bounds.
+
+Parameters are here always four, theta = (location q, log spread t, guess, lapse); functions.py says what they are for each function. q is the
+point at which u = `anchor`: the location m itself where that is 0, or a derived point, m + s u. Arrays: n sets of answers, k levels.
+
+The steps are those of scoring (McCullagh and Nelder 1989, section 2.5), damped as Levenberg and Marquardt do (Marquardt 1963), with parameters that
+press against a bound held there (projected Newton; Bertsekas 1982). A set is done when a step promises less than TOLERANCE of log likelihood.
+"""
+import dataclasses
+
+import numpy as np
+
+from tactus.psychophysics.functions import GUESS_PRIOR
+
+TOLERANCE = 1e-7    # of the log likelihood; intervals are of 1.9 of it, so that this does not show; design
+MOST_STEPS = 200    # design; scoring takes 5 to 30
+FLOOR = 1e-6        # of information, where a hundred trials give 1 to 1e4; design
+LEAST_P = 1e-10     # probabilities are kept so far from 0 and 1: an answer that cannot be costs 23, not infinity; design
+Q, T, GUESS, LAPSE = range(4)
+
+
+@dataclasses.dataclass
+class Answers:
+    """z (n, k): levels on the axis of the function; yes, total (n, k): counts, total 0 where a set has fewer levels."""
+    function: object
+    z: np.ndarray
+    yes: np.ndarray
+    total: np.ndarray
+
+    def rows(self, index):
+        return Answers(self.function, self.z[index], self.yes[index], self.total[index])
+
+
+def probability(function, z, theta, anchor=None):
+    """p, dp/dtheta (n, k, 4) at z (n, k) of theta (n, 4). anchor: name of a derived point that q is, or None."""
+    q, t, guess, lapse = (theta[:, i:i + 1] for i in range(4))
+    s = np.exp(t)
+    u0 = 0.0 if anchor is None else function.anchor(anchor, guess)
+    u = (z - q) / s + u0
+    core, slope = function.core.both(np.clip(u, -1e6, 1e6))
+    a, b = function.rates(guess, lapse)
+    p = np.clip(a + b * core, LEAST_P, 1 - LEAST_P)
+    by = np.empty(p.shape + (4,))
+    by[..., Q] = -b * slope / s
+    by[..., T] = -b * slope * (u - u0)
+    by[..., GUESS] = 0.0 if function.symmetric else 1 - core
+    by[..., LAPSE] = 0.5 - core if function.symmetric else -core
+    if anchor is not None and function.anchors()[anchor] is None:
+        # u0 moves with the guess rate: F(u0) = (0.75 - guess) / (1 - guess).
+        by[..., GUESS] += b * slope * -0.25 / (1 - guess) ** 2 / function.core.both(u0)[1]
+    return p, by
+
+
+def log_likelihood(answers, p):
+    """(n,) without the binomial coefficients."""
+    return (answers.yes * np.log(p) + (answers.total - answers.yes) * np.log1p(-p)).sum(axis=-1)
+
+
+def log_prior(theta, free):
+    """(n,) of Beta(1, GUESS_PRIOR) on guess rates that are fitted; lapse rates are bounded only."""
+    return np.where(free[GUESS], (GUESS_PRIOR - 1) * np.log1p(-theta[:, GUESS]), 0.0)
+
+
+def maximise(answers, start, free, low, high, anchor=None):
+    """(theta (n, 4), value (n,), done (n,)): value is log likelihood and prior at the maximum.
+
+    start (n, 4); free (4,) of bool: what is fitted, the rest stays as in start; low, high (n, 4): bounds."""
+    free = np.asarray(free, dtype=bool)
+    theta = np.where(free, np.clip(start, low, high), start)
+    n = len(theta)
+    value = np.full(n, -np.inf)
+    done = np.zeros(n, dtype=bool)
+    damping = np.full(n, 1e-3)
+    index = np.arange(n)
+    p, by = probability(answers.function, answers.z, theta, anchor)
+    value = log_likelihood(answers, p) + log_prior(theta, free)
+    some = answers
+    for _ in range(MOST_STEPS):
+        if not len(index):
+            break
+        step, gain = scoring_step(some, p, by, theta[index], free, low[index], high[index], damping[index])
+        tried = np.where(free, np.clip(theta[index] + step, low[index], high[index]), theta[index])
+        new_p, new_by = probability(some.function, some.z, tried, anchor)
+        new = log_likelihood(some, new_p) + log_prior(tried, free)
+        better = new >= value[index]
+        finished = (better & (np.abs(new - value[index]) < TOLERANCE) & (gain < 1e3 * TOLERANCE)) | (~better & (gain < TOLERANCE)) | (damping[index] > 1e12)
+        # Expected information is less than the observed where answers surprise: steps then go too far, to and fro, and are damped as well.
+        poor = new - value[index] < 0.1 * gain
+        theta[index[better]], value[index[better]] = tried[better], new[better]
+        p, by = np.where(better[:, None], new_p, p), np.where(better[:, None, None], new_by, by)
+        damping[index] = np.clip(damping[index] * np.where(~better, 10, np.where(poor, 4, 0.2)), 1e-9, 1e13)
+        done[index[finished]] = True
+        if finished.any():
+            keep = ~finished
+            index, p, by, some = index[keep], p[keep], by[keep], some.rows(keep)
+    return theta, value, done
+
+
+def scoring_step(answers, p, by, theta, free, low, high, damping):
+    """(step (n, 4), gain (n,) of log likelihood that it promises)."""
+    weight = 1 / (p * (1 - p))
+    score = np.einsum("nk,nki->ni", (answers.yes - answers.total * p) * weight, by)
+    information = np.einsum("nk,nki,nkj->nij", answers.total * weight, by, by)
+    if free[GUESS]:
+        score[:, GUESS] -= (GUESS_PRIOR - 1) / (1 - theta[:, GUESS])
+        information[:, GUESS, GUESS] += (GUESS_PRIOR - 1) / (1 - theta[:, GUESS]) ** 2
+    held = ~free | ((theta <= low) & (score <= 0)) | ((theta >= high) & (score >= 0))
+    score = np.where(held, 0.0, score)
+    information[held[:, :, None] | held[:, None, :]] = 0.0
+    diagonal = np.einsum("nii->ni", information)
+    # The floor keeps the matrix of a parameter of which the answers say nothing from being singular.
+    diagonal += np.where(held, 1.0, damping[:, None] * diagonal + FLOOR)
+    step = np.linalg.solve(information, score[..., None])[..., 0]
+    step[:, T] = np.clip(step[:, T], -1.0, 1.0)  # at most a factor of e at once
+    return step, np.einsum("ni,ni->n", step, score)

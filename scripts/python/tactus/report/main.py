@@ -1,0 +1,96 @@
+"""A report on a run, or on several beside each other: one HTML file that needs nothing else.
+
+  tactus report LOG... [--out FILE.html] [--name NAME]... [--json FILE]
+
+  LOG          run.lcmlog of a run, or its folder. Of several the first is told of, with the others laid over it
+  --out FILE   default: report.html beside the first log. The figures lie beside it, in FILE_figures, as PNG and SVG
+  --name NAME  what a log is called in the report, in the order of the logs; default: the name of its folder
+  --json FILE  the figures in it, for programs
+
+Scene and versions; contacts and what became of them; rates, missed ticks and where the time went; latency of each hop; asynchrony of
+onsets with published thresholds; events; force with the tube of what is just noticeable, position, temperature; the degradation profile
+and what it really did. The same logs give the same bytes.
+"""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+from tactus.paths import BIN
+
+
+
+def refuse(sentence):
+    sys.exit(f"report: {sentence}")
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="tactus report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("log", nargs="+", metavar="LOG")
+    parser.add_argument("--out", metavar="FILE.html")
+    parser.add_argument("--name", action="append", default=[])
+    parser.add_argument("--json", metavar="FILE")
+    options = parser.parse_args(words)
+    for log in options.log:
+        if not os.path.exists(log):
+            refuse(f"{log} is not there; give the run.lcmlog of a run, or its folder")
+    if len(options.name) > len(options.log):
+        refuse(f"{len(options.name)} names for {len(options.log)} logs; give one --name for each log at most")
+    folder = lambda log: os.path.abspath(log) if os.path.isdir(log) else os.path.dirname(os.path.abspath(log))
+    options.out = options.out or os.path.join(folder(options.log[0]), "report.html")
+    options.name += [os.path.basename(folder(log)) or log for log in options.log[len(options.name):]]
+    if len(set(options.name)) < len(options.name):
+        options.name = [f"{name} ({i + 1})" for i, name in enumerate(options.name)]
+    return options
+
+
+def tables_of(log, folder):
+    """Exports what a report needs of one log into the folder."""
+    from tactus.log import log_tables
+    os.makedirs(folder)
+    for words in ([BIN / "summarise", log, "--out", os.path.join(folder, "summary.json")],
+                  [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS],
+                  [BIN / "export_events", log, "--out", folder], [BIN / "export_csv", log, "--out", folder]):
+        if not os.access(words[0], os.X_OK):
+            refuse(f"{words[0]} is not built; call scripts/build --programs")
+        done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
+        # summarise ends with 1 also when an event was lost, which is worth a report.
+        if done.returncode != 0 and not (words[0].name == "summarise" and os.path.exists(os.path.join(folder, "summary.json"))):
+            refuse((done.stderr.strip().splitlines() or [f"{words[0].name} failed on {log}"])[-1])
+
+
+def main(words):
+    options = arguments(words)
+    try:
+        from tactus.report import figures
+        from tactus.log import log_tables
+        from tactus.report import report
+    except ImportError as error:
+        refuse(f"{error.name} is missing; run scripts/setup")
+    with tempfile.TemporaryDirectory() as folder:
+        logs = []
+        for i, (log, name) in enumerate(zip(options.log, options.name)):
+            if sys.stderr.isatty():
+                print(f"report: reading {log}", file=sys.stderr)
+            tables_of(log, os.path.join(folder, str(i)))
+            logs.append(log_tables.LogTables(os.path.join(folder, str(i)), name))
+        try:
+            gallery = figures.Gallery(os.path.splitext(options.out)[0] + "_figures")
+            made = report.Report(logs, gallery)
+            text = made.html()
+            with open(options.out + ".part", "w", encoding="utf-8") as file:
+                file.write(text)
+            os.replace(options.out + ".part", options.out)
+            if options.json:
+                with open(options.json, "w", encoding="utf-8") as file:
+                    json.dump({"logs": [{"name": log.name, "contacts": log.summary["contacts"], "nodes": log.summary["nodes"],
+                                         "asynchrony_ms": {f"{a}_{b}": {"n": len(v), "p50": float(sorted(v)[len(v) // 2])}
+                                                           for (a, b), v in log_tables.asynchronies_ms(log.presented_ns()).items()}} for log in logs],
+                               "figures": gallery.count, "tables": made.tables}, file, indent=1)
+        except OSError as error:
+            refuse(f"cannot write {error.filename or options.out} ({error.strerror}); give --out and --json files in folders that can be written")
+    print(f"report: {options.out}, {os.path.getsize(options.out) // 1000} kB, {gallery.count} figures in {gallery.folder}")
+    return 0
+

@@ -1,0 +1,98 @@
+"""Force, position and temperature over time, with the tube of what is just noticeable around the reference. HTML."""
+import numpy as np
+
+from tactus.report import figures
+from tactus.report.words import figure as number, safe
+
+# Weber fractions of force: what is just noticeable lies between them; below the floor, where nobody measured, the tube keeps
+# its width (as scripts/python/tactus/rerender/compare.py).
+JND, FLOOR_N = (0.07, 0.10), 0.5
+FORCE_SOURCES = ("Pang, Tan and Durlach 1991, Perception & Psychophysics 49(6):531-540: roughly 7 % from 2.5 to 10 N, pinch grasp, five persons",
+                 "Raghu Prasad, Purswani and Manivannan 2013, Force JND for right index finger using contra lateral force matching paradigm, ICoRD'13: "
+                 "approximately 10 % from 2 to 5 N, six persons")
+MOST_TOOLS = 4
+
+
+def beyond(reference_N, other_N, fraction):
+    """Share of the ticks with force in either in which the difference exceeds the just noticeable one. (n,3) each."""
+    size = np.linalg.norm(reference_N, axis=1)
+    felt = (size > 1e-3) | (np.linalg.norm(other_N, axis=1) > 1e-3)
+    apart = np.linalg.norm(other_N - reference_N, axis=1)
+    return float(np.mean(apart[felt] > fraction * np.maximum(size[felt], FLOOR_N))) if felt.any() else 0.0
+
+
+def resampled(hand, times_s):
+    """Force of a hand at instants of the world: that of its newest tick at or before each. NaN before the first."""
+    known = ~np.isnan(hand["time_s"])
+    order = np.argsort(hand["time_s"][known], kind="stable")
+    at, force = hand["time_s"][known][order], hand["force_N"][known][order]
+    index = np.searchsorted(at, times_s, side="right") - 1
+    out = np.full((len(times_s), 3), np.nan)
+    out[index >= 0] = force[index[index >= 0]]
+    return out
+
+
+def of_tool(report, tool, first):
+    hands = [log.hand(tool) for log in report.logs]
+    own = hands[0]
+    known = ~np.isnan(own["time_s"])
+    if not known.any():
+        return report.lacks(f"The hand of tool {tool} felt nothing of the world: no tick of it has an instant there.")
+    t, force = own["time_s"][known], own["force_N"][known]
+    size = np.linalg.norm(force, axis=1)
+    fig, (top, bottom) = figures.new(rows=2, height_in=3.5, sharex=True)
+    at, (low, high, low10, high10) = figures.stretches(t, [size - JND[0] * np.maximum(size, FLOOR_N), size + JND[0] * np.maximum(size, FLOOR_N),
+                                                           size - JND[1] * np.maximum(size, FLOOR_N), size + JND[1] * np.maximum(size, FLOOR_N)])
+    top.fill_between(at, np.maximum(low10, 0), high10, color="#f3ddd3", linewidth=0, label=f"± {JND[1] * 100:.0f} %")
+    top.fill_between(at, np.maximum(low, 0), high, color="#e8bfae", linewidth=0, label=f"± {JND[0] * 100:.0f} %")
+    top.plot(*figures.envelope(t, size), color=figures.COLOUR["haptic"], linewidth=0.8, label="force")
+    told = []
+    for i, (log, hand) in enumerate(list(zip(report.logs, hands))[1:], 1):
+        other = resampled(hand, t)
+        both = ~np.isnan(other[:, 0])
+        if not both.any():
+            continue
+        top.plot(*figures.envelope(t[both], np.linalg.norm(other[both], axis=1)), color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.7, label=log.name)
+        share = [100 * beyond(force[both], other[both], k) for k in JND]
+        told.append(f"the force of {safe(log.name)} was outside the tube of 7 % in {number(share[0])} % of the ticks with force, and outside that of 10 % in {number(share[1])} %")
+    top.set(ylabel="force, N", ylim=(0, None))
+    top.legend(ncols=6, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
+    bottom.plot(*figures.envelope(t, own["device_m"][known] * 1e3), color="#888888", linewidth=0.9, label="device")
+    bottom.plot(*figures.envelope(t, own["proxy_m"][known] * 1e3), color=figures.COLOUR["haptic"], linewidth=0.7, label="proxy")
+    bottom.set(ylabel="height, mm", xlabel="s of the world")
+    bottom.legend(ncols=2, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
+    cited = ", ".join(report.cite(source) for source in FORCE_SOURCES)
+    more = (" The world is not the same in two runs with a person in them; " + "; ".join(told) + ".") if told else ""
+    in_contact = float(np.mean(size > 1e-3)) * 100
+    return report.gallery.keep(fig, f"force_{tool}", f"Tool {safe(tool)}{' (the first)' if first else ''}: force on the hand, largest {number(size.max())} N, felt in {number(in_contact)} % of the ticks. Shaded: "
+                               f"differences from it that are not noticed, by Weber fractions of 7 and 10 % {cited}, beyond the forces of those studies too, and never narrower than at {FLOOR_N} N (our choice). Below: height of the device and of the "
+                               f"proxy that stays on the surface.{more}")
+
+
+def temperature(report):
+    warm = report.log.warmth()
+    if len(warm) < 2:
+        return report.lacks("No temperature was recorded.")
+    fig, axes = figures.new(height_in=1.9)
+    axes.plot(warm[:, 0], warm[:, 1], color=figures.COLOUR["thermal"], label="skin")
+    axes.plot(warm[:, 0], warm[:, 2], color="#999999", linewidth=0.8, label="command to the display")
+    for i, log in enumerate(report.logs[1:], 1):
+        other = log.warmth()
+        if len(other) > 1:
+            axes.plot(other[:, 0], other[:, 1], color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.8, label=f"skin, {log.name}")
+    axes.set(xlabel="s of the world", ylabel="°C")
+    axes.legend(ncols=4, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
+    return report.gallery.keep(fig, "temperature", f"Temperature of the skin by the model, {number(warm[:, 1].min(), 4)} to {number(warm[:, 1].max(), 4)} °C, and what was commanded to the display.")
+
+
+def section(report):
+    out = ["<h2>Force, position, temperature</h2>\n"]
+    tools = report.log.tools()
+    if not tools:
+        out.append(report.lacks("No hand was recorded: there is no force and no position."))
+    for i, tool in enumerate(tools[:MOST_TOOLS]):
+        out.append(of_tool(report, tool, i == 0))
+    if len(tools) > MOST_TOOLS:
+        out.append(report.lacks(f"{len(tools) - MOST_TOOLS} more tools are in the log and not drawn here."))
+    out.append(temperature(report))
+    return "".join(out)

@@ -1,0 +1,1 @@
+"""Renders a recorded run again and compares the renderings."""

@@ -1,0 +1,258 @@
+"""Renders a recorded run again, once for each degradation profile, and says what changed.
+
+  tactus rerender LOG [--degrade PROFILE.xml]... [--only SENSE]... [--out DIR] [--json FILE]
+  tactus rerender LOG --twice     the same once more: are all bytes and pixels the same?
+  tactus rerender LOG --live      against what the run left beside the log: is the log the run?
+
+  LOG          run.lcmlog of a run, or its folder: all parts of its recording. The profile that the run had is left out
+  --degrade    a profile (sync/degradation/README.md); "logged": that of the run, as it was put in force
+  --only       haptic, audio, visual or thermal; may be repeated. Without it all four
+  --out        new or empty folder (default: rerendered, beside LOG)
+  --tool       tool that the hand and the skin are those of (default: as live, the scene's first)
+  --set        SENSE:NAME=VALUE, a setting of one sense in all renderings: visual:width=320
+
+DIR/reference is the log without any profile, DIR/PROFILE that with one: audio.wav, video.mp4, haptic.csv and thermal.csv as in
+the folder of a run, presented_SENSE.csv with what became of each event, frames.csv with the hash of each frame's pixels.
+
+Columns: events presented, those that only the reference (dropped) or only this one (added) presents, how much later the others
+are; then, of each sense, what changed against the reference:
+  haptic   RMS and peak of the difference of force, the share of ticks with force in which it is beyond 7 and 10 % of the
+           reference's force (its just noticeable difference; below 0.5 N that of 0.5 N)
+  audio    shift of those onsets that stand out in the samples, the level, the share of samples that differ
+  visual   frames that differ, their CIEDE2000 in the mean and of the worst, the share of their pixels beyond 1
+  thermal  RMS and peak of the difference of the skin's temperature and of the command
+The hand is where it was in the run: what it would have done, had it felt otherwise, no log knows.
+Ends with 1 when a sense could not be rendered, with --twice when anything differs, with --live when an onset of sound is more
+than 1 ms off.
+"""
+import argparse
+import glob
+import itertools
+import json
+import os
+import sys
+import time
+
+
+from tactus.paths import BIN
+from tactus.refusal import Refusal
+from tactus.rerender import changed, live, render
+
+REFERENCE = "reference"
+MOST_APART_MS = 1.0  # onsets of sound, live and again
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="tactus rerender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("log", metavar="LOG")
+    parser.add_argument("--degrade", action="append", default=[], metavar="PROFILE.xml")
+    parser.add_argument("--only", action="append", choices=list(render.SENSES))
+    parser.add_argument("--out", metavar="DIR")
+    parser.add_argument("--tool")
+    parser.add_argument("--set", action="append", default=[], metavar="SENSE:NAME=VALUE")
+    parser.add_argument("--twice", action="store_true", help="render the reference twice and compare all bytes")
+    parser.add_argument("--live", action="store_true", help="compare with what the run itself wrote")
+    parser.add_argument("--json", metavar="FILE", help="write the tables here too")
+    options = parser.parse_args(words)
+    refuse = lambda sentence: sys.exit(f"rerender: {sentence}")
+    options.run = os.path.abspath(options.log) if os.path.isdir(options.log) else os.path.dirname(os.path.abspath(options.log))
+    if not os.path.isfile(options.log) and not (os.path.isdir(options.log) and glob.glob(os.path.join(glob.escape(options.log), "run*.lcmlog"))):
+        refuse(f"{options.log} is no log, and no folder of a run; give the run.lcmlog of a run, or its folder")
+    options.out = options.out or os.path.join(options.run, "rerendered")
+    if os.path.exists(options.out) and (not os.path.isdir(options.out) or os.listdir(options.out)):
+        refuse(f"{options.out} is there and not empty; remove it or give --out another folder")
+    options.settings = {}
+    for setting in options.set:
+        sense, colon, rest = setting.partition(":")
+        if sense not in render.SENSES or not colon or "=" not in rest:
+            refuse(f'--set {setting}: is no SENSE:NAME=VALUE with one of {", ".join(render.SENSES)}')
+        options.settings.setdefault(sense, []).append(rest)
+    options.only = [s for s in render.SENSES if s in (options.only or render.SENSES)]
+    options.profiles = named(options.degrade, refuse)
+    options.programs = str(BIN)
+    for sense in options.only:
+        if not os.access(os.path.join(options.programs, render.SENSES[sense][0]), os.X_OK):
+            refuse(f"{render.SENSES[sense][0]} is not built; call scripts/build --programs")
+    return options
+
+
+def named(files, refuse):
+    """{name of its folder: file} of the profiles; two files of one name get numbers."""
+    profiles = {}
+    for file in files:
+        if file != "logged" and not os.path.isfile(file):
+            refuse(f'--degrade {file}: is no file; give the path of a profile (XML) or "logged"')
+        stem = os.path.splitext(os.path.basename(file))[0]
+        names = itertools.chain([stem], (f"{stem}_{n}" for n in itertools.count(2)))
+        profiles[next(n for n in names if n not in profiles and n not in (REFERENCE, "again", "as_run"))] = file
+    return profiles
+
+
+class Renderings:
+    """All that are wanted, one after the other, and what the nodes said of each."""
+
+    def __init__(self, options, folders):
+        self.options, self.folders = options, folders
+        self.said, self.failed = {}, {}
+        self.terminal = sys.stderr.isatty()
+
+    def run(self):
+        todo = [(name, sense) for name in self.folders for sense in self.options.only]
+        for number, (name, sense) in enumerate(todo, 1):
+            folder = os.path.join(self.options.out, name)
+            os.makedirs(folder, exist_ok=True)
+            words = render.command(self.options.programs, sense, self.options.log, folder, self.folders[name], self.options.tool,
+                                   self.options.settings)
+            head = f"rerender: {number} of {len(todo)}: {name}, {sense}"
+            self.tell(head)
+            try:
+                self.said[name, sense] = render.render(words, lambda share, head=head: self.tell(f"{head}, {share} %", True))
+            except render.Refused as e:
+                self.failed[name, sense] = str(e)
+                print(f"\n{head}: {e}" if self.terminal else f"{head}: {e}", file=sys.stderr)
+        if self.terminal:
+            print(file=sys.stderr)
+
+    def tell(self, text, passing=False):
+        """One line that is written over on a terminal; in a file only where something begins."""
+        if self.terminal:
+            print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+        elif not passing:
+            print(text, file=sys.stderr, flush=True)
+
+    def facts(self, name, sense):
+        return render.facts(self.said[name, sense])
+
+    def done(self, name, sense):
+        return (name, sense) in self.said
+
+    def first_ns(self, *names):
+        return tuple(self.facts(name, "audio")["first_sample_ns"] for name in names)
+
+
+def compared(renderings, options):
+    """A row for each sense and profile."""
+    for sense in options.only:
+        for name in options.profiles:
+            if renderings.done(REFERENCE, sense) and renderings.done(name, sense):
+                renderings.tell(f"rerender: compares {name}, {sense}", True)
+                folders = [os.path.join(options.out, n) for n in (REFERENCE, name)]
+                first = renderings.first_ns(REFERENCE, name) if sense == "audio" else None
+                yield {"sense": sense, "profile": name, **changed.changed(sense, *folders, first), **renderings.facts(name, sense)}
+
+
+def number(value, digits=2):
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+def percent(share):
+    return f"{100 * share:.1f}"
+
+
+# Title and cell of what each sense adds to the columns of all.
+COLUMNS = {
+    "haptic": [("differs by RMS N", lambda r: number(r["difference_rms_N"], 3)), ("peak N", lambda r: number(r["difference_peak_N"])),
+               ("beyond 7 %", lambda r: percent(r["beyond_7_percent"]) + " %"), ("10 %", lambda r: percent(r["beyond_10_percent"]) + " %")],
+    "audio": [("heard later p50", lambda r: number(r["heard_shift_p50_ms"])), ("p99 ms", lambda r: number(r["heard_shift_p99_ms"])),
+              ("of", lambda r: str(r["onsets_found"])), ("level dB", lambda r: number(r["level_dB"])),
+              ("samples differ", lambda r: percent(r["samples_differ"]) + " %")],
+    "visual": [("frames differ", lambda r: f'{r["frames_differ"]} of {r["frames"]}'), ("CIEDE2000", lambda r: number(r["mean_CIEDE2000"])),
+               ("worst", lambda r: number(r["worst_CIEDE2000"])), ("pixels seen", lambda r: percent(r["pixels_seen_to_differ"]) + " %")],
+    "thermal": [("skin RMS K", lambda r: number(r["skin_rms_K"], 3)), ("peak K", lambda r: number(r["skin_peak_K"])),
+                ("command RMS K", lambda r: number(r["command_rms_K"], 3)), ("peak K", lambda r: number(r["command_peak_K"]))],
+}
+OF_ALL = [("presented", lambda r: str(r["presented"])), ("dropped", lambda r: str(r["dropped"])), ("added", lambda r: str(r["added"])),
+          ("later p50", lambda r: number(r["shift_p50_ms"])), ("p99 ms", lambda r: number(r["shift_p99_ms"]))]
+
+
+def show(head, lines):
+    """Columns as wide as what is in them, the first to the left."""
+    widths = [max(len(line[i]) for line in [head, *lines]) for i in range(len(head))]
+    for line in [head, *lines]:
+        print("  ".join(cell.ljust(w) if i == 0 else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))))
+
+
+def print_changes(rows):
+    for sense in render.SENSES:
+        mine = [r for r in rows if r["sense"] == sense]
+        columns = OF_ALL + COLUMNS[sense]
+        if mine:
+            print()
+            show([sense, *(title for title, _ in columns)], [[r["profile"], *(cell(r) for _, cell in columns)] for r in mine])
+
+
+def print_renderings(renderings, options):
+    lines = []
+    for name, sense in itertools.product(renderings.folders, options.only):
+        if renderings.done(name, sense):
+            f = renderings.facts(name, sense)
+            lines.append([f"{name}, {sense}", number(f["took_s"]), number(f["times_as_fast_as_time"], 1)])
+        else:
+            lines.append([f"{name}, {sense}", "not rendered:", renderings.failed[name, sense]])
+    show(["rendered", "in s", "times as fast as time"], lines)
+
+
+def twice(renderings, options):
+    rows = []
+    for sense in options.only:
+        if renderings.done(REFERENCE, sense) and renderings.done("again", sense):
+            rows.append({"sense": sense, **changed.same_bytes(sense, *(os.path.join(options.out, n) for n in (REFERENCE, "again")))})
+    print()
+    show(["rendered twice", "bytes", "compared", "result"],
+         [[r["sense"], str(r["bytes"]), ", ".join(r["compared"]), "differ: " + ", ".join(r["differ"]) if r["differ"] else "the same"] for r in rows])
+    return rows
+
+
+def against_live(renderings, options):
+    run, rows = options.run, []
+    for sense in options.only:
+        if renderings.done("as_run", sense):
+            first = renderings.first_ns("as_run")[0] if sense == "audio" else None
+            rows += live.against_live(sense, run, os.path.join(options.out, "as_run"), first)
+    print()
+    if not rows:
+        print(f"live: {run} holds nothing that the run itself wrote")
+        return rows
+    show(["live and again", "n", "p50", "p99", "most", "unit", "what"],
+         [[r["sense"], str(r["n"]), *(number(r[k], 4) for k in ("p50", "p99", "max")), r["unit"], r["what"] + (f' ({r["note"]})' if r["note"] else "")]
+          for r in rows])
+    return rows
+
+
+def main(words):
+    try:
+        return rerender(words)
+    except Refusal as refusal:
+        sys.exit(f"rerender: {refusal}")
+    except KeyboardInterrupt:
+        sys.exit("rerender: stopped")
+
+
+def rerender(words):
+    options = arguments(words)
+    begin = time.monotonic()
+    folders = {REFERENCE: None, **options.profiles}
+    if options.twice:
+        folders["again"] = None
+    if options.live:
+        folders["as_run"] = "logged"
+    renderings = Renderings(options, folders)
+    renderings.run()
+    result = {"log": os.path.abspath(options.log), "out": os.path.abspath(options.out), "profiles": options.profiles}
+    result["changed"] = list(compared(renderings, options))
+    if renderings.terminal:
+        print("\r\033[K", end="", file=sys.stderr)
+    print_renderings(renderings, options)
+    print_changes(result["changed"])
+    result["not_rendered"] = [{"profile": n, "sense": s, "why": why} for (n, s), why in renderings.failed.items()]
+    if options.twice:
+        result["twice"] = twice(renderings, options)
+    if options.live:
+        result["live"] = against_live(renderings, options)
+    print(f"\nrerender: results in {options.out}, after {time.monotonic() - begin:.0f} s")
+    if options.json:
+        with open(options.json, "w", encoding="utf-8") as file:
+            json.dump(result, file, indent=2)
+    late = [r for r in result.get("live", []) if r["what"].startswith("onsets") and r["n"] and r["max"] > MOST_APART_MS]
+    return 1 if renderings.failed or late or any(r["differ"] for r in result.get("twice", [])) else 0
+

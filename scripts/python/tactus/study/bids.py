@@ -1,0 +1,97 @@
+"""A participant's answers as a data set of the Brain Imaging Data Structure, version 1.8: behavioral experiments with no neural recordings.
+
+  dataset_description.json, README, participants.tsv
+  sub-P01/ses-1/beh/sub-P01_ses-1_task-STUDY_beh.tsv      the trial table
+  sub-P01/ses-1/beh/sub-P01_ses-1_task-STUDY_events.tsv   when each question was asked, or each game began
+  phenotype/questionnaire.tsv                             what was answered at the end
+
+each table with a .json that says what its columns mean. Data sets of several participants and sessions have no file name in common but those above
+sub-*, so that copying them over each other puts them together, but for the rows of participants.tsv and questionnaire.tsv.
+"""
+import datetime
+import json
+import re
+
+from tactus.study.trial_table import COLUMNS, replace, text_of
+
+VERSION = "1.8.0"
+EVENTS = {
+    "onset": {"LongName": "onset", "Description": "when the question was asked, or the game began, since the session began: from the clock of the computer, to some "
+              "hundredths of a second. When the stimulus was presented is in the log of the run", "Units": "s"},
+    "duration": {"LongName": "duration", "Description": "until the answer, or the end of the game", "Units": "s"},
+    "trial_type": {"LongName": "type of trial", "Description": "the condition"},
+    "trial": {"LongName": "trial", "Description": "number of the trial, as in the table of the trials"},
+    "observer": {"LongName": "observer", "Description": "who answered", "Levels": {"human": "a person", "simulated": "a program"}}}
+
+
+def label(text):
+    """The standard allows letters and digits in labels."""
+    return re.sub(r"[^A-Za-z0-9]", "", text) or "x"
+
+
+def described():
+    """What each column of the trial table means."""
+    found = {}
+    for name, column in COLUMNS.items():
+        entry = {"LongName": name.replace("_", " "), "Description": column.description}
+        if column.unit.startswith(("of ", "as ")):
+            entry["Description"] += f"; its unit: {column.unit.removeprefix('of ')}"
+        elif column.unit:
+            entry["Units"] = column.unit
+        if column.levels:
+            entry["Levels"] = {level: level for level in column.levels}
+        elif column.kind == "flag":
+            entry["Levels"] = {"0": "no", "1": "yes"}
+        found[name] = entry
+    return found
+
+
+def field(value):
+    """Tabs and ends of lines would be others' columns and rows."""
+    return re.sub(r"[\t\r\n]", " ", text_of(value)) or "n/a"
+
+
+def put(path, columns, rows, meaning):
+    """A table and its sidecar."""
+    replace(path.with_suffix(".tsv"), "".join("\t".join(map(field, row)) + "\n" for row in (columns, *rows)))
+    replace(path.with_suffix(".json"), json.dumps(meaning, indent=2, ensure_ascii=False) + "\n")
+
+
+def seconds_between(earlier, later):
+    return (datetime.datetime.fromisoformat(later) - datetime.datetime.fromisoformat(earlier)).total_seconds()
+
+
+def events(session, entries):
+    """Rows of EVENTS, of those whose answer says how long it took."""
+    found = []
+    for e in entries:
+        if e["kind"] != "trial" or e["missed"]:
+            continue
+        took_s = e["row"].get("response_time", e["row"].get("completion_time_s"))
+        if took_s is not None:
+            found.append((round(seconds_between(session["time_utc"], e["time_utc"]) - took_s, 3), took_s, e["condition"], e["row"].get("trial"), session["observer"]))
+    return found
+
+
+def write(folder, session, entries, rows):
+    """folder: of the data set. session: the first entry of the journal, entries: all. rows: of the trial table."""
+    number = next((row["session"] for row in rows if row.get("session") is not None), 1)
+    subject, visit, task = f"sub-{label(session['participant'])}", f"ses-{number}", f"task-{label(session['study'])}"
+    simulated = session["observer"] == "simulated"
+    head = {"Name": session["study"] + (" (observer=simulated)" if simulated else ""), "BIDSVersion": VERSION, "DatasetType": "raw", "GeneratedBy": [{"Name": "Tactus"}]}
+    replace(folder / "dataset_description.json", json.dumps(head, indent=2) + "\n")
+    replace(folder / "README", f"Answers to the study {session['study']}.\n\n" + (
+        "observer=simulated: a program answered, nobody was asked.\n" if simulated else "The participants are people; observer=human in every row.\n")
+        + "Asynchronies are those of presentation, t(b) - t(a) of a pair a,b, as they were measured (soa_achieved_ms) and asked for (soa_nominal_ms).\n")
+    put(folder / "participants", ("participant_id", "observer"), [(subject, session["observer"])],
+        {"observer": EVENTS["observer"]})
+    beh = folder / subject / visit / "beh"
+    named = f"{subject}_{visit}_{task}"
+    put(beh / f"{named}_beh", COLUMNS, [[row.get(name) for name in COLUMNS] for row in rows], {"TaskName": session["study"], **described()})
+    happened = events(session, entries)
+    if happened:
+        put(beh / f"{named}_events", EVENTS, happened, EVENTS)
+    items = {e["item"]: e["answer"] for e in entries if e["kind"] == "questionnaire"}
+    if items:
+        put(folder / "phenotype" / "questionnaire", ("participant_id", "session_id", "observer", *items), [(subject, visit, session["observer"], *items.values())],
+            {"session_id": {"Description": "the session"}, "observer": EVENTS["observer"], **{item: {"Description": f"answer to the item {item} of the study file"} for item in items}})

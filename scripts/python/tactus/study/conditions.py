@@ -1,0 +1,93 @@
+"""What is varied in a study: a condition is one thing that is degraded, at levels that a procedure chooses, or one fixed degradation."""
+import dataclasses
+
+from tactus.study import quantities
+
+SENSES = ("haptic", "audio", "visual", "thermal")
+
+
+@dataclasses.dataclass(frozen=True)
+class Factor:
+    """One sense and what is done to it, at a level in the operator's unit (quantities.OPERATORS)."""
+    modality: str
+    operator: str
+
+    @property
+    def unit(self):
+        return quantities.OPERATORS[self.operator][0]
+
+    def degrade(self, level):
+        """Element of a profile; "": this level leaves the sense as it is."""
+        return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level)
+
+    def words(self):
+        return f"{self.modality} {self.operator}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Condition:
+    """id: names it in every file. kind: asynchrony (of a pair of senses, levels in ms), factor, pair (of factors, levels are tuples), remove or
+    nothing. levels: those of the file; a performance study has one condition a level, with `fixed` set to it."""
+    id: str
+    kind: str
+    senses: tuple = ()    # asynchrony: (a, b); a level is t(b) - t(a) in ms, positive: b later
+    factors: tuple = ()   # Factors of a factor (one) or a pair (two)
+    removed: str = ""     # remove: the modality, and how: off or freeze
+    how: str = ""
+    levels: tuple = ()
+    fixed: object = None  # the level of a performance condition
+
+    def elements(self, level):
+        """Elements of the profile at this level; None: of what is varied nothing is degraded."""
+        if level is None and self.levels:
+            return []
+        if self.kind == "asynchrony":
+            later = self.senses[1] if level > 0 else self.senses[0]
+            return [] if level == 0 else [quantities.degrade(later, "delay", abs(level))]
+        if self.kind in ("factor", "pair"):
+            levels = level if self.kind == "pair" else (level,)
+            return [e for factor, l in zip(self.factors, levels) if (e := factor.degrade(l))]
+        if self.kind == "remove":
+            return [f'<degrade modality="{self.removed}" {"off" if self.how == "off" else "freeze"}="{"true" if self.how == "off" else "hold"}"/>']
+        return []
+
+    @property
+    def unit(self):
+        """Of the levels of an asynchrony or of one factor."""
+        return "ms" if self.kind == "asynchrony" else self.factors[0].unit if self.kind == "factor" else ""
+
+    def words(self, level):
+        """Condition and level for a person; those that are fixed have it in their name."""
+        if level is None or self.fixed is not None:
+            return self.id
+        if self.kind == "pair":
+            return f"{self.id} " + " + ".join(f"{quantities.written(l)}{f.unit}" for f, l in zip(self.factors, level))
+        return f"{self.id} {quantities.written(level)}{self.unit}"
+
+    def row(self, level):
+        """The columns of trial_table.py that say what was degraded."""
+        if self.kind == "asynchrony":
+            return {"pair": ",".join(self.senses), "modality_degraded": self.senses[1] if level > 0 else self.senses[0] if level < 0 else "",
+                    "operator": "delay", "level": abs(level), "unit": "ms", "soa_nominal_ms": level}
+        if self.kind in ("factor", "pair"):
+            levels = level if self.kind == "pair" else (level,)
+            names = (("modality_degraded", "operator", "level", "unit"), ("second_modality", "second_operator", "second_level", "second_unit"))
+            row = {}
+            for factor, l, columns in zip(self.factors, levels, names):
+                row.update(zip(columns, (factor.modality, factor.operator, l, factor.unit)))
+                if factor.operator == "loss":
+                    row["loss_nominal"] = l / 100
+            return row
+        if self.kind == "remove":
+            return {"modality_degraded": self.removed, "operator": self.how}
+        return {}
+
+
+def fixed_ones(condition):
+    """A condition for each level of one, as a performance study has them."""
+    if condition.kind in ("remove", "nothing"):
+        return [condition]
+    def named(level):
+        parts = [f"{f.words()} {quantities.written(l)}{f.unit}" for f, l in zip(condition.factors, level if condition.kind == "pair" else (level,))]
+        return " + ".join(parts) if parts else f"{condition.id} {quantities.written(level)}ms"
+    return [dataclasses.replace(condition, id=named(level), fixed=level, levels=(level,)) for level in condition.levels]

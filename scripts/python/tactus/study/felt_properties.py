@@ -1,0 +1,33 @@
+"""Properties that are felt, with their published just noticeable differences (just_noticeable.csv). Nothing is said here without a source."""
+import csv
+import dataclasses
+import pathlib
+
+JUST_NOTICEABLE = pathlib.Path(__file__).with_name("just_noticeable.csv")
+
+
+@dataclasses.dataclass(frozen=True)
+class JustNoticeable:
+    """The JND of a felt property: `jnd` in its unit, a share of the property where the unit is %."""
+    jnd: float
+    unit: str
+    situation: str
+    source: str
+
+    def of(self, reference):
+        return abs(reference) * self.jnd / 100 if self.unit == "%" else self.jnd
+
+
+def just_noticeable():
+    """{property: [JustNoticeable]}; the first of each is what L_appear is held against."""
+    found = {}
+    with open(JUST_NOTICEABLE, newline="", encoding="utf-8") as file:
+        for r in csv.DictReader(file):
+            found.setdefault(r["property"], []).append(JustNoticeable(float(r["jnd"]), r["unit"], r["situation"], r["source"]))
+    return found
+
+
+def property_of(text, known):
+    """The property that a question names; "" when it names none or several."""
+    named = [name for name in known if name in text.lower()]
+    return named[0] if len(named) == 1 else ""

@@ -1,0 +1,121 @@
+"""The journal in the files that people have tools for already; docs/study_formats.md describes each.
+
+  trials.csv                             long format, a row a trial (trial_table.py)
+  psignifit/CONDITION.csv                level, yes, total: n x 3, for psignifit, Palamedes and quickpsy
+  bids/                                  a data set of the Brain Imaging Data Structure (bids.py)
+  psychopy.csv                           wide format as ExperimentHandler leaves it
+  questionnaire.csv                      item, answer
+"""
+import collections
+import csv
+import io
+import pathlib
+import re
+
+from tactus.refusal import Refusal
+from tactus.study import bids, journal, trial_table
+from tactus.study.trial_table import COLUMNS, replace, text_of
+
+# What psychopy.csv has under names of PsychoPy's own.
+RENAMED = ("participant_id", "session", "trial", "study", "response", "correct", "response_time", "observer", "repeated_as", "missed", "missed_reason")
+
+
+def rows_of(entries, path=journal.NAME):
+    """Rows of the trial table, of entries of a journal. A missed trial says which one repeated it. Raises Refusal with the line of the journal."""
+    trials = [e for e in entries if e["kind"] == "trial"]
+    rows, later = [], {}
+    for entry in reversed(trials):
+        row = dict(entry["row"])
+        asked = entry["trial"], entry["question"]
+        if entry["missed"]:
+            row["repeated_as"] = later.get(asked)
+        later[asked] = row.get("trial")
+        wrong = trial_table.wrong(row)
+        if wrong:
+            raise Refusal(f"{path}:{entry['n']}: {wrong}; was it written by another version?")
+        rows.append(row)
+    return rows[::-1]
+
+
+def counted(entries):
+    """{condition: {level: [entries]}} of answers that are yes or no and whose apparatus kept its tolerance; level as commanded."""
+    found = collections.defaultdict(lambda: collections.defaultdict(list))
+    for e in entries:
+        if e["kind"] == "trial" and not e["missed"] and e["yes"] is not None and isinstance(e["level"], (int, float)):
+            found[e["condition"]][e["level"]].append(e)
+    return found
+
+
+def achieved(level, entries):
+    """The level of answers at one commanded level: the mean of the asynchronies that were measured, where each was."""
+    measured = [e["row"].get("soa_achieved_ms") for e in entries]
+    return level if None in measured or "" in measured else sum(measured) / len(measured)
+
+
+def file_names(texts):
+    """{text: name of a file}, no two alike, also where they differ in letters of either size only."""
+    names, taken = {}, set()
+    for text in texts:
+        plain = name = re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-") or "condition"
+        number = 1
+        while name.lower() in taken:
+            number += 1
+            name = f"{plain}-{number}"
+        names[text] = name
+        taken.add(name.lower())
+    return names
+
+
+def psignifit(folder, entries):
+    cells = counted(entries)
+    names = file_names(cells)
+    for condition, levels in cells.items():
+        lines = sorted((achieved(level, es), sum(bool(e["yes"]) for e in es), len(es)) for level, es in levels.items())
+        replace(folder / "psignifit" / f"{names[condition]}.csv", "\n".join(["level,yes,total"] + [",".join(map(text_of, line)) for line in lines]) + "\n")
+
+
+def table(columns, rows):
+    file = io.StringIO()
+    out = csv.writer(file)
+    out.writerow(columns)
+    out.writerows([text_of(v) for v in row] for row in rows)
+    return file.getvalue()
+
+
+def psychopy(folder, session, entries):
+    """Names of columns as PsychoPy's ExperimentHandler and TrialHandler write them: thisRepN counts repetitions of a stimulus, thisTrialN the trials
+    within a repetition, thisIndex is the stimulus' place in the list of all."""
+    answered = [e for e in entries if e["kind"] == "trial" and not e["missed"]]
+    filled = [name for name in COLUMNS if name not in RENAMED and any(e["row"].get(name) not in (None, "") for e in answered)]
+    stimuli = list(dict.fromkeys((e["condition"], str(e["level"])) for e in answered))
+    repeated, within = collections.Counter(), collections.Counter()
+    rows = []
+    for n, e in enumerate(answered):
+        stimulus = e["condition"], str(e["level"])
+        repetition = repeated[stimulus]
+        rows.append([repetition, within[repetition], n, stimuli.index(stimulus), *(e["row"].get(name) for name in filled), e["response"], e["row"].get("correct"),
+                     e["row"].get("response_time"), session["participant"], e["row"].get("session", 1), session["time_utc"], session["study"], session["observer"]])
+        repeated[stimulus] += 1
+        within[repetition] += 1
+    replace(folder / "psychopy.csv", table(["trials.thisRepN", "trials.thisTrialN", "trials.thisN", "trials.thisIndex", *filled, "key_resp.keys", "key_resp.corr",
+                                            "key_resp.rt", "participant", "session", "date", "expName", "observer"], rows))
+
+
+def questionnaire(folder, session, entries):
+    rows = [(session["participant"], session["observer"], e["item"], e["answer"]) for e in entries if e["kind"] == "questionnaire"]
+    if rows:
+        replace(folder / "questionnaire.csv", table(("participant_id", "observer", "item", "answer"), rows))
+
+
+def export(folder):
+    """Writes all of them beside the journal. Raises Refusal as the journal does."""
+    folder = pathlib.Path(folder)
+    entries = journal.read(folder)
+    if not entries:
+        return
+    session, rows = entries[0], rows_of(entries, folder / journal.NAME)
+    trial_table.write(folder / "trials.csv", rows)
+    psignifit(folder, entries)
+    bids.write(folder / "bids", session, entries, rows)
+    psychopy(folder, session, entries)
+    questionnaire(folder, session, entries)

@@ -1,0 +1,134 @@
+"""The conductor (scripts/conductor) as seen from here: orders go out, what it observes is kept, nothing is waited for longer than said."""
+import collections
+import json
+import os
+import select
+import subprocess
+import time
+
+from tactus.paths import tactus_command
+from tactus.refusal import Refusal
+
+MOST_KEPT = 512  # events, and felt samples times ten; design: a trial has a handful
+PICTURES_KEPT = 240  # 4 s at 60 Hz; design: longer than from a hit to when the eye is asked of it
+ENDS_WITHIN_S = 3
+
+
+class Lead:
+    """A conductor inside the cluster that writes to `out`. hand: (x, y, z, above) in m where it holds the device. looks: it keeps the pictures, too."""
+
+    def __init__(self, out, hand=None, looks=False):
+        words = [*tactus_command("attach"), str(out), "conductor", "--out", str(out)]
+        if hand is not None:
+            words += ["--hand", *(f"{x:g}" for x in hand[:3]), "--above", f"{hand[3]:g}"]
+        words += ["--look"] if looks else []
+        self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        os.set_blocking(self.process.stdout.fileno(), False)
+        os.set_blocking(self.process.stderr.fileno(), False)
+        self.rest, self.said = b"", b""
+        self.senses, self.senses_at_ns, self.sim_ns = {}, 0, None
+        self.events = collections.OrderedDict()     # id: event
+        self.presented = collections.OrderedDict()  # (id, modality, part): report
+        self.media = {}                             # medium: deque of (index, at_ns)
+        self.felt = collections.deque(maxlen=10 * MOST_KEPT)  # (at_ns, z_m, force_N)
+        self.pulses = collections.deque(maxlen=MOST_KEPT)      # (at_ns, force_N): a hit begins to vibrate in the hand
+        self.pictures = collections.deque(maxlen=PICTURES_KEPT)  # (at_ns, JPEG in base64)
+        self.game, self.answer, self.in_force, self.moved, self.reply, self.asked = None, None, None, False, None, None
+        self.refused = collections.deque(maxlen=16)
+
+    def order(self, **what):
+        """One order; raises Refusal when the conductor has gone."""
+        try:
+            self.process.stdin.write(json.dumps(what).encode() + b"\n")
+            self.process.stdin.flush()
+        except OSError:
+            raise Refusal(f"conductor: has ended ({self.last_words()}); is the cluster still running?") from None
+
+    def last_words(self):
+        try:
+            self.said = (self.said + (os.read(self.process.stderr.fileno(), 65536) or b""))[-4096:]
+        except OSError:
+            pass
+        return (self.said.decode(errors="replace").strip().splitlines() or ["it said nothing"])[-1]
+
+    def pump(self, at_most_s):
+        """Takes in what has come, waiting for it no longer than that. Raises Refusal when the conductor has gone."""
+        ready, _, _ = select.select([self.process.stdout], [], [], at_most_s)
+        if not ready:
+            return
+        data = os.read(self.process.stdout.fileno(), 1 << 20)
+        if not data:
+            raise Refusal(f"conductor: has ended ({self.last_words()}); is the cluster still running?")
+        *lines, self.rest = (self.rest + data).split(b"\n")
+        for line in lines:
+            self.take(json.loads(line))
+
+    def take(self, line):
+        if "in_force" in line:
+            self.in_force = line
+        elif "senses" in line:
+            self.senses, self.senses_at_ns, self.sim_ns = line["senses"], line["at_ns"], line.get("sim_ns")
+        elif "event" in line:
+            keep(self.events, line["event"], line)
+        elif "presented" in line:
+            keep(self.presented, (line["presented"], line["modality"], line["part"]), line)
+        elif "medium" in line:
+            self.media.setdefault(line["medium"], collections.deque(maxlen=64)).append((line["index"], line["at_ns"]))
+        elif "felt" in line:
+            self.felt.append((line["felt"]["at_ns"], line["felt"]["z_m"], line["felt"]["force_N"]))
+        elif "pulse" in line:
+            self.pulses.append((line["pulse"]["at_ns"], line["pulse"]["force_N"]))
+        elif "picture" in line:
+            if line["at_ns"] is not None:
+                self.pictures.append((line["at_ns"], line["jpeg"]))
+        elif "refused" in line:
+            self.refused.append(line["refused"])
+        elif "moved" in line:
+            self.moved = True
+        else:
+            for name in ("game", "reply"):
+                if name in line:
+                    setattr(self, name, line[name])
+            if "answer" in line:
+                self.answer = line
+            if "asked" in line:
+                self.asked = line
+
+    def wait_for(self, condition, at_most_s):
+        """Whether condition() came true in time; a refused order ends the wait with a Refusal."""
+        end = time.monotonic() + at_most_s
+        while not condition():
+            left = end - time.monotonic()
+            if left <= 0:
+                return False
+            self.pump(min(left, 0.1))
+            if self.refused:
+                raise Refusal(f"conductor: {self.refused.popleft()}")
+        return True
+
+    def put_in_force(self, profile, at_most_s):
+        """Whether every sense has the profile; if so self.in_force says since when in the time of the world."""
+        self.in_force = None
+        self.order(profile=profile)
+        return self.wait_for(lambda: self.in_force is not None, at_most_s)
+
+    def missing(self):
+        """Nodes that have not the profile."""
+        return sorted(name for name, s in self.senses.items() if not s["in_force"])
+
+    def end(self):
+        try:
+            self.order(end=True)
+        except Refusal:
+            pass
+        try:
+            self.process.wait(ENDS_WITHIN_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+def keep(store, key, value):
+    store[key] = value
+    while len(store) > MOST_KEPT:
+        store.popitem(last=False)

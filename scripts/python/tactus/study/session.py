@@ -1,0 +1,284 @@
+"""One session: trial after trial, each in the journal before the next begins."""
+import contextlib
+import hashlib
+import json
+import pathlib
+import shutil
+import signal
+import time
+
+from tactus.refusal import Refusal
+from tactus.study import asking, formats, games, stimuli
+from tactus.study.cluster_words import cluster_words, sees
+from tactus.study.journal import Journal
+from tactus.study.lead import Lead
+from tactus.study.live_cluster import LiveCluster
+from tactus.study.plan import Plan
+from tactus.study.simulated import Participant
+from tactus.study.study_file import YES_OR_NO
+from tactus.terminal import tell
+
+TASKS = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "rating": "rating", "matching": "matching", "performance": "game"}
+ESTIMATE_EVERY = 10  # trials: a fit takes a tenth of a second
+STUCK_AFTER = 10     # trials in a row that were missed: the apparatus is not fit for the study (design)
+
+
+def folder_of(study, options):
+    name = options.participant if options.session == 1 else f"{options.participant}_session{options.session}"
+    return pathlib.Path(options.out).absolute() / study.name / name
+
+
+def resume(plan, answered):
+    """The plan as it was after these answers. Raises Refusal when they are not of this plan."""
+    for entry in answered:
+        trial = plan.next()
+        level = list(trial.level) if trial is not None and isinstance(trial.level, tuple) else getattr(trial, "level", None)
+        if trial is None or (trial.number, trial.condition.id, level) != (entry["trial"], entry["condition"], entry["level"]):
+            raise Refusal(f"the journal's trial {entry['trial']} ({entry['condition']} at {entry['level']}) is not the one of this plan; was it written by another version?")
+        plan.answered(trial, entry["yes"])
+
+
+def lead(study, options):
+    """Exit status."""
+    signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
+    folder = folder_of(study, options)
+    plan = Plan(study, options.participant, options.seed)
+    observer = "simulated" if options.simulated else "human"
+    with Journal(folder) as journal:
+        resumed = journal.begin(study=study.name, study_sha256=study.sha256, participant=options.participant, seed=plan.seed, observer=observer)
+        with contextlib.suppress(shutil.SameFileError):  # it goes on with the copy itself
+            shutil.copyfile(study.path, folder / "study.xml")
+        if journal.repaired:
+            tell(f"study: {journal.repaired}")
+        resume(plan, journal.answered())
+        for line in plan.describe():
+            tell(line)
+        if journal.ended:
+            formats.export(folder)  # it may have been killed before it could
+            tell(f"study: this session has ended, after {plan.done} trials; analyse it: tactus study analyse {folder}")
+            return 0
+        if resumed:
+            tell(f"study: goes on after {plan.done} of {plan.expected_trials} trials")
+        s = Session(study, options, plan, journal, folder, observer)
+        try:
+            s.run()
+        finally:
+            s.end()
+            formats.export(folder)
+        tell(s.summary())
+        if options.json:
+            pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2) + "\n", encoding="utf-8")
+    return 0
+
+
+class Session:
+    def __init__(self, study, options, plan, journal, folder, observer):
+        self.study, self.options, self.plan, self.journal, self.folder, self.observer = study, options, plan, journal, folder, observer
+        self.cluster = self.lead = self.participant = None
+        self.began, self.led = time.monotonic(), 0
+        self.trials_began = self.began  # the cluster was started and instructions were read before
+        self.errors_ms, self.missed = [], 0
+
+    # The cluster, and who leads it.
+
+    def start(self):
+        runs = self.folder / "runs"
+        runs.mkdir(exist_ok=True)
+        number = 1 + max((int(p.name[3:]) for p in runs.glob("run[0-9]*") if p.is_dir() and p.name[3:].isdigit()), default=0)
+        out = runs / f"run{number}"
+        tell(f"study: starts the cluster, results in {out}")
+        self.cluster = LiveCluster(out, cluster_words(self.study, self.options))
+        self.cluster.wait_until_it_runs()
+        if self.options.live is not None:
+            page = self.cluster.page()
+            if page is None and not (self.options.window or self.options.simulated):
+                raise Refusal(f"the live page does not start, so that nobody could be asked; see {out}/logs/live_server.log")
+            if page is not None:
+                tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
+                tell(f"study: yours, to look on, is {page}")
+        s = self.study.stimulus
+        self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
+        if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
+            raise Refusal(f"the senses are not ready after a minute; see {out}/logs")
+        if self.options.simulated:
+            self.participant = Participant(self.study, self.options.participant, self.plan.seed, out, self.lead)
+
+    def end(self):
+        if self.lead is not None:
+            self.lead.end()
+        if self.cluster is not None:
+            self.cluster.end()
+
+    # What the participant is asked.
+
+    def ask(self, question, trial=None):
+        """The answer, however long it takes."""
+        progress = f"{self.plan.done} of {self.plan.expected_trials} done"
+        self.lead.answer = self.lead.asked = None
+        self.lead.order(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": trial.condition.id[:64] if trial else ""})
+        while not self.lead.wait_for(lambda: self.lead.answer is not None or (self.participant and self.lead.asked is not None), 1):
+            self.cluster.check()
+        return self.lead.answer
+
+    def answered(self, **answer):
+        """Of a simulated participant, who presses a key like any other."""
+        self.lead.order(answer=answer)
+        if not self.lead.wait_for(lambda: self.lead.answer is not None, 5):
+            raise Refusal("conductor: did not take the answer of the simulated participant; see its lines in the log of the run")
+        return self.lead.answer
+
+    def read(self, text):
+        if self.participant is None:
+            self.ask({"kind": "read", "text": text})
+
+    # The session.
+
+    def run(self):
+        if self.study.task == "game" and self.options.simulated:
+            return self.run_trials(games.play_anew)
+        self.start()
+        for text in self.study.instructions:
+            self.read(text)
+        self.run_trials({"tap": stimuli.tap, "press": stimuli.press, "game": games.play}[self.study.task])
+
+    def run_trials(self, stimulus):
+        block = self.plan.block_of(self.plan.done) if self.plan.done else None
+        in_a_row = 0
+        self.trials_began = time.monotonic()
+        while (trial := self.plan.next()) is not None:
+            if self.options.most is not None and self.led >= self.options.most:
+                return
+            if block is not None and trial.block != block:
+                self.pause(trial)
+            block = trial.block
+            attempt = 1 + sum(e["kind"] == "trial" and e["trial"] == trial.number for e in self.journal.entries)
+            observed = stimulus(self, trial, attempt) if self.study.task == "game" else stimulus(self.lead, self.study, trial, self.plan.draw(f"foreperiod {trial.number} {attempt}"))
+            if self.study.task != "game":
+                self.cluster.check()
+            answer = None
+            # The last attempt counts however it went: the participant cannot mend the apparatus, and it is marked.
+            if not observed.missed:
+                answer = self.answer(trial, attempt, observed)
+            self.keep(trial, attempt, observed, answer)
+            in_a_row = in_a_row + 1 if observed.missed else 0
+            if in_a_row >= STUCK_AFTER or attempt > self.study.repeats and observed.missed:
+                raise Refusal(f"trial {trial.number} ({trial.condition.id} at {trial.level}) was missed {attempt} times ({observed.missed}); the apparatus is not fit for "
+                              "this study: see the summary of its run, and resume with the same command")
+            self.led += not observed.missed
+        self.questionnaire(self.study.blocks)
+        self.journal.append({"kind": "end"})
+        if self.lead is not None:
+            self.read("That was the last one. Thank you!")  # all is kept: whoever does not press a key any more loses nothing
+
+    def answer(self, trial, attempt, observed):
+        if self.study.task == "game":
+            return {"choice": -1, "number": 0, "after_s": None, "by": "play"}
+        question = asking.words(self.study, trial)
+        if self.participant is None:
+            return self.ask(question, trial)
+        level = trial.level
+        if trial.condition.kind == "asynchrony":
+            level, observed.missed = self.participant.perceived_ms(observed)
+            observed.sensed_ms = level
+            if observed.missed:
+                return None
+        self.ask(question, trial)
+        if self.study.response in YES_OR_NO:
+            yes = self.participant.says_yes(trial, attempt, level, observed)
+            return self.answered(choice=asking.choice_of(self.study, trial, yes))
+        return self.answered(number=self.study.number[0]) if self.study.number else self.answered(choice=0)
+
+    def keep(self, trial, attempt, observed, answer):
+        """The trial goes into the journal, and is told."""
+        profile = self.study.profile(trial.condition, trial.level)
+        presented = 1 + sum(e["kind"] == "trial" for e in self.journal.entries)
+        row = {"participant_id": self.options.participant, "session": self.options.session, "block": trial.block, "trial": presented, "task": TASKS[self.study.response],
+               "study": self.study.name, "condition": trial.condition.id, "observer": self.observer, "seed": self.plan.seed, "d_base_ms": self.study.base_delay_ms,
+               "profile_sha256": hashlib.sha256(profile.encode()).hexdigest(), "question": asking.words(self.study, trial)["text"], "missed": int(bool(observed.missed)),
+               "missed_reason": observed.missed, **trial.condition.row(trial.level), **observed.row}
+        if self.cluster is not None:
+            row["log_file"] = str((self.cluster.out / "run.lcmlog").relative_to(self.folder))
+        if observed.soa_ms is not None:
+            row.update(soa_achieved_ms=round(observed.soa_ms, 4), soa_uncertainty_ms=round(observed.uncertainty_ms, 4))
+        response, yes = "", None
+        if answer is not None:
+            if self.study.task != "game":
+                response, yes, more = asking.meaning(self.study, trial, answer)
+                row.update(more, response_time=round(answer["after_s"], 4))
+            row["response"] = response
+        if observed.reached_N is not None:
+            row["peak_force_n"] = round(observed.reached_N, 4)
+        entry = {"kind": "trial", "trial": trial.number, "attempt": attempt, "block": trial.block, "condition": trial.condition.id, "question": self.study.response,
+                 "level": list(trial.level) if isinstance(trial.level, tuple) else trial.level, "response": response, "yes": yes, "missed": observed.missed,
+                 "by": answer["by"] if answer else "", "row": row}
+        for name, value in (("sensed_ms", observed.sensed_ms), ("event", observed.event or None), ("stiffnesses_N_m", observed.stiffnesses_N_m or None)):
+            if value is not None:
+                entry[name] = value
+        self.journal.append(entry)
+        if observed.missed:
+            self.missed += 1
+        else:
+            self.plan.answered(trial, yes)
+            if observed.soa_ms is not None:
+                self.errors_ms.append(observed.soa_ms - trial.level)
+        self.tell(trial, observed, response)
+
+    def tell(self, trial, observed, response):
+        done, expected = self.plan.done, self.plan.expected_trials
+        left_s = (time.monotonic() - self.trials_began) / max(1, self.led + 1) * max(0, expected - done)
+        words = f"trial {trial.number:4d} of {expected}  {trial.condition.words(trial.level)}"
+        if observed.soa_ms is not None:
+            words += f": {observed.soa_ms:.1f} +-{observed.uncertainty_ms:.1f} ms"
+        words += f"  {observed.missed or response or observed.words()}  {left_s / 60:.0f} min left"
+        if self.lead is not None and self.lead.senses:
+            slow = [f"{n} {s['rate_Hz']:.0f}/{s['nominal_rate_Hz']:.0f} Hz" for n, s in self.lead.senses.items() if s["rate_Hz"] < 0.98 * s["nominal_rate_Hz"]]
+            words += f"  slow: {', '.join(slow)}" if slow else ""
+        tell(words)
+        if done and done % ESTIMATE_EVERY == 0:
+            if self.lead is not None and self.lead.senses:
+                tell("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.lead.senses.items())))
+            for name, estimate in self.plan.estimates().items():
+                if estimate:
+                    tell(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
+
+    def pause(self, trial):
+        if any(e["kind"] == "break" and e.get("before") == trial.number for e in self.journal.entries):
+            return
+        formats.export(self.folder)
+        if self.study.questionnaire_at == "block":
+            self.questionnaire(trial.block - 1)
+        if self.participant is None and self.lead is not None:
+            since = time.monotonic()
+            self.ask({"kind": "read", "text": f"Block {trial.block - 1} of {self.study.blocks} is done. Take a break of {self.study.break_s:.0f} s or longer; go on when you are ready."})
+            left_s = self.study.break_s - (time.monotonic() - since)
+            if left_s > 0:
+                self.lead.wait_for(lambda: False, left_s)
+        self.journal.append({"kind": "break", "before": trial.number})
+
+    def questionnaire(self, block):
+        """Asked once, at the end; or at the end of each block, then ITEM_blockN in the journal."""
+        if self.lead is None:
+            return
+        known = {e["item"] for e in self.journal.entries if e["kind"] == "questionnaire"}
+        for item in self.study.questionnaire:
+            name = item.id if self.study.questionnaire_at == "end" else f"{item.id}_block{block}"
+            if name in known:
+                continue
+            if self.participant is not None:
+                continue  # it feels nothing that it could be asked about
+            answer = self.ask(asking.of_item(item))
+            self.journal.append({"kind": "questionnaire", "item": name, "answer": answer["number"] if item.step else item.choices[answer["choice"]]})
+
+    def figures(self):
+        e = sorted(abs(x) for x in self.errors_ms)
+        at = lambda share: e[min(len(e) - 1, int(share * len(e)))] if e else None
+        return {"study": self.study.name, "participant": self.options.participant, "observer": self.observer, "trials": self.plan.done, "expected": self.plan.expected_trials,
+                "missed": self.missed, "asynchrony_error_p50_ms": at(0.5), "asynchrony_error_p95_ms": at(0.95), "seconds": round(time.monotonic() - self.began, 1),
+                "estimates": self.plan.estimates() if self.plan.done else {}}
+
+    def summary(self):
+        f = self.figures()
+        words = f"study: {f['trials']} of {f['expected']} trials are done, {f['missed']} were missed and repeated in this run"
+        if self.errors_ms:
+            words += f"; asynchrony was off by {f['asynchrony_error_p50_ms']:.2f} ms (median), {f['asynchrony_error_p95_ms']:.2f} ms (95 %)"
+        return words + f"; in {self.folder}"

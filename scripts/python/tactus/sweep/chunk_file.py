@@ -1,0 +1,63 @@
+"""The rows of one chunk of games: a file that only grows, line by line, so that whoever dies loses nothing that was played."""
+import csv
+import fcntl
+import io
+import os
+
+from tactus.study import trial_table
+
+
+class Busy(Exception):
+    """Another process plays this chunk."""
+
+
+class ChunkFile:
+    """Holds the file for as long as it lives. Raises Busy, OSError."""
+
+    def __init__(self, path):
+        self.file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+        try:
+            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(self.file)
+            raise Busy from None
+        whole = whole_lines(os.pread(self.file, os.fstat(self.file).st_size, 0))
+        os.ftruncate(self.file, len(whole))  # of a line that was being written when its writer died nothing is kept
+        if not whole:
+            os.write(self.file, line(trial_table.COLUMNS))
+        self.done = {int(r["trial"]) for r in rows(whole)}
+
+    def append(self, row):
+        sentence = trial_table.wrong(row)
+        if sentence:
+            raise ValueError(sentence)
+        whole = line([trial_table.text_of(row.get(name)) for name in trial_table.COLUMNS])
+        if os.write(self.file, whole) != len(whole):
+            raise OSError(28, "No space left on device")
+        self.done.add(row["trial"])
+
+    def close(self):
+        os.close(self.file)
+
+
+def line(fields):
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\r\n").writerow(fields)
+    return text.getvalue().encode()
+
+
+def whole_lines(data):
+    """Up to the end of the last line that has one. No field of ours holds a line break: what is told in words is one line."""
+    return data[:data.rfind(b"\r\n") + 2] if b"\r\n" in data else b""
+
+
+def rows(data):
+    return list(csv.DictReader(io.StringIO(data.decode(), newline="")))
+
+
+def count(path):
+    """Games that a chunk's file holds, also while it grows."""
+    try:
+        return max(0, whole_lines(path.read_bytes()).count(b"\r\n") - 1)
+    except FileNotFoundError:
+        return 0

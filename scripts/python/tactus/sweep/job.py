@@ -1,0 +1,52 @@
+"""Plays chunks of games of a sweep: what each job of GNU parallel and each task of a Slurm array runs.
+
+    tactus --module tactus.sweep.job FOLDER CHUNK...                     those
+    tactus --module tactus.sweep.job FOLDER --of-array LIST.txt          every SLURM_ARRAY_TASK_COUNT-th line of the list, from SLURM_ARRAY_TASK_ID on
+
+What was played before is not played again. One process of bin/play_games plays all games of a chunk.
+"""
+import os
+import pathlib
+import sys
+
+from tactus.refusal import Refusal
+from tactus.sweep import virtual_games
+from tactus.sweep.chunk_file import Busy, ChunkFile
+from tactus.sweep.player import Player
+from tactus.sweep.sweep_folder import SweepFolder
+
+
+def play(folder, number):
+    """The games of a chunk that are not there yet. Raises Refusal, OSError."""
+    try:
+        file = ChunkFile(folder.file(number))
+    except Busy:
+        return
+    try:
+        with Player(folder.study.scene) as player:
+            for game in (g for g in folder.chunks[number] if g.number not in file.done):
+                file.append(virtual_games.row(folder.study, game, player.told(virtual_games.asked(folder.study, game))))
+    finally:
+        file.close()
+
+
+def chunks_of(words):
+    if words[:1] != ["--of-array"]:
+        return [int(w) for w in words]
+    listed = pathlib.Path(words[1]).read_text(encoding="utf-8").split()
+    first, step = int(os.environ["SLURM_ARRAY_TASK_ID"]), int(os.environ["SLURM_ARRAY_TASK_COUNT"])
+    return [int(w) for w in listed[first::step]]
+
+
+def main(words):
+    if not words or words[0] in ("-h", "--help"):
+        print(__doc__)
+        return 0
+    try:
+        folder = SweepFolder(words[0])
+        for number in chunks_of(words[1:]):
+            play(folder, number)
+        return 0
+    except (Refusal, OSError, ValueError) as error:
+        print(f"sweep job: {error}", file=sys.stderr)
+        return 1

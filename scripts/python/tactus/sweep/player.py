@@ -1,0 +1,46 @@
+"""One process of bin/play_games, which plays games of a scene one after the other."""
+import json
+import subprocess
+import tempfile
+
+from tactus.paths import BIN
+from tactus.refusal import Refusal
+
+PROGRAM = BIN / "play_games"
+
+
+class Player:
+    """With its process, for as long as the block lasts. Raises Refusal."""
+
+    def __init__(self, scene):
+        self.scene = scene
+
+    def __enter__(self):
+        self.scratch = tempfile.TemporaryDirectory(prefix="games-")
+        try:
+            self.process = subprocess.Popen([str(PROGRAM), str(self.scene), "--out", self.scratch.name], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                            stderr=subprocess.PIPE, text=True)
+        except OSError as error:
+            self.scratch.cleanup()
+            raise Refusal(f"{PROGRAM}: cannot be run ({error.strerror}); run scripts/build") from None
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.stdin.close()
+            self.process.wait()
+        self.scratch.cleanup()
+
+    def told(self, asked):
+        """What it tells of a game, from what it is asked; scripts/virtual_time/README.md says both. Raises Refusal when it has left."""
+        try:
+            self.process.stdin.write(json.dumps(asked) + "\n")
+            self.process.stdin.flush()
+            line = self.process.stdout.readline()
+            if not line:
+                raise BrokenPipeError
+        except BrokenPipeError:
+            self.process.kill()
+            said = (self.process.communicate()[1].strip().splitlines() or ["it says nothing"])[-1]
+            raise Refusal(f"play_games has left before game {asked['game']}: {said}") from None
+        return json.loads(line)

@@ -1,0 +1,73 @@
+"""The folder of a sweep: the study as it was when the sweep began, what was asked for, a file for each chunk of games, the table."""
+import fcntl
+import hashlib
+import json
+import os
+import pathlib
+
+from tactus.refusal import Refusal
+from tactus.study import study_file, trial_table
+from tactus.sweep import chunk_file
+from tactus.sweep.virtual_games import games_of
+
+
+class SweepFolder:
+    """path: of an existing sweep. Raises Refusal when it is none."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        try:
+            self.asked = json.loads((self.path / "sweep.json").read_text(encoding="utf-8"))
+            self.games_each, study = int(self.asked["games"]), str(self.asked["study"])
+        except (OSError, ValueError, KeyError, TypeError):
+            raise Refusal(f"{self.path}: holds no sweep that could be gone on with; leave --resume away, with a new --out") from None
+        self.study = study_file.read(study)
+        for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
+            if sha256 != self.asked.get(name):
+                raise Refusal(f"{file}: has changed since this sweep began, and so would its games; begin anew with another --out")
+        self.chunks = games_of(self.study, self.games_each)
+        (self.path / "chunks").mkdir(exist_ok=True)
+        trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for whoever reads the table elsewhere
+
+    @staticmethod
+    def begin(path, study, games):
+        """A new one. Raises Refusal when something is there already."""
+        path = pathlib.Path(path)
+        if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            raise Refusal(f"{path}: is there already; add --resume to go on with that sweep, or choose another --out")
+        path.mkdir(parents=True, exist_ok=True)
+        trial_table.replace(path / "sweep.json", json.dumps(
+            {"study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study)}, indent=1) + "\n")
+        return SweepFolder(path)
+
+    def hold(self):
+        """Keeps others from leading this sweep at the same time, until the process ends. Raises Refusal."""
+        self.lock = os.open(self.path, os.O_RDONLY)
+        try:
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Refusal(f"{self.path}: another tactus study sweep is at work there; wait for it, or stop it") from None
+
+    def file(self, number):
+        return self.path / "chunks" / f"{number:05}.csv"
+
+    def unfinished(self):
+        """Numbers of the chunks that lack games."""
+        return [i for i, chunk in enumerate(self.chunks) if chunk_file.count(self.file(i)) < len(chunk)]
+
+    def done(self):
+        """Games that have been played, and of how many."""
+        return sum(chunk_file.count(self.file(i)) for i in range(len(self.chunks))), sum(len(c) for c in self.chunks)
+
+    def merge(self):
+        """Writes games.csv from all chunks. Returns its rows."""
+        rows = []
+        for i in range(len(self.chunks)):
+            if self.file(i).exists():
+                rows += trial_table.read(self.file(i))
+        trial_table.write(self.path / "games.csv", rows)
+        return rows
+
+
+def scene_sha256(study):
+    return hashlib.sha256(pathlib.Path(study.scene).read_bytes()).hexdigest()

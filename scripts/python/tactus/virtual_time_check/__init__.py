@@ -1,0 +1,1 @@
+"""Compares the same scene and the same games live and in virtual time."""

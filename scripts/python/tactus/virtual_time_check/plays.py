@@ -1,0 +1,73 @@
+"""Who plays: runs of a scene and games, live and in virtual time."""
+import os
+import shutil
+import subprocess
+
+from tactus.paths import SCRIPTS
+from tactus.refusal import Refusal
+from tactus.study import games
+from tactus.sweep.player import Player
+from tactus.virtual_time_check import scene_figures
+
+STUDY = "game_limits"
+# From harmless to ruinous, of each of the three senses that the player has; by bin/play_games, 8 games each: 8, 8, 8, 6, 4, 3, 2 and 0 won.
+CONDITIONS = ("nothing degraded", "audio removed", "visual rate 5Hz", "haptic delay 20ms", "visual loss 90%", "haptic jitter 20ms", "visual loss 95%", "visual delay 200ms")
+
+
+def machine():
+    """What a figure of the live cluster hangs on."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        model = next((line.partition(":")[2].strip() for line in file if line.startswith("model name")), "unknown")
+    return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": load()}
+
+
+def load():
+    return [round(x, 2) for x in os.getloadavg()]
+
+
+def run(scene, seconds, seed, settings, out, virtual):
+    """RunTables of a run of the scene with its scripted hand. Raises Refusal."""
+    words = [str(SCRIPTS / "run"), str(scene), "--seconds", f"{seconds:g}", "--seed", str(seed), "--out", str(out)]
+    words += [w for s in settings for w in ("--set", s)] + (["--virtual-time"] if virtual else [])
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
+    try:
+        return scene_figures.read(out)  # one that lost an event ends with status 1, and has figures that say so
+    except (OSError, ValueError, KeyError) as error:
+        said = (done.stderr.strip().splitlines() or [str(error)])[-1]
+        raise Refusal(f"scripts/run: left no figures ({said})") from None
+
+
+def virtual_games(scene, asked):
+    """Yields what bin/play_games tells of each game of `asked`, in their order. Raises Refusal."""
+    with Player(scene) as player:
+        for game in asked:
+            yield player.told(game)
+
+
+def live_game(scene, asked, settings, out, keep):
+    """The same game on the live cluster: what play_games tells, and how the cluster was. Without `keep` nothing of it stays."""
+    profile = out.with_suffix(".xml")
+    profile.write_text(asked["profile"], encoding="utf-8")
+    try:
+        played = games.in_a_world_of_its_own(out, scene, profile, asked["seed"], asked["limit_s"], settings)
+        told = {"trouble": played.missed} if played.missed else {"won": bool(played.row["success"]), "time_s": played.row["completion_time_s"], "wrong": played.row["errors"]}
+    except Refusal as refusal:
+        told = {"trouble": str(refusal)}
+    told["cluster"] = state_of(out)
+    if not keep:
+        shutil.rmtree(out, ignore_errors=True)
+        out.with_suffix(".log").unlink(missing_ok=True)
+        profile.unlink()
+    return told
+
+
+def state_of(out):
+    """Of the summary of a game's run, what tells whether the machine kept up; {} where there is none."""
+    try:
+        tables = scene_figures.RunTables(out)
+        nodes = tables.summary["nodes"]
+        delays_ms = tables.delays_ms().get("visual", [])
+        return {"realtime_factor": tables.summary["realtime_factor"], "pictures_hz": nodes["visual_node"]["rate_hz"],
+                "missed_ticks": {name: node["missed_ticks"] for name, node in nodes.items()}, "visual_delay_ms": scene_figures.median(delays_ms) if len(delays_ms) else None, "load": load()}
+    except (OSError, ValueError, KeyError):
+        return {}

@@ -1,0 +1,72 @@
+"""A cluster on this machine and a network namespace of it, without any ssh: brought up, a sense moved, ended. Real processes."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
+from tactus.cluster import cluster_file, rehearsal, status
+from tactus.cluster.orders import Operator
+
+PATIENCE_S = 60
+FILE = """<cluster name="beside">
+  <bus ttl="1"/>
+  <run scene="metronome.sdf"/>
+  <host name="here" reach="local"/><host name="beside" reach="namespace" address="room2"/>
+  <node name="sim_node" host="here"/><node name="recorder" host="here"/><node name="audio_node" host="beside"/>
+</cluster>
+"""
+NETWORK = ("mkdir -p /run/netns", "mount -t tmpfs tmpfs /run/netns", "ip link set lo up", "ip netns add room2", "ip link add to2 type veth peer name eth0 netns room2",
+           "ip addr add 10.78.0.1/24 dev to2", "ip link set to2 up", "ip route add 224.0.0.0/4 dev to2", "ip -n room2 addr add 10.78.0.2/24 dev eth0",
+           "ip -n room2 link set lo up", "ip -n room2 link set eth0 up", "ip -n room2 route add 224.0.0.0/4 dev eth0")
+
+
+class Namespaces(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-namespaces-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        os.environ["HOME"] = str(self.folder)
+        for line in NETWORK:
+            subprocess.run(line.split(), check=True)
+        path = self.folder / "beside.xml"
+        path.write_text(FILE, encoding="utf-8")
+        self.operator = Operator(cluster_file.read(str(path), self.folder / "plan"), quiet=True)
+
+    def wait(self, condition, what):
+        end = time.monotonic() + PATIENCE_S
+        while not condition():
+            self.assertLess(time.monotonic(), end, what)
+            time.sleep(0.2)
+
+    def whole(self):
+        return status.whole(self.operator.cluster, *status.gather(self.operator))
+
+    def runs_at(self, node):
+        states, _ = status.gather(self.operator)
+        return [host for host, s in states.items() if not isinstance(s, Exception) and node in s["nodes"]]
+
+    def test_a_sense_runs_in_a_namespace_and_moves_out_of_it(self):
+        self.operator.up("git")
+        self.assertTrue(self.operator.wait_for_world())
+        self.wait(self.whole, "all run and are heard")
+        self.assertEqual(["beside"], self.runs_at("audio_node"))
+        self.assertEqual(["here"], self.runs_at("sim_node"))
+        self.operator.move("audio_node", "here")
+        self.wait(self.whole, "all run and are heard after the move")
+        self.assertEqual(["here"], self.runs_at("audio_node"))
+        out = self.folder / "out"
+        wrong, ran = self.operator.down(out)
+        self.assertEqual([], wrong)
+        self.assertIsNotNone(ran)
+        self.assertTrue((out / "run.lcmlog").is_file())
+        self.assertTrue((out / "beside" / "logs" / "audio_node.log").is_file())
+
+
+if __name__ == "__main__":
+    rehearsal.enter(__file__, sys.argv[1:])
+    unittest.main(verbosity=2)

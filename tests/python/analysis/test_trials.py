@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Tables of trials are read whole, or refused with file, line and reason."""
+import pathlib
+import tempfile
+import unittest
+
+import analysis_tables
+import numpy as np
+
+from tactus.analysis import trials
+from tactus.refusal import Refusal
+
+HEADER = "participant_id,task,observer,study,session,trial,level,success,completion_time_s,missed,seed\n"
+GOOD = "P01,game,simulated,s,1,1,20,1,7.5,0,9\n"
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.root = pathlib.Path(kept.name)
+
+    def file(self, text, name="trials.csv"):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def refusal(self, text):
+        path = self.file(text)
+        with self.assertRaises(Refusal) as caught:
+            trials.read([path])
+        self.assertIn(str(path), str(caught.exception))
+        return str(caught.exception)
+
+    def test_what_is_empty_is_not_a_number_and_what_no_file_has_is_empty(self):
+        read = trials.read([self.file(HEADER + "P01,game,human,s,1,1,,1,7.5,,9\n")])
+        self.assertEqual(len(read), 1)
+        self.assertTrue(np.isnan(read["level"][0]) and np.isnan(read["loss_achieved"][0]))
+        self.assertEqual((read["pair"][0], read["seed"][0], read["success"][0]), ("", "9", 1.0))
+
+    def test_folders_are_searched_and_each_table_is_read_once(self):
+        self.file(HEADER + GOOD, "study/P01/trials.csv")
+        self.file(HEADER + GOOD.replace("P01", "P02"), "study/P02/session/trials.csv")
+        self.file(HEADER + GOOD.replace("P01", "virtual"), "sweep/games.csv")
+        read = trials.read(trials.files_of([self.root, self.root / "study" / "P01", self.root / "sweep" / "games.csv"]))
+        self.assertEqual(read.participants(), ["P01", "P02", "virtual"])
+
+    def test_a_trial_whose_apparatus_missed_is_left_out_and_counted(self):
+        read = trials.read([self.file(HEADER + GOOD + GOOD.replace(",1,1,20", ",1,2,20").replace(",7.5,0", ",7.5,1"))])
+        kept, left_out = trials.usable(read)
+        self.assertEqual((len(kept), left_out), (1, 1))
+
+    def test_a_hostile_table_is_refused_with_its_line(self):
+        cases = {
+            HEADER + GOOD + GOOD.replace("20,1,7.5", "20,2,7.5"): ":3: success is 2",
+            HEADER + GOOD.replace("20,1", "twenty,1"): ":2: level is 'twenty'",
+            HEADER + GOOD.replace("7.5", "-1"): ":2: completion_time_s is -1",
+            HEADER + GOOD.replace("7.5", "inf"): ":2: completion_time_s is 'inf'",
+            HEADER + GOOD.replace(",9\n", "\n"): ":2: 10 fields where the header has 11",
+            HEADER + GOOD.replace("simulated", "ghost"): ":2: observer is 'ghost'",
+            HEADER + GOOD + GOOD: "row 2: the same trial of P01",
+            HEADER.replace("observer,", "") + GOOD: ":1: there is no column observer",
+            HEADER.encode() + GOOD.encode().replace(b"P01", b"P\xff"): "not UTF-8",
+        }
+        for text, reason in cases.items():
+            with self.subTest(reason):
+                self.assertIn(reason, self.refusal(text))
+
+    def test_a_level_that_no_severity_answers_to_is_refused(self):
+        head = HEADER.replace(",level,", ",level,modality_degraded,operator,")
+        for operator, level, reason in (("rate", "0", "a level of rate is above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
+            self.assertIn(reason, self.refusal(head + GOOD.replace(",20,", f",{level},visual,{operator},")))
+        for operator, level in (("gain", "0"), ("off", ""), ("delay", "0")):
+            self.assertEqual(len(trials.read([self.file(head + GOOD.replace(",20,", f",{level},visual,{operator},"))])), 1)
+
+    def test_a_table_without_rows_and_a_place_without_tables_are_refused(self):
+        with self.assertRaisesRegex(Refusal, "there is no trial"):
+            trials.read([self.file(HEADER)])
+        (self.root / "empty").mkdir()
+        for place, reason in (("nowhere", "is not there"), ("empty", "holds no trials.csv or games.csv")):
+            with self.assertRaisesRegex(Refusal, reason):
+                trials.files_of([self.root / place])
+
+    def test_random_damage_is_refused_in_one_sentence_or_read(self):
+        rng = np.random.default_rng(7)
+        whole = (HEADER + "".join(GOOD.replace(",1,1,20", f",1,{i},20") for i in range(20))).encode()
+        outcomes = set()
+        for _ in range(400):
+            damaged = bytearray(whole)
+            for at in rng.integers(0, len(damaged), rng.integers(1, 4)):
+                damaged[at] = rng.integers(0, 128)
+            try:
+                trials.read([self.file(bytes(damaged))])
+                outcomes.add("read")
+            except Refusal as refused:
+                outcomes.add("refused")
+                self.assertNotIn("\n", str(refused)[:60])
+        self.assertEqual(outcomes, {"read", "refused"})
+
+
+if __name__ == "__main__":
+    unittest.main()

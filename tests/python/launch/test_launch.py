@@ -1,0 +1,386 @@
+#!/usr/bin/env python3
+"""scripts/run meets terminals that go away, texts that are none, full disks and wrong words with its results, or one sentence."""
+import errno
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
+from tactus import terminal
+from tactus.launch import arguments, cluster, main, results, services
+from tactus.paths import SCRIPTS
+from tactus.refusal import Interrupted, Refusal
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # main took it
+HOSTILE = b"\xff\xfe caf\xe9 \x1b[2J"
+
+
+def refusal_of(*words):
+    try:
+        arguments.parse(list(words), os.getcwd())
+    except Refusal as refusal:
+        return str(refusal)
+    return ""
+
+
+class Folders(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+        self.said, self.complained = [], []
+        for what in (mock.patch.object(terminal, "tell", lambda text, stream=None: self.said.append(text)),
+                     mock.patch.object(cluster, "complain", self.complained.append), mock.patch.object(cluster, "say", self.said.append),
+                     mock.patch.object(main, "say", self.said.append),
+                     mock.patch.object(terminal, "complain", self.complained.append)):
+            what.start()
+            self.addCleanup(what.stop)
+
+    def program(self, name, text):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(b"#!/bin/sh\n" + text + b"\n")
+        path.chmod(0o755)
+        return [str(path), "--out", str(self.folder)]
+
+    def plan(self):
+        return arguments.parse(["--out", str(self.folder / "out")], os.getcwd())
+
+
+class Terminal(unittest.TestCase):
+    def test_a_pipe_that_is_gone_ends_the_telling_only(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = pathlib.Path(folder) / "done"
+            code = ("import sys, pathlib, subprocess; sys.path.insert(0, sys.argv[1]); from tactus import terminal; terminal.prepare()\n"
+                    "for i in range(3): terminal.say('x' * 100000)\n"
+                    "subprocess.run(['echo', 'a child tells too'], check=True)\n"
+                    "pathlib.Path(sys.argv[2]).touch()")
+            with subprocess.Popen([sys.executable, "-c", code, str(SCRIPTS / "python"), str(done)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE) as process:
+                process.stdout.close()
+                said = process.stderr.read()
+            self.assertEqual((0, b"", True), (process.returncode, said, done.exists()))
+
+    def test_a_text_is_no_order_to_the_terminal(self):
+        self.assertEqual("a\\x1b[2Jb\nc\\x9b\\x7f é", terminal.printable("a\x1b[2Jb\nc\x9b\x7f é"))
+
+    def test_a_text_that_the_terminal_cannot_encode_is_told_all_the_same(self):
+        code = ("import sys; sys.path.insert(0, sys.argv[1]); from tactus import terminal; terminal.prepare(); terminal.tell('\\udcff')")
+        told = subprocess.run([sys.executable, "-c", code, str(SCRIPTS / "python")], capture_output=True, check=True).stdout
+        self.assertEqual(b"\\udcff\n", told)
+
+
+class Arguments(unittest.TestCase):
+    def test_what_is_wrong_is_named(self):
+        for words, named in ((["--set", "../x.y=1"], "../x has no settings"), (["--set", ".x=1"], "NODE.NAME=VALUE"),
+                             (["--set", "sync_node.x=1"], "sync_node has no settings"),
+                             (["--set", "audio_node.device=a\nb"], "control character"), (["--out", "a\x1bb"], "control character"),
+                             (["--without", "recorder"], "all results are made from what it records"),
+                             (["--degrade", "/no/such.xml"], "/no/such.xml")):
+            self.assertIn(named, refusal_of(*words))
+            self.assertNotIn("\n", refusal_of(*words))
+
+    def test_a_full_disk_is_said_before_anything_starts(self):
+        with mock.patch.object(os, "statvfs", return_value=types.SimpleNamespace(f_bavail=3, f_frsize=4096)):
+            self.assertIn("full", refusal_of())
+
+    def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
+        plan = arguments.parse(["--degrade", __file__], os.getcwd())
+        with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
+        self.assertEqual({*plan.senses(), "sync_node"}, set(with_it))
+
+    def test_a_profile_in_an_encoding_that_nobody_knows_is_refused_in_a_sentence(self):
+        for encoding in ("foo", "UTF-32"):
+            with tempfile.NamedTemporaryFile(suffix=".xml") as file:
+                file.write(f'<?xml version="1.0" encoding="{encoding}"?><profile/>'.encode())
+                file.flush()
+                plan = arguments.parse(["--degrade", file.name], os.getcwd())
+                with self.assertRaises(Refusal) as caught:
+                    arguments.strangers(plan)
+                self.assertIn("save it as UTF-8", str(caught.exception))
+
+
+class Hands(Folders):
+    """Every tool of a scene has a process of its own."""
+
+    def of(self, *tools, words=()):
+        scene = self.folder / "scene.sdf"
+        scene.write_text('<sdf version="1.9"><world name="w"><tactus:audio_node gain="1"/><model name="m"><tactus:tool name="no"/></model>'
+                         + "".join(f'<tactus:tool name="{t}"/>' for t in tools) + "</world></sdf>", encoding="utf-8")
+        plan = arguments.parse([str(scene), *words], os.getcwd())
+        return plan, cluster.commands(plan, 1, "")
+
+    @staticmethod
+    def after(words, option):
+        return [value for before, value in zip(words, words[1:]) if before == option]
+
+    def test_the_first_is_haptic_node_and_the_others_bear_the_names_of_their_tools(self):
+        plan, commands = self.of("left", "right hand", "right/hand")
+        self.assertEqual({"haptic_node_right_hand": "right hand", "haptic_node_right_hand_3": "right/hand"}, plan.hands)
+        self.assertEqual(["recorder", "sync_node", "haptic_node", *plan.hands, "audio_node", "visual_node", "thermal_node", "sim_node"],
+                         plan.nodes())
+        words = commands["haptic_node_right_hand"]
+        self.assertEqual("haptic_node", os.path.basename(words[0]))
+        self.assertEqual(["haptic_node_right_hand"], self.after(words, "--name"))
+        self.assertEqual(["right hand"], self.after(words, "--tool"))
+        self.assertNotIn("--name", commands["haptic_node"])
+
+    def test_a_scene_with_one_tool_or_none_or_that_is_no_xml_has_the_first_alone(self):
+        for tools in ((), ("hand",), ("<",)):
+            self.assertEqual({}, self.of(*tools)[0].hands)
+
+    def test_a_device_goes_to_the_tool_that_is_named_else_to_the_first(self):
+        _, commands = self.of("a", "b", words=["--device", "b=playback:x.csv,rate=2", "--device", "playback:y.csv,scale=2"])
+        self.assertEqual(["playback:y.csv,scale=2"], self.after(commands["haptic_node"], "--device"))
+        self.assertEqual(["playback:x.csv,rate=2"], self.after(commands["haptic_node_b"], "--device"))
+        _, commands = self.of("a", "b", words=["--device", "a=virtual_hand"])
+        self.assertEqual(["virtual_hand"], self.after(commands["haptic_node"], "--device"))
+        self.assertEqual([], self.after(commands["haptic_node_b"], "--device"))
+
+    def test_a_tool_that_is_not_there_gets_two_devices_or_shares_that_of_another_program_is_refused(self):
+        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "has a device already"),
+                            (["external:e", "a=external:f"], "has a device already"),
+                            (["a=external:e,offset=0/0/1", "b=external:e"], "a holds external:e already")):
+            with self.assertRaises(arguments.Refusal) as refused:
+                self.of("a", "b", words=[w for word in words for w in ("--device", word)])
+            self.assertIn(said, str(refused.exception))
+
+    def test_a_setting_of_haptic_node_is_one_of_every_hand_but_its_own_comes_last(self):
+        _, commands = self.of("a", "b", "c", words=["--set", "haptic_node_b.force_limit=2", "--set", "haptic_node.force_limit=3"])
+        self.assertEqual(["force_limit=3"], self.after(commands["haptic_node"], "--set"))
+        self.assertEqual(["force_limit=3", "force_limit=2"], self.after(commands["haptic_node_b"], "--set"))
+        self.assertEqual(["force_limit=3"], self.after(commands["haptic_node_c"], "--set"))
+
+    def test_one_or_all_may_be_left_out(self):
+        self.assertEqual({"haptic_node_c": "c"}, self.of("a", "b", "c", words=["--without", "haptic_node_b"])[0].hands)
+        plan, _ = self.of("a", "b", words=["--without", "haptic_node"])
+        self.assertFalse([n for n in plan.nodes() if n.startswith("haptic")])
+        self.assertIn("haptic_node_lamp", refusal_of("--without", "haptic_node_nose"))
+
+
+class Walls(Folders):
+    """Every wall of a room has a process of its own."""
+
+    def of(self, *words):
+        plan = arguments.parse(list(words), os.getcwd())
+        return plan, cluster.commands(plan, 1, "")
+
+    after = staticmethod(Hands.after)
+
+    def test_the_first_is_visual_node_and_the_others_bear_the_names_of_their_walls(self):
+        plan, commands = self.of("--room", "cave4", "--without", "haptic_node")
+        drawing = ["visual_node", "visual_node_front", "visual_node_right", "visual_node_floor"]
+        self.assertEqual(["recorder", "sync_node", "audio_node", *drawing, "thermal_node", "sim_node"], plan.nodes())
+        for process, wall in zip(drawing, ("left", "front", "right", "floor")):
+            self.assertEqual("visual_node", os.path.basename(commands[process][0]))
+            self.assertEqual(["room=cave4", f"wall={wall}"], self.after(commands[process], "--set"))
+            self.assertEqual([] if process == "visual_node" else [process], self.after(commands[process], "--name"))
+
+    def test_without_a_room_there_is_one_picture(self):
+        plan, commands = self.of()
+        self.assertEqual({}, plan.walls)
+        self.assertEqual([], self.after(commands["visual_node"], "--set"))
+
+    def test_a_file_of_ones_own_is_told_by_its_whole_path(self):
+        mine = self.folder / "mine.csv"
+        head = (arguments.REPOSITORY / "visual_node" / "rooms" / "desk.csv").read_text(encoding="utf-8").split("\n", maxsplit=1)[0]
+        mine.write_text(head + "\neye,0,0,1,,,,,,\na/b,1,1,0,1,-1,0,1,1,2\na b,1,-1,0,-1,-1,0,1,-1,2\nc,-1,1,0,1,1,0,-1,1,2\n", encoding="utf-8")
+        plan, commands = self.of("--room", os.path.relpath(mine))
+        self.assertEqual({"visual_node": "a/b", "visual_node_a_b": "a b", "visual_node_c": "c"}, plan.walls)
+        self.assertEqual([f"room={mine}", "wall=c"], self.after(commands["visual_node_c"], "--set"))
+
+    def test_a_room_that_is_none_is_refused_in_a_sentence(self):
+        (self.folder / "empty.csv").write_text("wall\n", encoding="utf-8")
+        for room, said in (("cave5", "choose cave4, cave6, desk"), (str(self.folder / "empty.csv"), "has no wall"),
+                           (str(self.folder), "is no file of walls"), (__file__, "is no file of walls")):
+            self.assertIn(said, refusal_of("--room", room))
+
+    def test_a_setting_of_visual_node_is_one_of_every_wall_but_its_own_comes_last(self):
+        _, commands = self.of("--room", "cave4", "--set", "visual_node_floor.width=400", "--set", "visual_node.width=320", "--set", "haptic_node.force_limit=3")
+        self.assertEqual(["room=cave4", "wall=left", "width=320"], self.after(commands["visual_node"], "--set"))
+        self.assertEqual(["room=cave4", "wall=floor", "width=320", "width=400"], self.after(commands["visual_node_floor"], "--set"))
+
+    def test_one_or_all_may_be_left_out(self):
+        plan, _ = self.of("--room", "cave4", "--without", "visual_node_floor")
+        self.assertEqual(["visual_node", "visual_node_front", "visual_node_right"], [n for n in plan.nodes() if n.startswith("visual")])
+        plan, _ = self.of("--room", "cave4", "--without", "visual_node")
+        self.assertFalse([n for n in plan.nodes() if n.startswith("visual")])
+
+
+class Shaders(Folders):
+    """Shaders that a scene brings are read again when somebody changes them where they lie."""
+
+    def words(self, world, *words):
+        scene = self.folder / "scene.sdf"
+        scene.write_text(f'<sdf version="1.9"><world name="w">{world}</world></sdf>', encoding="utf-8")
+        commands = cluster.commands(arguments.parse([str(scene), *words], os.getcwd()), 1, "")
+        return {name: [w for w in command if w.startswith("shader_folder=")] for name, command in commands.items()}
+
+    def test_every_wall_is_told_where_the_shaders_of_the_scene_lie(self):
+        said = self.words('<tactus:shader name="stripes" fragment="stripes.frag"/>', "--room", "cave4")
+        there = [f"shader_folder={self.folder}"]
+        self.assertEqual(there, said["visual_node"])
+        self.assertEqual(there, said["visual_node_floor"])
+        self.assertEqual([], said["sim_node"])
+
+    def test_a_scene_without_any_or_that_says_where_they_are_has_the_last_word(self):
+        self.assertEqual([], self.words('<model name="m"><tactus:shader name="no"/></model>')["visual_node"])
+        self.assertEqual([], self.words('<tactus:shader name="s"/><tactus:visual_node shader_folder="/x"/>')["visual_node"])
+
+    def test_a_folder_that_is_asked_for_comes_last_and_so_wins(self):
+        said = self.words('<tactus:shader name="s"/>', "--set", "visual_node.shader_folder=/x")["visual_node"]
+        self.assertEqual([f"shader_folder={self.folder}", "shader_folder=/x"], said)
+
+
+class Checks(Folders):
+    def check(self, stop=False, **programs):
+        cluster.check({name: self.program(name, text) for name, text in programs.items()}, types.SimpleNamespace(asked=stop))
+
+    def test_a_refusal_that_is_no_text_is_still_a_sentence(self):
+        (self.folder / "hostile").write_bytes(HOSTILE)
+        with self.assertRaises(Refusal) as caught:
+            self.check(sim_node=b"cat %s/hostile >&2; exit 1" % bytes(self.folder))
+        self.assertIn("caf", str(caught.exception))
+
+    def test_warnings_of_a_good_scene_are_passed_on(self):
+        self.check(sim_node=b"echo odd >&2", audio_node=b"")
+        self.assertEqual(["odd"], self.complained)
+
+    def test_ctrl_c_is_no_fault_of_a_node(self):
+        with self.assertRaises(Interrupted):
+            self.check(stop=True, visual_node=b"kill -INT $$", sim_node=b"exec sleep 60")
+
+    def test_a_large_scene_is_given_time(self):
+        with mock.patch.object(cluster, "PROGRESS_S", 0.15):
+            self.check(sim_node=b"sleep 0.5")
+        self.assertIn("still reading the scene", self.said[0])
+
+
+class Running:
+    """A cluster whose world begins when its clock, which main reads, says so."""
+
+    def __init__(self, begins_at, expected=True):
+        self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False
+        self.plan = types.SimpleNamespace(out="out")
+        self.page = None
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+    def world_has_begun(self):
+        return self.now >= self.begins_at
+
+    def expects_world(self):
+        return self.expected
+
+    def show_table(self):
+        self.table = True
+
+    def alive(self):
+        return True
+
+    def lost(self):
+        return {}
+
+
+class Seconds(Folders):
+    def watch(self, running, stop=False):
+        with mock.patch.object(main, "time", running):
+            return main.watch_over(running, 20, types.SimpleNamespace(asked=stop))
+
+    def test_count_from_the_beginning_of_the_world(self):
+        running = Running(begins_at=32)
+        self.assertTrue(self.watch(running))
+        self.assertAlmostEqual(52, running.now, delta=0.3)
+        self.assertTrue(running.table)
+        self.assertEqual(6, len(self.said))
+
+    def test_count_at_once_when_there_will_be_no_world(self):
+        running = Running(begins_at=1e9, expected=False)
+        self.assertTrue(self.watch(running))
+        self.assertAlmostEqual(20, running.now, delta=0.3)
+
+    def test_never_begin_when_stopped_before_and_are_waited_for_ten_minutes(self):
+        self.assertFalse(self.watch(Running(begins_at=1e9), stop=True))
+        running = Running(begins_at=1e9)
+        self.assertRaises(Refusal, self.watch, running)
+        self.assertAlmostEqual(600, running.now, delta=1)
+
+
+class TakenDown(Folders):
+    def service(self, stat):
+        (self.folder / "services").mkdir()
+        service = services.Service(self.folder, "haptic_node", ["true"], self.folder / "log", self.folder)
+        (service.path / "supervise").mkdir()
+        (service.path / "supervise" / "stat").write_text(stat, encoding="utf-8")
+        return service
+
+    def test_is_who_was_told_to_be_and_not_who_died_or_was_lost(self):
+        for stat, taken in (("down\n", True), ("down, normally up\n", True), ("down, want up\n", False), ("run, normally down\n", False),
+                            ("finish\n", False)):
+            with tempfile.TemporaryDirectory() as folder:
+                self.folder = pathlib.Path(folder)
+                service = self.service(stat)
+                self.assertEqual(taken, service.is_taken_down(), stat)
+                (service.path / "lost").write_text("left down", encoding="utf-8")
+                self.assertFalse(service.is_taken_down(), stat)
+
+
+class Results(Folders):
+    def test_one_run_writes_to_a_folder_at_a_time(self):
+        plan = self.plan()
+        claim = main.claim_out(plan)
+        with self.assertRaises(Refusal) as caught:
+            main.claim_out(self.plan())
+        self.assertIn("another run is writing", str(caught.exception))
+        os.close(claim)
+        os.close(main.claim_out(self.plan()))
+
+    def test_a_full_disk_is_one_sentence_and_leaves_nothing(self):
+        plan = self.plan()
+        plan.out.mkdir()
+        full = OSError(errno.ENOSPC, "No space left on device", "/tmp/x")
+        with mock.patch.object(services, "Service", side_effect=full), mock.patch.object(tempfile, "tempdir", str(self.folder)):
+            with self.assertRaises(Refusal) as caught:
+                cluster.Cluster(plan, None, {"recorder": []}, 1)
+        self.assertIn("No space left on device", str(caught.exception))
+        self.assertEqual([], list(self.folder.glob("tactus-*")))
+
+    def test_an_error_of_the_system_is_one_sentence(self):
+        with mock.patch.object(main, "run", side_effect=OSError(errno.ENOSPC, "No space left on device", "/x")):
+            self.assertEqual(1, main.main([]))
+        self.assertEqual(["run: /x: No space left on device"], self.complained)
+
+    def test_all_results_are_made_before_a_word_is_said_even_when_it_is_no_text(self):
+        plan = self.plan()
+        plan.out.mkdir()
+        (plan.out / "run.lcmlog").touch()
+        (self.folder / "hostile").write_bytes(HOSTILE)
+        for name in ("summarise", "export_csv", "export_events"):
+            self.program(name, b"cat %s/hostile; touch %s/out/$(basename $0)" % (bytes(self.folder), bytes(self.folder)))
+        made_when_told = []
+        with mock.patch.object(results, "BIN", self.folder / "bin"), \
+                mock.patch.object(terminal, "tell", lambda text: made_when_told.extend(p.name for p in plan.out.iterdir())):
+            self.assertEqual([], main.sum_up(plan, "git", {}, {}, ["a warning"]))
+        self.assertLessEqual({"summarise", "export_csv", "export_events"}, set(made_when_told))
+
+
+class Programs(unittest.TestCase):
+    def test_whoever_has_built_nothing_yet_gets_all_programs_that_a_run_or_a_study_starts(self):
+        from tactus.launch import virtual
+        built = (SCRIPTS / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
+        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PARTICIPANT, "conductor", "play_games"):
+            self.assertIn(program, built)
+
+
+if __name__ == "__main__":
+    unittest.main()

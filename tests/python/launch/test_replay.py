@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""tactus replay: what keys and lines order, and what of its words is refused, each with one sentence."""
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
+from tactus.launch import keys, replay
+from tactus.refusal import Refusal
+
+SAYS = {"scene": "table.sdf", "version": "1", "git": "", "seed": 7, "length_s": 3.0, "of_tactus": True, "recovered": "", "assets": 1,
+        "tools": ["stylus", "lamp"]}
+
+
+class Keys(unittest.TestCase):
+    def setUp(self):
+        self.orders = keys.Orders("/nowhere/control")
+
+    def test_every_key_that_the_help_names_has_its_order(self):
+        read = b" .\x1b[C\x1b[D10ml"
+        self.assertEqual(list(self.orders.of_keys(read)),
+                         ["toggle", "step", "seek +5", "seek -5", "speed 1", "seek 0", "speed max", "loop on"])
+        self.assertEqual(list(self.orders.of_keys(b"lq")), ["loop off", "quit"])
+
+    def test_the_speed_doubles_and_halves_within_what_a_replay_takes(self):
+        said = [float(order.split()[1]) for order in self.orders.of_keys(b"+" * 20)]
+        self.assertEqual(said[:3], [2, 4, 8])
+        self.assertEqual(said[-1], keys.FASTEST)
+        said = [float(order.split()[1]) for order in self.orders.of_keys(b"-" * 40)]
+        self.assertEqual(said[0], keys.FASTEST / 2)
+        self.assertEqual(said[-1], keys.SLOWEST)
+        self.assertGreaterEqual(keys.SLOWEST, 0.01)  # sync/tools/replay/replay.h
+        self.assertLessEqual(keys.FASTEST, 100)
+        list(self.orders.of_keys(b"1"))
+        self.assertEqual(next(self.orders.of_keys(b"+")), "speed 2.0")
+
+    def test_any_bytes_at_all_are_orders_or_nothing(self):
+        for seed in range(500):
+            read = random.Random(seed).randbytes(200)
+            for order in self.orders.of_keys(read):
+                self.assertRegex(order, r"^(toggle|step|quit|seek [+-]?\d+|speed (max|[0-9.]+)|loop (on|off))$")
+
+    def test_lines_come_whole_however_they_are_cut(self):
+        text = "pause\nseek +3\n  speed max \nloop on\n".encode()
+        for seed in range(50):
+            cut, orders, said = random.Random(seed), keys.Orders("/nowhere"), []
+            at = 0
+            while at < len(text):
+                to = at + cut.randint(1, 9)
+                said += orders.of_lines(text[at:to])
+                at = to
+            self.assertEqual(said, ["pause", "seek +3", "speed max", "loop on"])
+
+    def test_a_line_that_never_ends_takes_no_more_memory_than_its_bound(self):
+        for _ in range(100):
+            self.assertEqual(self.orders.of_lines(b"x" * 4096), [])
+        self.assertLessEqual(len(self.orders.rest), keys.LONGEST)
+
+    def test_an_order_goes_into_the_pipe_and_is_lost_without_harm_when_nobody_reads(self):
+        self.orders.send("pause")  # there is no pipe
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "control")
+            os.mkfifo(path)
+            orders = keys.Orders(path)
+            orders.send("pause")  # nobody has opened it
+            reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+            orders.send("seek +5")
+            self.assertEqual(os.read(reader, 100), b"seek +5\n")
+            for _ in range(20000):  # more than a pipe takes
+                orders.send("toggle")
+            os.close(reader)
+            orders.send("pause")
+
+
+class Words(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+        (self.folder / "run.lcmlog").write_bytes(b"x")
+        what = mock.patch.object(replay, "described", lambda log: SAYS)
+        what.start()
+        self.addCleanup(what.stop)
+
+    def parse(self, *words):
+        return replay.parse(["run.lcmlog", *words], self.folder)[0]
+
+    def refusal(self, *words):
+        with self.assertRaises(Refusal) as refused:
+            self.parse(*words)
+        return str(refused.exception)
+
+    def test_a_folder_stands_for_all_parts_of_the_recording_in_it(self):
+        plan, stay, _ = replay.parse([".", "--stay"], self.folder)
+        self.assertEqual(pathlib.Path(plan.replay[0]), self.folder)
+        self.assertTrue(stay)
+
+    def test_each_sense_is_live_unless_it_is_left_out(self):
+        self.assertEqual(self.parse().without, [])
+        self.assertEqual(set(self.parse("--only", "audio_node").without), {"haptic_node", "visual_node", "thermal_node", "haptic_node_lamp"})
+        self.assertEqual(set(self.parse("--only", "haptic_node").without), {"audio_node", "visual_node", "thermal_node"})
+        # The hand of another tool asks the first hand's process; without that there is none.
+        self.assertEqual(set(self.parse("--without", "haptic_node").without), {"haptic_node", "haptic_node_lamp"})
+
+    def test_what_the_replay_does_is_passed_on_to_it(self):
+        plan = self.parse("--speed", "0.5", "--start", "1", "--channels", "WORLD_.*", "--rename", "A=B", "--rename", "C=D", "--loop")
+        words = " ".join(plan.replay[1:])
+        for part in ("--speed 0.5", "--start 1", "--channels WORLD_.*", "--rename A=B", "--rename C=D", "--loop"):
+            self.assertIn(part, words)
+        self.assertEqual(plan.seed, 7)
+        self.assertEqual(self.parse("--seed", "12").seed, 12)
+
+    def test_wrong_words_are_refused_with_one_sentence(self):
+        self.assertIn("sim_node", self.refusal("--only", "sim_node"))
+        self.assertIn("contradict", self.refusal("--degrade", "a.xml", "--as-recorded"))
+        self.assertIn("first hand", self.refusal("--only", "haptic_node_lamp"))
+        self.assertIn("control character", self.refusal("--channels", "a\nb"))
+        self.assertIn("--help", self.refusal("--speeed", "2"))
+        self.assertIn("a.xml", self.refusal("--degrade", "a.xml"))
+        for words in (["--port", "80"], ["--seed", "x"]):
+            self.assertEqual(len(self.refusal(*words).strip().split("\n")), 1)
+
+
+class Descriptions(unittest.TestCase):
+    def test_a_log_that_cannot_be_described_is_refused_with_what_the_program_says(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(replay.cluster, "BIN", pathlib.Path(folder)):
+            with self.assertRaisesRegex(Refusal, "not built"):
+                replay.described("run.lcmlog")
+            program = pathlib.Path(folder) / "replay"
+            program.write_text("#!/bin/sh\necho replay: run.lcmlog is no log >&2\nexit 1\n")
+            program.chmod(0o755)
+            with self.assertRaisesRegex(Refusal, "run.lcmlog is no log"):
+                replay.described("run.lcmlog")
+            program.write_text("#!/bin/sh\necho '{\"tools\": []}'\n")
+            self.assertEqual(replay.described("run.lcmlog"), {"tools": []})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,116 @@
+"""A whole run in virtual time: the same to the bit, every sense presents what it owes, and faults of the bus and of senses tell."""
+import filecmp
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+RUN = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "run"
+PROFILE = """<profile name="late">
+  <degrade modality="audio" delay="100ms"/>
+</profile>
+"""
+
+
+def run(out, *words, seconds=4, status=0):
+    done = subprocess.run([str(RUN), "--virtual-time", "--seconds", str(seconds), "--out", str(out), *words], capture_output=True, text=True,
+                          check=False)
+    if done.returncode != status:
+        raise AssertionError(f"status {done.returncode}: {done.stdout}{done.stderr}")
+    return done
+
+
+def summary(out):
+    return json.loads((out / "summary.json").read_text(encoding="utf-8"))
+
+
+class VirtualTime(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def test_one_seed_gives_the_same_log_and_sound_to_the_bit_and_another_does_not(self):
+        for name, seed in (("a", "5"), ("b", "5"), ("c", "6")):
+            run(self.folder / name, "--seed", seed)
+        same = lambda one, other, what: filecmp.cmp(self.folder / one / what, self.folder / other / what, shallow=False)
+        for what in ("run.lcmlog", "audio.wav", "presented.csv", "haptic.csv"):
+            self.assertTrue(same("a", "b", what), what)
+        self.assertFalse(same("a", "c", "run.lcmlog"))
+
+    def test_every_sense_presents_what_it_owes_and_no_tick_is_missed(self):
+        out = self.folder / "run"
+        said = run(out, seconds=12)
+        facts = summary(out)
+        self.assertGreater(facts["contacts"]["by_modality"]["audio"]["owed"], 5, facts)
+        for name, sense in facts["contacts"]["by_modality"].items():
+            self.assertEqual(sense["lost"], 0, name)
+            self.assertEqual(sense["presented"], sense["owed"], name)
+        for name, node in facts["nodes"].items():
+            self.assertEqual(node["missed_ticks"], 0, name)
+        self.assertIn("times as fast as real time", said.stderr)
+
+    def test_a_profile_delays_its_sense_and_no_other(self):
+        profile = self.folder / "late.xml"
+        profile.write_text(PROFILE, encoding="utf-8")
+        run(self.folder / "healthy", seconds=8)
+        run(self.folder / "late", "--degrade", str(profile), seconds=8)
+        healthy, late = (summary(self.folder / name)["asynchrony_ms"] for name in ("healthy", "late"))
+        self.assertAlmostEqual(late["audio_visual"]["p50"] - healthy["audio_visual"]["p50"], -100, delta=1)
+        self.assertEqual(late["haptic_visual"], healthy["haptic_visual"])
+
+    def test_a_bus_that_loses_much_loses_no_event_and_one_that_is_slow_makes_senses_later(self):
+        run(self.folder / "lossy", "--loss-percent", "20", "--latency-ms", "15", seconds=8)
+        for name, sense in summary(self.folder / "lossy")["contacts"]["by_modality"].items():
+            self.assertEqual(sense["lost"], 0, name)
+
+    def test_a_player_wins_with_all_senses_and_not_without_sight_or_touch(self):
+        blind, numb = self.folder / "blind.xml", self.folder / "numb.xml"
+        blind.write_text('<profile><degrade modality="visual" off="true"/></profile>', encoding="utf-8")
+        numb.write_text('<profile><degrade modality="haptic" off="true"/></profile>', encoding="utf-8")
+        for seed in ("1", "2", "3"):
+            game = {}
+            for name, words in (("whole", []), ("blind", ["--degrade", str(blind)]), ("numb", ["--degrade", str(numb)])):
+                out = self.folder / f"{name}{seed}"
+                run(out, "--player", "--seed", seed, *words, seconds=20)
+                game[name] = summary(out)["game"]
+            self.assertEqual(game["whole"]["filled"], 3, game)
+            self.assertLess(game["blind"]["filled"], 3, game)
+            self.assertEqual(game["numb"]["filled"], 0, game)  # a hand without force pushes nothing
+
+    def test_it_ends_early_with_all_results_when_it_is_asked_to(self):
+        out = self.folder / "long"
+        process = subprocess.Popen([str(RUN), "--virtual-time", "--seconds", "80000", "--out", str(out)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
+        until = time.monotonic() + 60
+        while not (out / "run.lcmlog").exists() and time.monotonic() < until:
+            time.sleep(0.1)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate(timeout=60)
+        self.assertTrue((out / "summary.json").exists(), said)
+
+    def test_what_cannot_keep_up_with_it_is_refused_in_a_sentence(self):
+        for words in (["--listen"], ["--window"], ["--live"], ["--device", "external:arm"], ["--loss-percent", "101"]):
+            done = run(self.folder / "refused", *words, status=1)
+            self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
+            self.assertFalse((self.folder / "refused").exists())
+        done = subprocess.run([str(RUN), "--latency-ms", "3"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--virtual-time", done.stderr)
+
+    def test_a_plan_that_is_none_is_refused_in_a_sentence(self):
+        program = pathlib.Path(os.environ["TACTUS_BIN"]) / "virtual_time"
+        plan = self.folder / "plan.json"
+        for text in ("", "[]", "{}", '{"a": []}', '{"a": ["sim_node", 3]}', '{"a": ["rm"]}'):
+            plan.write_text(text, encoding="utf-8")
+            done = subprocess.run([str(program), str(plan)], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 1, text)
+            self.assertTrue(done.stderr.startswith("virtual_time: ") and done.stderr.count("\n") == 1, done.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

@@ -1,0 +1,53 @@
+"""The cluster of a study: what it says is heard when it says it, however late that is."""
+import pathlib
+import sys
+import tempfile
+import threading
+import time
+import types
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
+sys.path.insert(0, str(SCRIPTS / "python"))
+from tactus.refusal import Refusal
+from tactus.study import live_cluster
+
+
+class TheLivePageOfAStudy(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.cluster = live_cluster.LiveCluster.__new__(live_cluster.LiveCluster)
+        self.cluster.log = pathlib.Path(folder.name) / "run1.log"
+        self.cluster.log.write_text("run: single_taps.sdf, 86400 s\n", encoding="utf-8")
+        self.returncode = None
+        self.cluster.process = types.SimpleNamespace(poll=lambda: self.returncode)
+
+    def say(self, text):
+        with open(self.cluster.log, "a", encoding="utf-8") as log:
+            log.write(text)
+
+    def test_is_waited_for_until_its_line_is_whole(self):
+        def later():
+            time.sleep(0.1)
+            self.say("run: the live page: http://127.0.0.1:46")
+            time.sleep(0.1)
+            self.say("417/?token=3a8d\n")
+        teller = threading.Thread(target=later)
+        teller.start()
+        self.addCleanup(teller.join)
+        self.assertEqual(self.cluster.page(), "http://127.0.0.1:46417/?token=3a8d")
+
+    def test_is_none_when_the_run_says_that_it_does_not_start(self):
+        self.say(f"run: {live_cluster.NO_PAGE}; the others go on (see logs/live_server.log)\n")
+        self.assertIsNone(self.cluster.page())
+        self.assertIn(live_cluster.NO_PAGE, (SCRIPTS / "python" / "tactus" / "launch" / "live.py").read_text(encoding="utf-8"))
+
+    def test_is_not_waited_for_when_the_run_has_ended(self):
+        self.returncode = 1
+        with self.assertRaisesRegex(Refusal, "the cluster has ended"):
+            self.cluster.page()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,131 @@
+"""What a simulated participant perceives is what was really out, whatever was reported."""
+import base64
+import collections
+import io
+import pathlib
+import sys
+import tempfile
+import types
+import unittest
+
+import numpy as np
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus.log import marker
+from tactus.study import ear, eye, simulated, skin
+
+EVENT = 5589537784101601287
+FRAME_NS = 16_666_667
+
+
+def lead_of(**kept):
+    """One that has heard all that it will hear."""
+    return types.SimpleNamespace(wait_for=lambda condition, _: bool(condition()), pulses=collections.deque(), pictures=collections.deque(), media={}, **kept)
+
+
+def row(number, event):
+    """Cells as visual_node/frame/marker.h lays them out."""
+    data = number.to_bytes(3, "big") + (event & 0xFFFFFFFF).to_bytes(4, "big")
+    bits = np.unpackbits(np.frombuffer(data + bytes([marker._crc8(data)]), np.uint8))
+    return np.concatenate([[1, 0, 1, 0], bits])
+
+
+def picture(number, events=(), width=320, height=240, seed=0):
+    """Luma with something in it and the marker at its lower edge."""
+    luma = np.random.default_rng(seed).integers(60, 120, (height, width)).astype(np.uint8)
+    for k, event in enumerate(events or (0,)):
+        luma[height - 4 * (k + 1):height - 4 * k, :4 * 68] = np.repeat(255 * row(number, event), 4)
+    return luma
+
+
+def jpeg(luma):
+    file = io.BytesIO()
+    Image.fromarray(luma).convert("RGB").save(file, "JPEG", quality=75)
+    return base64.b64encode(file.getvalue()).decode()
+
+
+class TheEye(unittest.TestCase):
+    def stream(self, first_frame, shows_from, count=12):
+        return [(k * FRAME_NS, jpeg(picture((first_frame + k) % eye.FRAMES, (EVENT, 8) if k >= shows_from else (8,), seed=k))) for k in range(count)]
+
+    def seen_ns(self, pictures, expected_ns):
+        lead = lead_of()
+        lead.pictures.extend(pictures)
+        return eye.Eye(lead).onset_ns(EVENT, expected_ns)
+
+    def test_a_hit_is_seen_in_the_first_frame_whose_pixels_show_it_whenever_it_was_reported(self):
+        for shows_from in (3, 4, 5):
+            self.assertEqual(shows_from * FRAME_NS, self.seen_ns(self.stream(900, shows_from), 4 * FRAME_NS))
+
+    def test_numbers_of_frames_come_again_after_24_bits(self):
+        self.assertEqual(4 * FRAME_NS, self.seen_ns(self.stream(eye.FRAMES - 4, 4), 4 * FRAME_NS))
+
+    def test_where_the_frame_before_was_not_seen_nothing_is_told(self):
+        pictures = self.stream(900, 4)
+        del pictures[3]
+        self.assertIsNone(self.seen_ns(pictures, 4 * FRAME_NS))
+
+    def test_what_no_frame_shows_is_not_seen_and_what_is_no_picture_neither(self):
+        self.assertIsNone(self.seen_ns(self.stream(900, 99), 4 * FRAME_NS))
+        self.assertIsNone(self.seen_ns([(at_ns, "/9j/nonsense") for at_ns, _ in self.stream(900, 4)], 4 * FRAME_NS))
+        self.assertIsNone(self.seen_ns([], 4 * FRAME_NS))
+
+
+class TheSkin(unittest.TestCase):
+    def test_the_tick_next_to_the_expected_one_is_felt_and_none_that_is_far(self):
+        lead = lead_of()
+        lead.pulses.extend([(0, 0.3), (96_000_000, 0.4), (140_000_000, 0.2)])
+        self.assertEqual(96_000_000, skin.Skin(lead).onset_ns(100_000_000))
+        self.assertIsNone(skin.Skin(lead).onset_ns(50_000_000))
+
+
+class TheEar(unittest.TestCase):
+    RATE = 48000
+
+    def heard_ns(self, onset, expected_ns, at_ns=1_000_000_000, name="audio.wav"):
+        samples = np.zeros(self.RATE, "<f4")
+        if onset is not None:
+            samples[onset:onset + 2000] = 0.2 * np.sin(0.5 + 0.2 * np.arange(2000)) * np.exp(-np.arange(2000) / 400)
+        stereo = np.repeat(samples, 2).tobytes()
+        form = (3).to_bytes(2, "little") + (2).to_bytes(2, "little") + self.RATE.to_bytes(4, "little") + (8 * self.RATE).to_bytes(4, "little") + bytes([8, 0, 32, 0])
+        with tempfile.TemporaryDirectory() as folder:
+            body = b"fmt " + len(form).to_bytes(4, "little") + form + b"data" + len(stereo).to_bytes(4, "little") + stereo
+            (pathlib.Path(folder) / name).write_bytes(b"RIFF" + (4 + len(body)).to_bytes(4, "little") + b"WAVE" + body)
+            lead = lead_of()
+            lead.media["audio.wav"] = collections.deque([(0, at_ns - 9_000_000_000)])
+            lead.media[name] = collections.deque([(0, at_ns)])
+            return ear.Ear(folder, lead).onset_ns(expected_ns)
+
+    def test_a_hit_is_heard_at_its_first_sample_whenever_it_was_reported(self):
+        for report_ns in (-15_000_000, 0, 12_000_000):
+            heard_ns = self.heard_ns(24000, 1_500_000_000 + report_ns)
+            self.assertAlmostEqual(1_500_000_000, heard_ns, delta=1e9 / self.RATE)
+
+    def test_where_the_sense_was_started_again_it_is_heard_in_the_newer_file(self):
+        self.assertAlmostEqual(1_500_000_000, self.heard_ns(24000, 1_500_000_000, name="audio.2.wav"), delta=1e9 / self.RATE)
+
+    def test_silence_is_not_heard(self):
+        self.assertIsNone(self.heard_ns(None, 1_500_000_000))
+
+
+class AParticipant(unittest.TestCase):
+    def test_what_was_perceived_is_told_and_what_was_not_is_named(self):
+        study = types.SimpleNamespace()
+        lead = lead_of()
+        lead.pulses.append((30_000_000, 0.4))
+        lead.pictures.extend((k * FRAME_NS, jpeg(picture(900 + k, (EVENT,) if k >= 4 else ()))) for k in range(12))
+        with tempfile.TemporaryDirectory() as folder:
+            participant = simulated.Participant(study, "P01", 1, folder, lead)
+            observed = types.SimpleNamespace(event=str(EVENT), times_ns={"haptic": 32_000_000, "visual": 70_000_000})
+            self.assertEqual((4 * FRAME_NS * 1e-6 - 30, ""), participant.perceived_ms(observed))
+            warm = types.SimpleNamespace(event=str(EVENT), times_ns={"haptic": 32_000_000, "thermal": 70_000_000})
+            self.assertEqual((40, ""), participant.perceived_ms(warm))
+            for sense in ("haptic", "visual", "audio"):
+                lost = types.SimpleNamespace(event="99", times_ns={"thermal": 0, sense: 500_000_000})
+                self.assertEqual((None, simulated.UNPERCEIVED[sense]), participant.perceived_ms(lost))
+
+
+if __name__ == "__main__":
+    unittest.main()
