@@ -108,7 +108,7 @@ struct ProfileInForce {
   std::int64_t hash = 0;
   std::int64_t generation = 0;  // larger is newer
   SimTime start{};
-  std::shared_ptr<const Profile> parsed{};  // null: nobody in this process needs what it says
+  std::shared_ptr<const Profile> parsed;  // null: nobody in this process needs what it says
 };
 
 // Parses the text: generation 0, in force from the start. Throws as parse_profile does.
