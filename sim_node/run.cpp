@@ -132,7 +132,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
     }
     if (anew && now < life_begins) continue;
     if (std::exchange(anew, false)) {
-      node.renew();
+      node.begin_incarnation();
       simulation.begin_life(node.bus().identity().incarnation);
       begin_telling();
     }

@@ -173,7 +173,7 @@ void Solver::back_off(Manifold& c, bool is_new) {
 
 void Solver::join(Manifold& c) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
-  if (friction_maps_->applies(c.shape_a, c.shape_b)) friction_maps_->detect_contacts(to_body(motions_[a]), to_body(motions_[b]), c);
+  if (friction_maps_->applies(c.shape_a, c.shape_b)) friction_maps_->apply(to_body(motions_[a]), to_body(motions_[b]), c);
   const auto sa = static_cast<std::size_t>(c.shape_a), sb = static_cast<std::size_t>(c.shape_b);
   const bool first_is_b = engine_->bodies[a] == nullptr;
   const dBodyID first = engine_->bodies[first_is_b ? b : a], second = first_is_b ? nullptr : engine_->bodies[b];

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sync/clocks/pacing.h"
 #include "sync/node/realtime.h"
 #include "sync/virtual_time/virtual_time.h"
 

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <tactus/game_state_t.hpp>
+#include <utility>
 #include <vector>
 
 #include "sim_node/model/body_motion.h"

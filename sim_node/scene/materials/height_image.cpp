@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/height_map.h"
+#include "sync/assets/scene_exchange.h"
 
 namespace tactus::sim {
 
