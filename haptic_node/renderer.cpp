@@ -46,7 +46,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
-  choice_ = choose(*scene_, settings, tool_name_);
+  choice_ = resolve_config(*scene_, settings, tool_name_);
   if (session_) session_->let_go();
   begin_to_open(scenes);
   if (log_) log_->follow(choice_.tool);
