@@ -42,7 +42,7 @@ scene_t one_hand() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const scene_t scene = one_hand();
-  const NodeConfig choice = choose(scene, "", {});
+  const NodeConfig choice = resolve_config(scene, "", {});
   DeviceState hand;
   Safety safety(safety_limits(choice.settings));
   sync::ClockMaps maps(kRun);

@@ -85,7 +85,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
   const scene_t scene = floor_and_stylus();
   RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
   if (!profile.empty()) run.raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
-  const NodeConfig choice = choose(scene, "", {});
+  const NodeConfig choice = resolve_config(scene, "", {});
   DeviceState hand;
   Safety safety(safety_limits(choice.settings));
   sync::ClockMaps maps(kRun);

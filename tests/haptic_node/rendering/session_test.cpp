@@ -35,7 +35,7 @@ contact_events_t events_of(double sim_ms, std::vector<contact_event_t> list) {
   return m;
 }
 
-NodeConfig choice_of(const scene_t& s) { return choose(s, "", {}); }
+NodeConfig choice_of(const scene_t& s) { return resolve_config(s, "", {}); }
 
 // The tool rests 2 mm under the floor of z = 0.005 + ...: see the bodies' pose.
 scene_t pressing_scene() {
@@ -58,16 +58,16 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   s.settings[0].value = "3 N";
   s.settings[1].name = "stale_after";
   s.settings[1].value = "20ms";
-  CHECK(choose(s, "", {}).tool == 0);
-  CHECK(choose(s, "finger", {}).tool == 1);
-  CHECK(choose(s, "", {}).settings.force_limit_N == 3);
-  CHECK(choose(s, "", {"force_limit=2"}).settings.force_limit_N == 2);
-  CHECK(choose(s, "", {}).settings.stale_after_s == 0.02);
-  CHECK(choose(s, "toe", {}).tool == -1);
-  CHECK_THAT(choose(s, "toe", {}).problem, Contains("toe"));
+  CHECK(resolve_config(s, "", {}).tool == 0);
+  CHECK(resolve_config(s, "finger", {}).tool == 1);
+  CHECK(resolve_config(s, "", {}).settings.force_limit_N == 3);
+  CHECK(resolve_config(s, "", {"force_limit=2"}).settings.force_limit_N == 2);
+  CHECK(resolve_config(s, "", {}).settings.stale_after_s == 0.02);
+  CHECK(resolve_config(s, "toe", {}).tool == -1);
+  CHECK_THAT(resolve_config(s, "toe", {}).problem, Contains("toe"));
   CHECK_THAT(choose(scene_t{}, "", {}).problem, Contains("no tool"));
-  CHECK(choose(s, "", {"force=2"}).refused.size() == 1);
-  CHECK_THAT(limits_sentence(choose(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
+  CHECK(resolve_config(s, "", {"force=2"}).refused.size() == 1);
+  CHECK_THAT(limits_sentence(resolve_config(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
 TEST_CASE("A scene cannot loosen what protects the hand. The command line can") {
@@ -89,13 +89,13 @@ TEST_CASE("A scene cannot loosen what protects the hand. The command line can") 
     s.settings[0].node = "haptic_node";
     s.settings[0].name = name;
     s.settings[0].value = value;
-    const NodeConfig refused = choose(s, "", {});
+    const NodeConfig refused = resolve_config(s, "", {});
     REQUIRE(refused.refused.size() == 1);
     CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
     CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
     CHECK(choose(scene(), "", {name + "=" + value}).refused.empty());
   }
-  CHECK(choose(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
+  CHECK(resolve_config(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
 }
 
 TEST_CASE("A session touches what its own tool is told of, and nothing else") {
@@ -204,7 +204,7 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
 TEST_CASE("When the scene changes the force goes on from where it is, through the limits") {
   const scene_t s = pressing_scene();
   // So slow that the way from 0.4 N takes 40 ms.
-  const NodeConfig slow = choose(s, "", {"slew_limit=10", "energy_limit=0.4"});
+  const NodeConfig slow = resolve_config(s, "", {"slew_limit=10", "energy_limit=0.4"});
   Safety safety{safety_limits(slow.settings)};
   std::optional<Session> session(std::in_place, s, slow, device_of(s, slow), 1, safety);
   Vector3d last = Vector3d::Zero();

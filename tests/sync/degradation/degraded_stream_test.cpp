@@ -342,7 +342,7 @@ TEST_CASE("What is held back says nothing about the clock of who sent it") {
     const auto observe = [&](const header_t& h, HostTime at) {
       ++heard;
       CHECK_FALSE(clock.observe(h, at));
-      CHECK(clock.read(h.publish_time_ns, arrived).status == SenderClock::SampleStatus::kMapped);
+      CHECK(clock.read(h.publish_time_ns, arrived).source == SenderClock::ClockSource::kMapped);
       CHECK(at - (host_time(h.publish_time_ns) + kBehind) == kWay);
     };
     while (const auto m = snapshots.pop(arrived)) observe(m->first.header, m->second);

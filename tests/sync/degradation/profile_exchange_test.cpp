@@ -99,7 +99,7 @@ TEST_CASE("The profile in force is kept for the one that comes back, of the same
   const Folder folder;
   CHECK_FALSE(kept_profile(folder.path, 4));
   const std::string text = profile(3);
-  const ProfileInForce p{text, fnv1a_64(text.data(), text.size()), 12, sim_time(34)};
+  const ProfileInForce p{text, fnv1a_64(text.data(), text.size()), 12, sim_time(34), {}};
   keep_profile(folder.path, p, 4);
   const auto kept = kept_profile(folder.path, 4);
   REQUIRE(kept);
