@@ -45,7 +45,7 @@ Matrix3d covariance(const std::vector<Triangle>& triangles, std::span<const int>
   Matrix3d sum = Matrix3d::Zero();
   Vector3d mean = Vector3d::Zero();
   double area = 0;
-  const Vector3d near = triangles[static_cast<std::size_t>(part[0])].v[0];  // relative coordinates, to avoid cancellation far from the origin
+  const Vector3d near = triangles[static_cast<std::size_t>(part[0])].v[0];  // relative coordinates avoid cancellation far from the origin
   for (const int i : part) {
     const auto& at = triangles[static_cast<std::size_t>(i)].v;
     const Vector3d v[3] = {at[0] - near, at[1] - near, at[2] - near};
