@@ -98,7 +98,7 @@ Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int bo
   Appearance a;
   a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
   a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_look(context, *look);
+  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_visual_look(context, *look);
   read_material(context, from, a);
   return a;
 }
@@ -175,7 +175,7 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
   shape.kind = ShapeKind::kMesh;
   if (shape.material < 0) shape.material = material_of_file(context, named, -1);
   LookAttributes file_look;
-  if (!named.parts->look.empty()) file_look = read_look(context, *element_of("tactus:look", named.parts->look, named.file));
+  if (!named.parts->look.empty()) file_look = read_visual_look(context, *element_of("tactus:look", named.parts->look, named.file));
 
   // Materials with equal appearance are merged.
   std::set<int> seen;

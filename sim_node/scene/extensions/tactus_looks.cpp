@@ -222,7 +222,7 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
   each("tactus:environment", read_environment);
 }
 
-LookAttributes read_look(LoadContext& context, const sdf::Element& element) {
+LookAttributes read_visual_look(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const auto name = attributes.text("name");
   LookAttributes words = read_look_attributes(context, element, attributes);

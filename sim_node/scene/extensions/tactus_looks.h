@@ -26,7 +26,7 @@ struct LookAttributes {
 void read_looks(LoadContext& context, const sdf::ElementPtr& world);
 
 // Reads the <tactus:look> of a visual: its own attributes, and those of the named look of the world.
-LookAttributes read_look(LoadContext& context, const sdf::Element& element);
+LookAttributes read_visual_look(LoadContext& context, const sdf::Element& element);
 
 // Index of that look in the world, without duplicates; -1: empty look.
 int look_index(WorldDef& world, const LookAttributes& words);
