@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <tactus/contact_t.hpp>
-#include <tactus/scene_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/contact_patch.h"
