@@ -145,6 +145,12 @@ class Logs(Folders):
         row = self.one_row(self.replaced(2, 20, "WORLD_STATE", message(b"world", fingerprint=b"87654321")))
         self.assertEqual(row.artefact, "case/run/run.lcmlog:(fingerprints)")
 
+    def test_a_channel_of_plain_text_is_compared_from_its_first_byte(self):
+        rows = self.bad_rows({"run/run.lcmlog": log_of([*LOG, (40, "LOG_TYPES", b"types")])})
+        self.assertEqual([(row.artefact[-11:], row.result) for row in rows], [(".log:(order)"[-11:], comparison.DIFFERS), ("g:LOG_TYPES", comparison.NEW)])
+        found = log_file.by_channel(self.make("new", {"run/run.lcmlog": log_of([(40, "LOG_TYPES", b"types")])}) + "/run/run.lcmlog", self.none)
+        self.assertEqual((found["LOG_TYPES"], found[log_file.FINGERPRINTS]), ([log_file.TIME.pack(40) + b"types"], []))
+
     def test_version_and_commit_are_left_out_and_the_scene_is_not(self):
         self.assertEqual(self.bad_rows(self.replaced(0, 0, "LOG_INFO", message(text("0.2.0") + text("defg") + text("scene.sdf")))), [])
         self.assertEqual(self.one_row(self.replaced(0, 0, "LOG_INFO", message(text("0.1.0") + text("abc") + text("other.sdf")))).artefact, "case/run/run.lcmlog:LOG_INFO")
@@ -256,7 +262,12 @@ class Cases(Folders):
         self.assertEqual(names(None, False, "x.lcmlog"), ["log"])
         self.assertEqual(names(["stack"], False, "x.lcmlog"), ["stack", "log"])
         self.assertEqual(len(names(None, False, None)), len(cases.CASES))
-        self.assertNotIn("virtual_time", [words[0] for _, words in cases.steps(cases.of_log("x.lcmlog"), "/", "/f", {}, [])])
+        self.assertNotIn("virtual_time", [words[0] for _, words in cases.steps(cases.of_log("x.lcmlog"), "/", {}, [])])
+
+    def test_no_output_names_the_folder_that_it_lies_in(self):
+        for case in cases.CASES:
+            for name, words in cases.steps(case, "/root", {}, ["sse2"]):
+                self.assertEqual([word for word in words if word.startswith("/") and not word.endswith((".sdf", ".xml"))], [], name)
 
     def test_a_program_that_fails_or_is_not_there_is_named(self):
         build = runner.Build(self.folder, "/", self.none, "best", [], environment.of_programs("best", self.folder), {})

@@ -132,24 +132,24 @@ def sequence_of(folder, artefact, changes):
     return None
 
 
-def first_difference(kind, ours, theirs):
-    """Where two sequences of units begin to differ, as text. kind: "lines", "messages" or "blocks"."""
+def first_difference(kind, ours, theirs, channel=""):
+    """Where two sequences of units begin to differ, as text. kind: "lines", "messages" or "blocks"; channel: of messages."""
     offset = 0
     for number, (one, two) in enumerate(itertools.zip_longest(ours, theirs)):
         if one != two:
-            return describe(kind, number, offset, one, two)
+            return describe(kind, number, offset, one, two, channel)
         offset += len(one)
     return "no difference"
 
 
-def describe(kind, number, offset, one, two):
+def describe(kind, number, offset, one, two, channel):
     if one is None or two is None:
         return f"ends after {number} {kind} ({offset} bytes), the other goes on" if one is None else f"goes on after {number} {kind}, where the other ends"
     byte = next((i for i, (a, b) in enumerate(zip(one, two)) if a != b), min(len(one), len(two)))
     if kind == "lines":
         return f"line {number + 1}: {shown(one)} | before: {shown(two)}"
     if kind == "messages":
-        return f"message {number} at {log_file.time_of(one)} us, {log_file.place(byte)}"
+        return f"message {number} at {log_file.time_of(one)} us, {log_file.place(byte, channel)}"
     return f"byte {offset + byte}"
 
 

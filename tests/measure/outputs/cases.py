@@ -36,13 +36,13 @@ CASES = (
     Case("dark_room_game", 8, "the game with a simulated player, over a bus that delays and loses messages", player=True,
          bus=("--latency-ms", "4", "--jitter-ms", "2", "--loss-percent", "3")),
     Case("many_bodies", 2, "many contacts at a time"),
-    Case("stack", 3, "resting contacts, towers that fall"),
+    Case("stack", 6, "resting contacts, towers that a hand pushes over"),
     Case("friction_boundary", 3, "sliding over a friction map"),
     Case("bump_plane", 3, "sliding over surface relief"),
-    Case("materials_bench", 4, "all materials, struck and stroked", audio=("spatial=stereo",)),
-    Case("box_tool", 4, "a tool with torque, a mesh"),
-    Case("newtons_cradle", 3, "articulated bodies, hits in a row", playout=("--policy", "experiment", "--soa", "audio=50ms,visual=-20ms")),
-    Case("peg_in_hole", 3, "mesh against mesh"),
+    Case("materials_bench", 5, "all materials, struck and stroked", audio=("method=both", "spatial=stereo")),
+    Case("box_tool", 7, "a tool with torque, a mesh"),
+    Case("newtons_cradle", 10, "articulated bodies, hits in a row", playout=("--policy", "experiment", "--soa", "audio=50ms,visual=-20ms")),
+    Case("peg_in_hole", 5, "mesh against mesh"),
     Case("looks_bench", 2, "every way to draw a surface"),
     Case("steel_then_oak", 5, "warmth of two materials"),
     Case("metronome", 4, "a degradation profile in the run, playout in lock-step", playout=("--policy", "itouch2005"), profile="late_sound"),
@@ -68,7 +68,7 @@ def profile_file(root, name):
     return path if os.path.exists(path) else os.path.join(HERE, "profiles", name + ".xml")
 
 
-def plan(case, root, out, forced):
+def plan(case, root, forced):
     """{name: words} for virtual_time: the nodes of the run. forced: {program: settings} of the instruction set."""
     scene = os.path.join(root, SCENES, case.scene_file())
     nodes = {
@@ -88,7 +88,7 @@ def plan(case, root, out, forced):
             if name not in ("recorder", "sim_node"):
                 nodes[name] += ["--degrade", profile_file(root, case.profile)]
     for words in nodes.values():
-        words += ["--run-id", str(RUN_ID), "--seed", str(SEED), "--realtime", "off", "--out", out, *settings(forced.get(words[0], ()))]
+        words += ["--run-id", str(RUN_ID), "--seed", str(SEED), "--realtime", "off", "--out", "run", *settings(forced.get(words[0], ()))]
     return nodes
 
 
@@ -96,26 +96,26 @@ def settings(values):
     return [word for value in values for word in ("--set", value)]
 
 
-def steps(case, root, folder, forced, instructions):
-    """(name of a step, words) of everything that a case calls, in order. instructions: those that the processor has."""
-    out = lambda *names: os.path.join(folder, *names)
-    log = case.log or out("run", "run.lcmlog")
+def steps(case, root, forced, instructions):
+    """(name of a step, words) of everything that a case calls in its folder, in order. Paths are relative to it, so that no output
+    names a folder. instructions: those that the processor has."""
+    out, log = os.path.join, os.path.join("run", "run.lcmlog")
     if not case.log:
         yield "run", ["virtual_time", out("logs", "plan.json"), "--seconds", f"{case.seconds:g}", "--seed", str(SEED), *case.bus]
     scene = [] if case.log else ["--seconds", f"{case.seconds:g}", "--scene", case.scene_file(), "--seed", str(SEED)]
     yield "summarise", ["summarise", log, "--out", out("run", "summary.json"), *scene, "--git", "unknown"]
-    yield "export_csv", ["export_csv", log, "--out", out("run")]
-    yield "export_events", ["export_events", log, "--out", out("run")]
-    yield "tables", ["export_log", log, "--out", out("tables")]
-    yield "wide", ["export_log", log, "--out", out("wide"), "--wide"]
+    yield "export_csv", ["export_csv", log, "--out", "run"]
+    yield "export_events", ["export_events", log, "--out", "run"]
+    yield "tables", ["export_log", log, "--out", "tables"]
+    yield "wide", ["export_log", log, "--out", "wide", "--wide"]
     kinds = [("clean", None), ("degraded", profile_file(root, "several_operators"))]
     for kind, profile in kinds + ([("logged", "logged")] if case.profile else []):
-        for name, words in renderings(case, log, out(kind), forced):
+        for name, words in renderings(case, log, kind, forced):
             yield f"{kind}_{name}", words + (["--degrade", profile] if profile else [])
     for choice in instructions if case.each_instructions else ():
         yield f"audio_{choice}", ["audio_node", "--log", log, "--wav", out("instructions", f"audio_{choice}.wav"), "--set", f"instructions={choice}"]
     if case.player:
-        yield "games", ["play_games", os.path.join(root, SCENES, case.scene_file()), "--out", out("games"), "--latency-ms", "2"]
+        yield "games", ["play_games", os.path.join(root, SCENES, case.scene_file()), "--out", "games", "--latency-ms", "2"]
 
 
 def renderings(case, log, folder, forced):

@@ -46,7 +46,7 @@ def locate_in(folder, other, changes):
         ours, theirs = (artefacts.sequence_of(where, name, changes) for where in (folder, other))
         if ours is None or theirs is None:
             return locate_by_trail(name, record, stored)
-        return artefacts.first_difference(kind_of(record), ours, theirs)
+        return artefacts.first_difference(kind_of(record), ours, theirs, name.rpartition(":")[2])
     return locate
 
 

@@ -33,7 +33,7 @@ def libraries():
         return {}
     rows = [line.split("\t") for line in listed.splitlines()]
     return {package: version for status, package, version in rows
-            if status.startswith("ii") and package.startswith(PACKAGES) and not package.endswith(("-dev", "-dbg", "-bin", "-i18n"))}
+            if status.startswith("ii") and package.startswith(PACKAGES) and not package.endswith(("-dev", "-dbg", "-bin", "-i18n", "-i386"))}
 
 
 def key(choice, cpuinfo="/proc/cpuinfo"):

@@ -11,6 +11,7 @@ TIME = struct.Struct(">Q")
 FINGERPRINT_BYTES = 8
 HEADER_BYTES = 48  # header_t.lcm: sim_time_ns, publish_time_ns, clock, run_id, source, incarnation, seq
 FIELDS = (("sim_time_ns", 0), ("publish_time_ns", 8), ("clock", 16), ("run_id", 20), ("source", 28), ("incarnation", 32), ("seq", 40))
+PLAIN = ("LOG_TYPES", "LCM_SELF_TEST")  # text without fingerprint and header: sync/recorder_types.h, and LCM's own test of a bus
 FINGERPRINTS = "(fingerprints)"
 ORDER = "(order)"
 TEXTS_OF_LOG_INFO = 2  # version and git, the first two fields of log_info_t behind its header
@@ -44,10 +45,11 @@ def by_channel(path, changes):
     """
     found, fingerprints, order = {}, {}, []
     for time_us, channel, payload in events(path):
-        channel = changes.old_channel(channel)
-        fingerprints.setdefault(channel, set()).add(payload[:FINGERPRINT_BYTES].hex())
+        channel, body = changes.old_channel(channel), payload
         order.append(f"{time_us} {channel}\n".encode())
-        body = payload[FINGERPRINT_BYTES:]
+        if channel not in PLAIN:
+            fingerprints.setdefault(channel, set()).add(payload[:FINGERPRINT_BYTES].hex())
+            body = payload[FINGERPRINT_BYTES:]
         found.setdefault(channel, []).append(TIME.pack(time_us) + (without_version(body) if channel == "LOG_INFO" else body))
     found = dict(sorted(found.items()))
     found[FINGERPRINTS] = [TIME.pack(0) + f"{channel} {' '.join(sorted(prints))}\n".encode() for channel, prints in sorted(fingerprints.items())]
@@ -67,11 +69,13 @@ def time_of(message):
     return TIME.unpack_from(message)[0]
 
 
-def place(byte):
+def place(byte, channel=""):
     """The field of header_t, or the offset behind it, that a byte of a message of by_channel() belongs to."""
     if byte < TIME.size:
         return "its time stamp"
     byte -= TIME.size
+    if channel in (*PLAIN, FINGERPRINTS, ORDER):
+        return f"byte {byte}"
     if byte < HEADER_BYTES:
         return "header." + [name for name, begin in FIELDS if begin <= byte][-1]
     return f"byte {byte - HEADER_BYTES} behind its header"

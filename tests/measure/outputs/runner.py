@@ -35,12 +35,14 @@ class Build:
         for name in ("logs", "run", "tables", "wide", "clean", "degraded", *(["logged"] if case.profile else []),
                      *(["instructions"] if case.each_instructions else []), *(["games"] if case.player else [])):
             os.makedirs(os.path.join(folder, name))
-        if not case.log:
-            plan = cases.plan(case, self.root, os.path.join(folder, "run"), self.settings)
+        if case.log:
+            os.symlink(case.log, os.path.join(folder, "run", "run.lcmlog"))
+        else:
+            plan = cases.plan(case, self.root, self.settings)
             with open(os.path.join(folder, "logs", "plan.json"), "w", encoding="utf-8") as file:
                 # virtual_time takes the last part of a program's path, so that a plan holds no folder.
                 json.dump({name: self.planned(words) for name, words in plan.items()}, file, indent=1)
-        for name, command in cases.steps(case, self.root, folder, self.settings, self.instructions):
+        for name, command in cases.steps(case, self.root, self.settings, self.instructions):
             self.step(case, name, self.words(command), folder)
 
     def planned(self, command):
