@@ -115,6 +115,10 @@ class Differences(Folders):
         self.assertEqual(self.one_row({"clean/thermal.csv": FILES["clean/thermal.csv"], "clean/extra.csv": b"a\n"}).result, comparison.NEW)
         self.assertTrue({comparison.MISSING, comparison.NEW, comparison.FAILED, comparison.DIFFERS} == set(comparison.FAILURES))
 
+    def test_a_case_that_is_not_stored_is_one_row(self):
+        rows = comparison.compare("case", artefacts.records(self.make("new"), self.none), {}, self.none, comparison.locate_by_trail)
+        self.assertEqual([(row.artefact, row.result) for row in rows], [("case", comparison.NEW)])
+
     def test_without_the_bytes_a_difference_is_located_between_two_marks(self):
         lines = FILES["tables/TOOL_STATE.csv"].split(b"\n")
         lines[49] = b"48,0.6"
@@ -233,10 +237,21 @@ class Stored(Folders):
         stored.write(path, self.KEY, {"two": records})
         entries = stored.read(path)
         self.assertEqual([sorted(entry["cases"]) for entry in entries], [["one", "two"], ["one"]])
+        self.assertEqual(entries[1]["cases"]["one"], {})
         self.assertEqual(stored.entry_for(entries, self.KEY)["cases"]["one"], records)
         self.assertEqual(stored.entry_for(entries, {**self.KEY, "libraries": {}})["key"], self.KEY)
         self.assertIsNone(stored.entry_for(entries, {**self.KEY, "forced": True}))
         self.assertEqual(environment.different_libraries({"libode8": "2"}, {"libode8": "1"}), ["libode8: 1 stored, 2 here"])
+
+    def test_equal_records_of_another_instruction_set_are_stored_once(self):
+        path = os.path.join(self.folder, "results.json")
+        records = artefacts.records(self.make("stored"), self.none)
+        other = {**records, "clean/audio.wav": records["clean/haptic.csv"]}
+        for instructions, found in (("avx2", records), ("sse2", other)):
+            stored.write(path, {**self.KEY, "instructions": instructions}, {"one": found})
+        self.assertEqual([entry["cases"]["one"] for entry in stored.read(path)], [records, other])
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(file.read().count(records["clean/thermal.csv"]["sha256"]), 1)
 
     def test_a_file_that_is_none_is_refused(self):
         path = os.path.join(self.folder, "results.json")

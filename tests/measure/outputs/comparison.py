@@ -23,6 +23,8 @@ def kind_of(record):
 def compare(case, ours, theirs, changes, locate):
     """A row for each artefact of one case. ours, theirs: {artefact: record}; locate(artefact, record, stored) gives the first
     difference as text."""
+    if not theirs:
+        return [Row(case, NEW, f"the case is not stored; --store adds its {len(ours)} artefacts")]
     rows = []
     for name in sorted(ours.keys() | theirs.keys()):
         record, stored = ours.get(name), theirs.get(name)

@@ -1,4 +1,7 @@
-"""The file of stored results: a list of entries, one for each instruction set and versions of libraries."""
+"""The file of stored results: a list of entries, one for each instruction set and versions of libraries.
+
+An entry after the first holds only the records that differ from those of the first, and null where it lacks an artefact.
+"""
 import json
 import os
 
@@ -17,7 +20,19 @@ def read(path):
         raise Refused(f"{path}: cannot be read ({error}); make one with --store") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise Refused(f"{path}: is not a file of format {FORMAT}; make one with --store")
-    return content["entries"]
+    entries = content["entries"]
+    for entry in entries[1:]:
+        entry["cases"] = {case: completed(found, entries[0]["cases"].get(case, {})) for case, found in entry["cases"].items()}
+    return entries
+
+
+def completed(found, first):
+    return {name: record for name, record in {**first, **found}.items() if record is not None}
+
+
+def reduced(found, first):
+    """What completed() makes whole again."""
+    return {name: found.get(name) for name in found.keys() | first.keys() if found.get(name) != first.get(name)}
 
 
 def entry_for(entries, key):
@@ -43,9 +58,10 @@ def text_of(entries):
     """JSON with one line for each artefact, so that a change of the file shows what changed."""
     lines = ['{"format": %d, "entries": [' % FORMAT]
     for number, entry in enumerate(entries):
+        first = entries[0]["cases"] if number else {}
         lines.append(' {"key": ' + json.dumps(entry["key"], sort_keys=True) + ',\n  "cases": {')
         for index, (case, found) in enumerate(entry["cases"].items()):
-            rows = ",\n".join(f"    {json.dumps(name)}: {json.dumps(record)}" for name, record in sorted(found.items()))
+            rows = ",\n".join(f"    {json.dumps(name)}: {json.dumps(record)}" for name, record in sorted(reduced(found, first.get(case, {})).items()))
             lines.append(f"   {json.dumps(case)}: {{\n{rows}}}" + ("," if index + 1 < len(entry["cases"]) else ""))
         lines.append("  }}" + ("," if number + 1 < len(entries) else ""))
     return "\n".join([*lines, "]}"]) + "\n"
