@@ -1,5 +1,5 @@
-// Puts the pages of touch models together. Only a whole set counts: pages of two steps are never mixed, a set that
-// lacks a page is given up for a newer one that is whole, and until then the hand keeps the one before. Pure.
+// Assembles touch models from their pages. Only complete sets count: pages of two steps are never mixed, a newer
+// complete set replaces an incomplete one, and until then the previous model stays in use. Pure.
 #pragma once
 
 #include <array>
@@ -11,24 +11,24 @@ namespace tactus::haptic {
 
 class TouchPages {
  public:
-  // Sets that may be on their way at once, since pages of one step and the next may overtake each other; of more
-  // the oldest is given up. Design: two steps, and what a reordering profile adds.
+  // Sets that may be in transit at once, since pages of successive steps may overtake each other; beyond that the
+  // oldest is discarded. Design: two steps, plus the effect of a reordering profile.
   static constexpr std::size_t kGathering = 4;
   static constexpr int kMaxPages =
-      16;  // design: twice what a tool has, 49 planes of 7 a page; larger sets are ignored
+      16;  // design: twice the number of a tool, 49 planes at 7 a page; larger sets are ignored
 
-  // Takes a page. When it is the last that its set lacked, the whole model: page 0 of 1, with the planes and books
-  // of all pages in their order; valid until the next call. Else null. Repeated pages change nothing.
-  // Realtime-safe once the lists have grown.
+  // Adds a page. Returns the complete model when it was the last missing page: page 0 of 1, with the planes and
+  // applied impulses of all pages in order, valid until the next call. Otherwise null. Repeated pages change
+  // nothing. Realtime-safe once the lists have grown.
   const touch_model_t* add(const touch_model_t& page);
-  // Whether the page given last was of a set that was whole already.
+  // True when the last page belonged to a set that was already complete.
   bool repeated() const { return repeated_; }
-  // Forgets all that are not whole.
+  // Discards all incomplete sets.
   void clear();
 
  private:
-  // A page's number and place give the number of its set's first page: also while the world stands still, when all
-  // sets are of one instant.
+  // first_seq is the sequence number of the first page, from the number and place of any page. It identifies a set
+  // even while the simulation is paused and all sets have the same instant.
   struct Key {
     std::int64_t incarnation = 0, sim_time_ns = 0, first_seq = 0;
     int pages = 0;
@@ -38,12 +38,12 @@ class TouchPages {
     Key key;
     std::array<touch_model_t, kMaxPages> page;
     std::bitset<kMaxPages> has;
-    std::int64_t used = 0;  // when it was begun, in pages; 0: free
+    std::int64_t used = 0;  // page count at which the set began; 0: free
   };
   Set& set_of(const Key& key);
 
   std::array<Set, kGathering> sets_;
-  std::array<Key, kGathering> done_{};  // made whole lately: a page that comes again begins no new set
+  std::array<Key, kGathering> done_{};  // recently completed: a repeated page starts no new set
   std::size_t next_done_ = 0;
   std::int64_t count_ = 0;
   bool repeated_ = false;

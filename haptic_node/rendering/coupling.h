@@ -30,10 +30,11 @@ struct Gains {
 //   K <= 2 (b - B) / T                          passive for any hand (Colgate and Schenkel 1997)
 //   K <= factor * m / tau^2                     a moving body answers only after the loop delay tau; lower when
 //                                               tau is long compared with the motion of hands
-//   B >= 1.5 K tau, B <= 3 factor * m / tau     for motion of frequency w, a spring that is tau late is a damper of
-//                                               -K sin(w tau) / w and drives the oscillation of the body. The damper
-//                                               returns the energy that the spring takes; both are late, so K
-//                                               decreases where B cannot increase
+//   B >= 1.5 K tau, B <= 3 factor * m / tau     for motion of frequency w, a spring that is tau late is a damper
+//   of
+//                                               -K sin(w tau) / w and drives the oscillation of the body. The
+//                                               damper returns the energy that the spring takes; both are late, so
+//                                               K decreases where B cannot increase
 //   (B + b rho^2) / (2 sqrt(K mu)) >= ratio     first by more damping, then by less stiffness
 // body_mass_kg of 1e9 and above means a fixed body; the limits with tau then do not apply.
 Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m, double body_mass_kg,

@@ -29,7 +29,7 @@ class ForceCrossfade {
   bool changed(std::span<const Surface> surfaces);
 
   double time_s_, step_N_s_;
-  std::vector<std::int64_t> last_set_;  // contacts that bound in the last tick, in list order
+  std::vector<std::int64_t> last_set_;                   // contacts that bound in the last tick, in list order
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();       // rendered, N
   Eigen::Vector3d remainder_ = Eigen::Vector3d::Zero();  // remaining part of the force of the old set, N
   double left_s_ = 0;                                    // time until it is zero

@@ -1,5 +1,5 @@
-// The quality ladder of haptic_node. The time of a tick increases with the number of planes, so fewer planes are
-// considered when a tick takes more than half of its period. Pure.
+// The quality ladder of haptic_node. The time of a tick increases with the number of planes; when a tick takes
+// more than half of its period, fewer planes are considered. Pure.
 #pragma once
 
 #include <array>

@@ -23,7 +23,8 @@ Eigen::Vector3d past(const Surface& s, const DeviceState& device, const Eigen::V
   return device.velocity + device.spin.cross(arm) - s.velocity_at(s.point);
 }
 
-// normal, moment / lever|^2: a contact off the centre is less stiff in translation by this factor; the rest is rotation.
+// normal, moment / lever|^2: a contact off the centre is less stiff in translation by this factor; the rest is
+// rotation.
 double off_centre(const Surface& s, const Eigen::Vector3d& arm, double lever_m) {
   return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
 }
