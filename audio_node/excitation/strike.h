@@ -1,4 +1,4 @@
-// What crosses into the audio callback: one impact, by value, with all that is needed to sound it.
+// Message to the audio callback about one impact, by value, with all data to render it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace tactus::audio {
 inline constexpr int kMaxModes = 128;
 static_assert(kMaxModes % kModeGroup == 0);
 
-// One number for each mode of a body; those that it does not have are 0.
+// One number for each mode of a body; unused modes are 0.
 struct alignas(64) PerMode : std::array<float, kMaxModes> {};
 
 // The modes of one body at one sample rate (bank/ring.h).
@@ -23,7 +23,7 @@ struct Resonators {
   int count = 0;
   PerMode damping{}, stiffness{};
 
-  // A mode more; nothing happens beyond kMaxModes.
+  // Adds a mode; ignored beyond kMaxModes.
   void add(const ModeStep& step) {
     if (count == kMaxModes) return;
     const auto i = static_cast<std::size_t>(count++);
@@ -33,19 +33,20 @@ struct Resonators {
 
 // One of the two bodies of an impact.
 struct StrikeSide {
-  std::int64_t voice = -1;  // the same for the same body: it is excited again without losing its state; -1: none
+  // the same for the same body, which is then excited again without losing its state; -1: none
+  std::int64_t voice = -1;
   Resonators resonators;
-  PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
+  PerMode gains{};    // of each mode at the struck place, Pa at 1 m per N s; may be negative
   float impulse = 0;  // N s, scaled to full scale per Pa
-  float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
-  SourcePosition place;        // where it is heard from
+  float click = 0;    // response to the change between samples of a unit-sum pulse (jerk of the rigid body)
+  SourcePosition place;        // position of the source
 };
 
 struct Strike {
   std::int64_t event_id = 0;
   sync::HostTime scheduled{};
   ForcePulse pulse = one_hump(1);
-  float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction
+  float heard_from = 0;  // factor on its strength below which it is predicted to be inaudible
   std::array<StrikeSide, 2> sides;
   float impulse_N_s = 0, speed_m_s = 0;  // of the blow
   RecordedStrike recorded;
