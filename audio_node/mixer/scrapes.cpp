@@ -15,8 +15,7 @@ constexpr double kLeap_m = 0.005;  // design
 constexpr double kStrength_s = 0.002;
 // A contact without updates and without an end fades out.
 constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are not a gap
-constexpr double kMaxOver_s =
-    0.5;  // design: or twice the update interval, but at most this
+constexpr double kMaxOver_s = 0.5;                 // design: or twice the update interval, but at most this
 
 // Plausible range. Design: far beyond any scene, so that no number overflows.
 constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxWay = 10, kMaxStrength = 10;
