@@ -57,7 +57,7 @@ struct Liar {
     if (kind == 3) p.point_m = to_vec3(vector());
     if (!finite && kind == 4) p.normal = to_vec3f(vector());
     const auto positive = [&](double x) { return finite ? std::clamp(std::abs(x), 1e-30, 9e8) : x; };
-    // Every third is static, whatever else it reports: the passivity controller soon releases moving ones.
+    // Every third is static, regardless of its other fields: the passivity controller soon releases moving ones.
     p.effective_mass_kg = below(3) == 0 ? 1e10f : static_cast<float>(positive(number()));
     moves[p.contact_id] = p.effective_mass_kg < 1e9f;
     p.stiffness_N_m = static_cast<float>(positive(number()));
