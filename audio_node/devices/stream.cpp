@@ -177,8 +177,8 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
   return paContinue;
 }
 
-// The thread of the callback inherits the priority of the thread that opened the stream; the priority of the card
-// is higher.
+// The callback thread inherits the priority of the thread that opened the stream; this raises it to that of the
+// callback.
 void Stream::enter_thread() {
   entered_ = true;
   if (!sync::is_realtime()) return wake_early();
