@@ -10,7 +10,7 @@ namespace tactus::sync {
 
 class LogTimeRanges {
  public:
-  // Design: health is published at 10 Hz, so fewer than 32 nearby stamps cannot be a run.
+  // Design: fewer than 32 nearby stamps cannot be a run, because every node publishes its health at 10 Hz.
   static constexpr std::int64_t kFewestOfARun = 32;
   // Stamps that are farther apart than this, with none between, belong to two ranges: SummaryClock::kLargestStep.
   static constexpr std::int64_t kApart_us = 60'000'000;
