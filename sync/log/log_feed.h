@@ -51,8 +51,8 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events whose stamps are damaged: further than LogTimeRanges::kApart_us from those of the run, and too few to
-  // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
+  // Events with damaged stamps: further than LogTimeRanges::kApart_us from the stamps of the run, and too few to be a later
+  // part of it. They are passed on with the event before them, and do not lengthen the run.
   std::int64_t misdated() const { return ages_.misdated(); }
   // One sentence when the log does not state its run, or states it wrongly; empty otherwise.
   const std::string& recovered() const { return origin_.recovered; }
