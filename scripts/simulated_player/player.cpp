@@ -26,18 +26,15 @@ constexpr double kFeltPlace_s = 0.03;  // averaging time of the felt place on th
 constexpr double kSightWeight = 0.5;   // weight of sight against touch, for the place of a ball on the hand
 constexpr double kDamping_1_s = 1.5;    // rate at which the sideways speed of a ball is braked
 // Rate at which the hand moves to the balance point: slower than the steering, because sight is late.
-constexpr double kBalance_1_s =
-    4;
+constexpr double kBalance_1_s = 4;
 constexpr double kFurthest_m = 0.05;  // limit of the prediction
 // Limit of the ball's sideways offset on the hand, as a share of their distance.
-constexpr double kSteepest =
-    0.5;
+constexpr double kSteepest = 0.5;
 constexpr double kHolds_N = 4;  // objects that can be pushed do not resist this long
 constexpr double kGives_m = 0.05;
 constexpr double kLevel_m_s2 = 0.05;  // less of a slope needs no balance
 // Distance of a ball that was never seen in front of its hole, as given before the game.
-constexpr double kFirstGuess_m =
-    0.2;
+constexpr double kFirstGuess_m = 0.2;
 
 Vector3d flat(const Vector3d& v) { return {v.x(), v.y(), 0}; }
 
@@ -122,8 +119,7 @@ Vector3d Player::act(const Percept& p) {
 Vector3d Player::over_floor(const Vector3d& at) const {
   if (rules_.floor_m.isEmpty()) return at;
   // design: the hand does not touch the walls
-  const Eigen::Vector2d edge =
-      Eigen::Vector2d::Constant(2 * rules_.hand_radius_m);
+  const Eigen::Vector2d edge = Eigen::Vector2d::Constant(2 * rules_.hand_radius_m);
   const Eigen::Vector2d on =
       at.head<2>().cwiseMax(rules_.floor_m.min() + edge).cwiseMin(rules_.floor_m.max() - edge);
   return {on.x(), on.y(), at.z()};
@@ -266,9 +262,7 @@ Vector3d Player::balance(const Percept& p, const Vector3d& u) {
   const double speed_m_s = (sight * ball().speed_m_s + (1 - sight) * felt_speed_m_s_).dot(a);
   const double against = -rules_.slope_m_s2.dot(u);
   // Without contact: the next push gives the ball its own speed along the way.
-  double tangent =
-      -speed_m_s /
-      def_.push_m_s;
+  double tangent = -speed_m_s / def_.push_m_s;
   if (felt && against > kLevel_m_s2)
     tangent = (-1.4 * kDamping_1_s * speed_m_s - rules_.slope_m_s2.dot(a)) / against;
   const double wanted_m = reach_m() * std::clamp(tangent, -kSteepest, kSteepest);

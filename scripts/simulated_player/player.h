@@ -45,8 +45,7 @@ struct PlayerDef {
   double clear_m = 0.13;   // height of travel over the floor
   double slow_m_s = 0.15;  // it waits for a ball that rolls faster
   // Predicted age of sight at the time of action: the reaction time plus the age of an undegraded picture.
-  double reckons_s =
-      0.2;
+  double reckons_s = 0.2;
   double gap_m = 0.02;  // distance behind the ball at which the hand comes down
 };
 

@@ -21,9 +21,8 @@ struct Rules {
   double hand_radius_m = 0;  // of the scene's first tool
   // The permitted area of the hand: over the floor that contains the holes. Empty: unlimited.
   Eigen::AlignedBox2d floor_m{};
-  Eigen::Vector3d slope_m_s2{
-      // Along the floor: the acceleration of a free ball, before the share of its rotation.
-      0, 0, 0};
+  // Along the floor: the acceleration of a free ball, before the share of its rotation.
+  Eigen::Vector3d slope_m_s2{0, 0, 0};
 };
 
 // Throws std::runtime_error with one sentence when the file holds no game of balls.

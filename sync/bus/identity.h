@@ -37,7 +37,7 @@ struct Identity {
   static Identity fresh(std::string node, std::int64_t run_id);
 };
 
-// Ids of events and contacts: 24 bits of the incarnation above a 40-bit counter.
+// Ids of events and contacts: the low 23 bits of the incarnation above a 40-bit counter.
 constexpr std::int64_t prefixed_id(std::int64_t incarnation, std::int64_t count) {
   return ((incarnation & 0x7fffff) << 40) | (count & ((std::int64_t{1} << 40) - 1));
 }

@@ -36,7 +36,7 @@ struct Decision {
   HostTime release{};                // time of release
   Nanoseconds shift{0};              // of an event: the presentation delay of a filtered rule that applies to it
   bool twice = false;
-  bool touched = false;  // an operator applied, so the decision is logged
+  bool touched = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }
 };
 

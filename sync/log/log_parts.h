@@ -1,4 +1,4 @@
-// The files of one recording: DIR/run.lcmlog, or the next free number in that folder, and for a split recording run.2.lcmlog,
+// The files of one recording: DIR/run.lcmlog, or the number after the existing ones, and for a split recording run.2.lcmlog,
 // run.3.lcmlog, ... Each begins with its own head, so that it replays alone.
 #pragma once
 
@@ -21,9 +21,8 @@ struct LogLimits {
   std::int64_t split_bytes = 0;
   Nanoseconds split_after{0};
   int keep = 0;  // parts; the oldest are removed
-  // max_bytes: of all parts together; the oldest are removed. A log of a single part leaves out the excess.
-  std::int64_t max_bytes =
-      0;
+  // Of all parts together; the oldest are removed. A log of a single part leaves out the excess.
+  std::int64_t max_bytes = 0;
   bool splits() const { return split_bytes > 0 || split_after > Nanoseconds(0); }
 };
 

@@ -8,7 +8,7 @@ type Kind = "graph" | "bar" | "text";
 // The values of a variable from one sender: two hands both send TOOL_STATE.
 interface Series { source: number; times: number[]; values: number[] }
 interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; least: number; most: number; plot?: uPlot }
-const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // as many as the
+const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // one for each sender that the server distinguishes
 
 export class Variables {
   private cards: Card[] = [];
