@@ -1,5 +1,5 @@
-// What pages are told of a study, and the answers that they give: who leads it, what is asked, and whether a page has answered.
-// Pure: messages go in and out.
+// The state of a study for the pages, and the answers of the pages: its leader, the present question, and whether a page has
+// answered. Pure: messages are passed in and out.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,18 @@ class Answers {
   explicit Answers(std::int64_t run_id) : asked_(run_id) {}
 
   void push(const question_t& m, sync::HostTime arrival);
-  // The answer of a page. Throws std::invalid_argument with one sentence when it fits no question that is asked, or one that has
-  // been answered.
+  // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the present question, or when
+  // that has been answered.
   void answer(const AnswerThus& answer, sync::HostTime now);
-  // What is to be sent now: an answer once, and again for each repetition of its question.
+  // The answer to publish now: once, and again for each repetition of its question.
   std::optional<answer_t> take_answer() { return std::exchange(to_send_, std::nullopt); }
-  // A log was wound.
+  // The log position was changed.
   void clear() { asked_.clear(), to_send_.reset(); }
 
-  // For pages; null: nobody leads a study. `question` names what is asked for AnswerThus: JavaScript has no integers of 64 bits.
+  // For pages; null: no process leads a study. `question` is the name of the question for AnswerThus, as text: JavaScript has
+  // no 64-bit integers.
   nlohmann::json told(sync::HostTime now) const;
-  // Who leads: header.source; nothing: nobody.
+  // header.source of the leader; nullopt: there is none.
   std::optional<std::int32_t> leader(sync::HostTime now) const;
 
  private:

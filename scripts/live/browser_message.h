@@ -1,4 +1,4 @@
-// What a browser may ask, read as what a stranger sent: each kind has its members, each member its range, anything else is
+// Parses the messages of a browser as untrusted input: each kind has its members, each member its range, and anything else is
 // refused with one sentence. Pure.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace tactus::live {
 
-// What the sliders of one sense say; 0: nothing is wrong with it.
+// Positions of the sliders of one modality; 0: no degradation.
 struct Sliders {
   double delay_ms = 0;  // 0 .. 2000
   double rate_Hz = 0;   // 0, or 0.1 .. 1000
@@ -19,7 +19,7 @@ struct Sliders {
 };
 
 struct WatchThese {
-  std::vector<std::string> names;  // "CHANNEL:path" or "node.tag", at most kMostWatched
+  std::vector<std::string> names;  // "CHANNEL:path" or "node.tag", at most kMaxWatched
 };
 struct Command {
   std::int8_t kind = 0;  // of sim_command_t: PAUSE, RESUME, STEP or RESET
@@ -27,10 +27,10 @@ struct Command {
 };
 struct DegradeThus {
   std::map<std::string, Sliders> senses;
-  bool clear = false;  // all else of the profile in force goes, too
+  bool clear = false;  // also removes all other operators of the profile in force
 };
 struct HandAt {
-  double x = 0, y = 0;  // place in the picture, -1 .. 1 from left to right and from below to above
+  double x = 0, y = 0;  // place in the picture, -1 .. 1 from left to right and from bottom to top
   double push_m = 0;    // away from the camera, -1 .. 1
   bool down = false;    // held: the first button of the device
 };
@@ -41,10 +41,10 @@ struct LogPlay {
 struct LogSeek {
   double to_s = 0;  // since its beginning
 };
-// The answer of a participant to what a study asks; answers.h holds it against the question.
+// The answer of a participant to a study's question; answers.h checks it against the question.
 struct AnswerThus {
-  std::string question;       // its name, as the page was told
-  int choice = -1;            // 0 .. 8; -1: it is none of a choice
+  std::string question;       // its name, as sent to the page
+  int choice = -1;            // 0 .. 8; -1: not a choice
   double number = 0;          // at most 1e9
   std::int64_t after_ns = 0;  // since the page first showed the question, at most a day
 };

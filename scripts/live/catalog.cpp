@@ -5,7 +5,7 @@
 namespace tactus::live {
 namespace {
 
-constexpr int kDeepest = 4;  // design: deeper lies nothing that one would draw
+constexpr int kDeepest = 4;  // design: deeper members are not worth plotting
 
 void add(const MessageType& type, const std::string& before, int depth, nlohmann::json& out, const std::string& channel) {
   for (const Field& field : type.fields) {

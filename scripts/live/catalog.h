@@ -1,4 +1,4 @@
-// What a page may choose from: every number of every message, and all tagged variables that are known. Pure.
+// The variables that a page offers: every number of every message, and all known tagged variables. Pure.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +8,8 @@
 
 namespace tactus::live {
 
-// [{"name": "TOOL_STATE:force_N.z", "unit": "N", "about": ...}, ...] of all channels that run often. Of a list its first
-// element; any other can be asked for by hand.
+// [{"name": "TOOL_STATE:force_N.z", "unit": "N", "about": ...}, ...] of all channels with regular messages. Of a list its
+// first element; others can be requested by name.
 nlohmann::json field_catalog();
 
 }  // namespace tactus::live

@@ -17,7 +17,7 @@ namespace {
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 constexpr sync::Nanoseconds kPatience{3'000'000'000};  // an answer comes with the next step
 constexpr sync::Nanoseconds kProfile{2'000'000'000};   // as tactus degrade; sync_node repeats it then
-constexpr sync::Nanoseconds kTags{1'000'000'000};      // as TAG_REQUEST says
+constexpr sync::Nanoseconds kTags{1'000'000'000};      // as required for TAG_REQUEST
 
 header_t unstamped() {
   header_t h{};

@@ -1,5 +1,6 @@
-// What pages do to the cluster, as tactus simulation, degrade and set do it, but without waiting: each order is repeated until
-// it is answered or has been sent for long enough. Bounded: a new order of a kind takes the place of the one before.
+// Carries out the requests of pages in the cluster, as tactus simulation, degrade and set do, but without waiting: each
+// request is repeated until it is answered or has been sent for long enough. Bounded: a new request replaces the previous one
+// of its kind.
 #pragma once
 
 #include <cstdint>
@@ -31,15 +32,16 @@ class Controls {
   using Tell = std::function<void(const std::string& sentence, bool good)>;
   explicit Controls(sync::Bus& bus, Tell tell);
 
-  // realtime_ns: CLOCK_REALTIME, which numbers profiles. Each throws std::invalid_argument with one sentence when it must not be.
+  // realtime_ns: CLOCK_REALTIME, which numbers profiles. Each throws std::invalid_argument with one sentence for an invalid
+  // request.
   void command(const Command& command, sync::HostTime now);
   void degrade(const DegradeThus& sliders, std::int64_t realtime_ns, sync::HostTime now);
   void hand(const HandAt& at, double aspect, sync::HostTime now);
-  // Asks visual_node for so many pictures a second.
+  // Requests pictures from visual_node at this rate; 0: none.
   void stream(double rate_Hz, sync::HostTime now);
   void want_tags(const std::vector<std::string>& names, sync::HostTime now);
 
-  // Once a turn of the loop: sends what is due and reads the answers.
+  // Call it once an iteration of the loop: sends due messages and reads the answers.
   void step(sync::HostTime now);
 
   struct World {
@@ -47,10 +49,10 @@ class Controls {
     bool known = false;
   };
   World world(sync::HostTime now) const;
-  // The profile in force, whoever sent it; none: none was heard of.
+  // The profile in force, from any sender; nullopt: none has been received.
   const std::optional<sync::ProfileInForce>& profile() const { return in_force_; }
   const scene_t* scene() const { return scene_.scene(); }
-  // Of the scene that is there now; grows with each.
+  // Number of scenes so far; increases with each new one.
   int scenes() const { return scenes_; }
 
  private:

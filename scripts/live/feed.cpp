@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr sync::Nanoseconds kHealthPeriod{250'000'000};  // design: faster than one reads
-constexpr sync::Nanoseconds kLostAfter{1'500'000'000};   // as watch does
+constexpr sync::Nanoseconds kHealthPeriod{250'000'000};  // design: faster than a user reads
+constexpr sync::Nanoseconds kLostAfter{1'500'000'000};   // as in watch
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 

@@ -1,5 +1,5 @@
-// What all pages show alike, gathered from the messages as they come from the bus or out of a log: health of the nodes, the
-// report of sync_node, events and what became of them in each sense. Pure; bounded whatever arrives.
+// The common content of all pages, collected from the messages of the bus or of a log: health of the nodes, the report of
+// sync_node, and events with their outcomes in each modality. Pure; bounded for any input.
 #pragma once
 
 #include <cstdint>
@@ -26,26 +26,26 @@ namespace tactus::live {
 
 class Feed {
  public:
-  // Events are remembered until so many later ones; of a frame more are left out and counted.
+  // Number of remembered events; events of one frame beyond kMaxOfFrame are left out and counted.
   static constexpr std::size_t kRemembered = 4096;
   static constexpr std::size_t kMaxOfFrame = 400;
   static constexpr std::size_t kMaxNodes = 64, kMaxModalities = 32;
 
-  // run_id: only messages of this run; 0: of any, as in a log.
+  // run_id: accepts only messages of this run; 0: of any run, as in a log.
   explicit Feed(std::int64_t run_id) : run_id_(run_id) {}
 
-  // Channels that are of use here.
+  // True for channels that are used here.
   static bool wants(std::string_view channel);
   void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // A log was wound back.
+  // The log position was changed.
   void clear();
 
-  // What is new since the last call, for every page; {} when nothing is.
+  // The changes since the last call, for every page; {} when there are none.
   nlohmann::json news(sync::HostTime now);
-  // All that somebody needs who has just come: the state of all nodes and the newest report.
+  // The complete state for a new page: all nodes and the newest report.
   nlohmann::json state(sync::HostTime now) const;
   std::set<std::string> modalities() const;
-  // Which node sends as this source; "": none that was heard of.
+  // The node with this header.source; "": unknown.
   std::string node_of(std::int32_t source) const;
   std::int64_t bad() const { return bad_; }
 

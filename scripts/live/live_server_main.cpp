@@ -1,9 +1,11 @@
-// live_server: shows a running cluster, or a log, in web pages, and hands on what the pages ask for.
+// live_server: shows a running cluster, or a log, in web pages, and forwards the requests of the pages.
 //
 //   in   all channels that a page shows; QUESTION; SIM_REPLY, SETTING_REPLY, SCENE_MANIFEST, ASSET_CHUNK
-//   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"), ANSWER: only what a page asks
+//   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"), ANSWER: only
+//   on request of a page
 //
-// Nobody waits for it. A page that does not keep up loses frames of its own, which are counted; without a page nothing is decoded.
+// No other process waits for it. A slow page loses frames of its own, which are counted; without a page no message is
+// decoded.
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
@@ -30,7 +32,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kTurn{5'000'000};      // design: the device that a page is speaks at 200 Hz
+constexpr sync::Nanoseconds kTurn{5'000'000};      // design: the device of a page publishes at 200 Hz
 constexpr double kStream_Hz = 15;                  // design: smooth enough to steer by, 12 KB each
 constexpr std::size_t kMaxFileBytes = 8 << 20;
 std::atomic<bool> stop{false};
@@ -69,7 +71,7 @@ std::int64_t realtime_ns() {
   return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// What is served, with the pages that look on.
+// The served content, with the open pages.
 class Server {
  public:
   Server(const Options& o, live::PageSession& station)
@@ -82,10 +84,10 @@ class Server {
              o.token, o.bind == "127.0.0.1",
              {[this](int page) { opened_.push_back(page); }, [this](int page) { station_.close(page); pages_.erase(page); },
               [this](int page, std::string_view text) { messages_.emplace_back(page, text); }}) {
-    // The address is for a person; whoever reads it from this output opens it.
+    // The address is for the user; a program that reads this output can open it.
     std::cout << "live_server: open http://" << o.bind << ":" << web_.port() << "/?token=" << o.token << std::endl;
   }
-  // handle(page, message) for each thing that a page asks.
+  // Calls handle(page, message) for each request of a page.
   template <class Handle>
   void turn(Handle&& handle) {
     web_.run_for(kTurn);
@@ -109,7 +111,7 @@ class Server {
       }
     }
   }
-  // True when a frame was sent.
+  // Returns true when a frame was sent.
   bool show(sync::HostTime now, const nlohmann::json& extra) {
     if (const auto picture = station_.picture()) {
       const auto bytes = shared(*picture);
@@ -144,7 +146,7 @@ void show_log(const Options& o) {
   live::PageSession station(false, 0, std::filesystem::path(o.log).filename());
   Server server(o, station);
   sync::HostTime last = sync::host_now();
-  bool wound = false;  // and no page knows it yet
+  bool wound = false;  // the log position has changed, and no page has received it yet
   while (!stop) {
     server.turn([&](const live::BrowserMessage& m) {
       if (const auto* play = std::get_if<live::LogPlay>(&m)) {
@@ -159,7 +161,7 @@ void show_log(const Options& o) {
     });
     const sync::HostTime now = sync::host_now();
     player.read_on();
-    if (server.anybody())  // it waits for who opens it
+    if (server.anybody())  // playback waits for the first page
       player.advance(now - last, [&](std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime t) {
         if (station.wants(channel)) station.take(channel, bytes, t);
       });
@@ -186,7 +188,7 @@ void show_cluster(const Options& o) {
   live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.tell(sentence, good); });
   std::vector<std::pair<std::string, sync::RawQueue*>> inputs;
   for (const Channel& c : channel_types()) {
-    const std::size_t capacity = c.name == channels::kPictureChunk ? 1024 : 128;  // design: some turns of each
+    const std::size_t capacity = c.name == channels::kPictureChunk ? 1024 : 128;  // design: some iterations of each
     inputs.emplace_back(c.name, &bus.raw(std::string(c.name).c_str(), capacity));
     inputs.back().second->set_wanted(false);
   }
@@ -214,7 +216,8 @@ void show_cluster(const Options& o) {
     if (auto answer = station.answers().take_answer()) bus.publish(channels::kAnswer, *answer);
     const bool looks = server.anybody();
     if (looks && !looked_on) opened = now;
-    // Somebody's own choice of a stream is left as it is: pictures come already, or come on after the last page has gone.
+    // A stream that another program requested is left unchanged: if pictures arrive already, this server neither starts nor
+    // stops it.
     if (looks && !streaming && now - opened > sync::from_seconds(1) &&
         (!station.picture_came() || now - *station.picture_came() > sync::from_seconds(2))) {
       controls.stream(kStream_Hz, now);
@@ -222,7 +225,7 @@ void show_cluster(const Options& o) {
       opened = now;
     }
     if (streaming && looks && station.picture_came() && now - *station.picture_came() > sync::from_seconds(4) && now - opened > sync::from_seconds(5)) {
-      streaming = false;  // visual_node was started anew and knows of nothing
+      streaming = false;  // visual_node was restarted and has lost the request
     }
     if (!looks && looked_on && streaming) {
       controls.stream(0, now);
@@ -239,7 +242,7 @@ void show_cluster(const Options& o) {
       degradation = live::told_of(controls.profile()->text);
       next_scene = now;  // at once
     }
-    // Again once a second, for who has just come.
+    // Again once a second, for new pages.
     if (controls.scene() != nullptr && now >= next_scene) {
       extra["degradation"] = degradation;
       extra["scene"] = scene_of(*controls.scene());

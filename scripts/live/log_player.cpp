@@ -20,8 +20,8 @@ LogPlayer::LogPlayer(const std::string& path)
 LogPlayer::LogPlayer(std::span<const std::uint8_t> bytes) : bytes_(bytes), whole_(bytes), scanner_(bytes) { begin(); }
 
 void LogPlayer::begin() {
-  // What turns the stamps into the recorder's CLOCK_MONOTONIC comes first; a log of LCM's own logger lacks it: then its stamps
-  // are the clock.
+  // The offset between the stamps and the recorder's CLOCK_MONOTONIC comes first in the log. A log of LCM's own logger lacks
+  // it: its stamps are then used as the clock.
   sync::LogScanner look(bytes_);
   sync::LogEvent event;
   bool any = false;
@@ -40,7 +40,7 @@ void LogPlayer::begin() {
 }
 
 sync::HostTime LogPlayer::stamp(const sync::LogEvent& event) const {
-  constexpr std::int64_t kMax_us = 4'000'000'000'000'000;  // the year 2096; more is damage
+  constexpr std::int64_t kMax_us = 4'000'000'000'000'000;  // the year 2096; later stamps are damaged
   const std::int64_t us = std::clamp<std::int64_t>(event.timestamp_us, 0, kMax_us);
   return sync::host_time(us * 1000 - std::clamp<std::int64_t>(offset_ns_, -kMax_us * 1000, kMax_us * 1000));
 }

@@ -1,5 +1,5 @@
-// A log that is played for pages: forward at any speed, from any place. Pure but for the mapping of the file. The log is read
-// through once in pieces while it plays, so that a large one opens at once.
+// Plays a log for pages: forward at any speed, from any position. Pure, except that it maps the file. The log is scanned once
+// in pieces while it plays, so that a large one opens at once.
 #pragma once
 
 #include <cstdint>
@@ -20,27 +20,27 @@ namespace tactus::live {
 class LogPlayer {
  public:
   using Take = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
-  // Design: a tenth of a second of reading or playing at once at the most, on a slow machine.
+  // Design: at most a tenth of a second of reading or playing at once, on a slow machine.
   static constexpr int kMaxEvents = 20'000;
-  // After a seek what lies so far before is shown too, so that graphs are not empty.
+  // Length of the log before the position of a seek that is shown, too, so that graphs are not empty.
   static constexpr sync::Nanoseconds kBefore{3'000'000'000};
 
-  // Throws std::runtime_error with one sentence when that is no log.
+  // Throws std::runtime_error with one sentence when the file is no log.
   explicit LogPlayer(const std::string& path);
-  // The same of bytes that live longer than this.
+  // The same for bytes that outlive this object.
   explicit LogPlayer(std::span<const std::uint8_t> bytes);
 
-  // Reads on; true while there is more.
+  // Scans the next piece; returns true while there is more.
   bool read_on();
   void play(bool on, double rate) { playing_ = on, rate_ = rate; }
-  // The next advance begins kBefore there, and hands over what lies between at once.
+  // The next advance starts kBefore earlier, and passes on the events in between at once.
   void seek(double to_s);
-  // So much real time has passed: hands over what was recorded meanwhile.
+  // Advances by this real time: passes on the events recorded in that interval.
   void advance(sync::Nanoseconds dt, const Take& take);
 
   bool playing() const { return playing_; }
   double rate() const { return rate_; }
-  // Of the recorder's clock.
+  // On the recorder's clock.
   sync::HostTime position() const { return position_; }
   double position_s() const { return sync::to_seconds(position_ - begin_); }
   double length_s() const { return sync::to_seconds(end_ - begin_); }

@@ -1,5 +1,5 @@
-// Who may talk to the server: the page that it has served itself, and nobody else's. A foreign page in the same browser could
-// otherwise move a haptic device. Pure.
+// Access control of the server: only its own page may connect. A foreign page in the same browser could otherwise move a
+// haptic device. Pure.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@ namespace tactus::live {
 
 struct Access {
   int port = 0;
-  bool loopback = true;  // bound to 127.0.0.1: then only its names are answered to
-  std::string token;     // of the address that was printed
+  bool loopback = true;  // bound to 127.0.0.1: only names of this host are accepted
+  std::string token;     // of the printed address
 };
 
-// The Host of a request: one of our own names. With a name of its own, which an attacker's name server lets point here, a
-// foreign page would count as ours.
+// Checks the Host of a request: it must be a name of this server. Otherwise a foreign page could use a name of its own that
+// an attacker's name server resolves to this address (DNS rebinding).
 bool host_allowed(std::string_view host, const Access& access);
-// Of a WebSocket: it comes from the page of that very host. A browser always says where it comes from.
+// Checks the Origin of a WebSocket: it must be the page of that very host. A browser always sends it.
 bool origin_allowed(std::string_view origin, std::string_view host);
-// What follows "token=" in the target of a request is the token. Takes the same time whatever is guessed.
+// True when the text after "token=" in the target of a request is the token. The comparison takes constant time.
 bool token_right(std::string_view target, const Access& access);
 
 }  // namespace tactus::live

@@ -20,10 +20,10 @@ namespace {
 
 using nlohmann::json;
 
-// Text of the bus may be no UTF-8: what is none is replaced.
+// Text of the bus may contain invalid UTF-8, which is replaced.
 std::string dump(const json& j) { return j.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-constexpr sync::Nanoseconds kSameClock{5'000'000'000};  // farther from its arrival is a time of another clock
+constexpr sync::Nanoseconds kSameClock{5'000'000'000};  // a time farther from its arrival belongs to another clock
 constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 
 }  // namespace
@@ -31,7 +31,7 @@ constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 PageSession::PageSession(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
 bool PageSession::wants(std::string_view channel) const {
-  // Also while no page is there: what was answered is repeated for who leads a study.
+  // Also without a page: given answers are repeated for the leader of a study.
   if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
   if (Feed::wants(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
@@ -60,7 +60,7 @@ void PageSession::take(std::string_view channel, std::span<const std::uint8_t> b
     if (!m) return;
     auto picture = pictures_.take(*m);
     if (!picture) return;
-    // Of several walls the first; visual_node draws it.
+    // Of several walls the first, unless visual_node draws one.
     if (!wall_ || picture->source == static_cast<std::int32_t>(sync::fnv1a_32("visual_node"))) wall_ = picture->source;
     if (picture->source != *wall_) return;
     if (picture->height > 0) aspect_ = static_cast<double>(picture->width) / picture->height;
@@ -83,7 +83,7 @@ json PageSession::study(sync::HostTime now) const {
 
 json PageSession::tag_list() const {
   json out = json::array();
-  std::map<std::string, std::pair<std::string, std::int64_t>> newest;  // name: unit, and when it was heard
+  std::map<std::string, std::pair<std::string, std::int64_t>> newest;  // name: unit, and when it was received
   for (const auto& [key, list] : tags_.lists())
     for (const tag_def_t& t : list.tags) {
       if (t.name.empty() || newest.size() >= kMaxTags) continue;

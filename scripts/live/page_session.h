@@ -1,4 +1,4 @@
-// Between the messages and the pages: what came is handed to what each page watches, and what is new is told in frames. Pure.
+// Connects the messages and the pages: passes messages to the watches of each page, and sends changes in frames. Pure.
 #pragma once
 
 #include <cstdint>
@@ -31,28 +31,28 @@ class PageSession {
   void open(int page) { watches_[page]; }
   void close(int page) { watches_.erase(page); }
   bool anybody() const { return !watches_.empty(); }
-  // What one page shows from now on; the sentence says which names are none, "": all are names.
+  // Sets the variables that one page shows from now on. Returns a sentence about invalid names; "": all are valid.
   std::string watch(int page, const std::vector<std::string>& names) { return watches_[page].set(names); }
 
   bool wants(std::string_view channel) const;
   void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // A log was wound.
+  // The log position was changed.
   void clear();
 
-  // What a page gets first.
+  // The first message to a page.
   std::string hello(sync::HostTime now) const;
-  // The frame of each page; extra: members that all get.
+  // The frame of each page; extra: members that all frames get.
   std::map<int, std::string> frames(sync::HostTime now, const nlohmann::json& extra);
-  // The newest picture that nobody has taken yet, as JPEG.
+  // The newest picture that has not been taken yet, as JPEG.
   std::optional<std::string> picture();
   double picture_aspect() const { return aspect_; }
-  // When pictures came last.
+  // The arrival of the newest picture.
   std::optional<sync::HostTime> picture_came() const { return picture_came_; }
 
-  // The tagged variables that any page wants, as TAG_REQUEST names them.
+  // The tagged variables that the pages show, as patterns of TAG_REQUEST.
   std::vector<std::string> wanted_tags() const;
   const Feed& feed() const { return feed_; }
-  // What a study asks, and what pages have answered.
+  // The present question of a study, and the answers of pages.
   Answers& answers() { return answers_; }
 
  private:

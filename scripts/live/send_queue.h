@@ -1,5 +1,5 @@
-// What waits to be sent to one browser. Bounded: a browser that does not keep up loses messages, which are counted and shown,
-// and of pictures it gets the newest only. Pure.
+// The send queue of one browser. Bounded: a slow browser loses messages, which are counted and shown, and gets only the
+// newest picture. Pure.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ class SendQueue {
   static constexpr std::size_t kMaxMessages = 64;
   static constexpr std::size_t kMaxBytes = 4 << 20;
 
-  // False, and counted: there is no room.
+  // Returns false, and counts, when there is no room.
   bool push(std::shared_ptr<const std::string> text) {
     if (texts_.size() >= kMaxMessages || bytes_ + text->size() > kMaxBytes) return ++dropped_, false;
     bytes_ += text->size();
     texts_.push_back(std::move(text));
     return true;
   }
-  // In place of one that has not been sent.
+  // Replaces a picture that has not been sent.
   void put_picture(std::shared_ptr<const std::string> picture) {
     if (picture_) ++dropped_pictures_;
     picture_ = std::move(picture);
   }
-  // Texts first: they are small and control what is seen.
+  // Texts first: they are small, and they control the display.
   std::optional<Outgoing> pop() {
     if (!texts_.empty()) {
       Outgoing next{std::move(texts_.front()), false};

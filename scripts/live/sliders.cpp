@@ -27,7 +27,7 @@ const std::string& or_empty(const std::string& profile) {
 
 bool has_value(const XMLElement& e, const char* name) { return e.Attribute(name) != nullptr; }
 
-// Whether it counts always and for all contacts.
+// True for a rule that applies at all times and to all contacts.
 bool plain(const XMLElement& e) {
   return !has_value(e, "from") && !has_value(e, "until") && !has_value(e, "bodies") && !has_value(e, "material");
 }
@@ -54,7 +54,7 @@ std::string number(double value) {
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * std::abs(a); }
 
-// An element that has lost its last operator would be no line of a profile.
+// False for an element without any operator left, which is no valid rule.
 bool does_something(const XMLElement& e) {
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
     if (const std::string name = a->Name(); name != "modality" && name != "conceal") return true;
@@ -95,13 +95,13 @@ void slide_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
 void slide_loss(XMLElement& root, const std::string& sense, double loss) {
   const auto old = operator_of("loss", first(root, sense, "loss")).loss.value_or(sync::LossDef{});
   if (same(old.share, loss)) return;
-  // More losses than bursts of that length allow come each by itself (sync/random/loss.h).
+  // A share that bursts of that length cannot reach becomes independent losses (sync/random/loss.h).
   const bool fits = old.mean_burst >= 1 && old.mean_burst * (1 - loss) > loss;
   set(root, sense, "loss",
       loss > 0 ? number(loss * 100) + "%" + (fits ? " burst=" + number(old.mean_burst) : "") : "");
 }
 
-// The name of the profile.
+// Parses the document and returns the name of the profile.
 std::string parse(tinyxml2::XMLDocument& document, const std::string& profile) {
   const std::string& text = or_empty(profile);
   const std::string name = sync::parse_profile(text, "the profile in force").name;

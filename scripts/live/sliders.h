@@ -1,5 +1,5 @@
-// Between the page's sliders and a degradation profile: what the profile in force says is shown, and what a slider
-// changes is changed in it, while all else that it says stays. Pure.
+// Converts between the page's sliders and a degradation profile: the sliders show the profile in force, and a moved slider
+// changes only its own value in it. Pure.
 #pragma once
 
 #include <map>
@@ -10,18 +10,18 @@
 
 namespace tactus::live {
 
-// What the sliders of each sense show of a profile: the first value that counts always and for all contacts.
+// The slider positions of each modality for a profile: the first value that applies at all times and to all contacts.
 struct Shown {
   Sliders sliders;
-  bool more = false;  // the profile says more of this sense than its sliders show
+  bool more = false;  // the profile has more operators of this modality than its sliders show
 };
-// Throws std::invalid_argument with one sentence when that is no profile; "" is one that degrades nothing.
+// Throws std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
 std::map<std::string, Shown> shown_of(const std::string& profile);
-// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as pages are told it.
+// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as sent to pages.
 nlohmann::json told_of(const std::string& profile);
 
-// The profile with the sliders at these places: a value that a slider has not changed stays as it was written,
-// with its kind, its burst and its phase. Throws as above, also when the result is none.
+// The profile with the sliders at these positions: a value that a slider has not changed stays as written, with its kind, its
+// burst and its phase. Throws as above, also for an invalid result.
 std::string slid(const std::string& profile, const std::map<std::string, Sliders>& senses);
 
 }  // namespace tactus::live

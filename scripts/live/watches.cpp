@@ -51,7 +51,7 @@ Watches::Curve* Watches::curve(Watch& w, std::int32_t source) {
 
 void Watches::keep(Curve& c, sync::HostTime time, double value) {
   if (!std::isfinite(value)) return;
-  const bool back = c.newest && time < *c.newest;  // a log that was wound back
+  const bool back = c.newest && time < *c.newest;  // a log that was sought backwards
   if (c.newest && !back && time - *c.newest < kThinnest) return;
   c.newest = time;
   c.waiting.push_back({time, value});

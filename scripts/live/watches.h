@@ -1,5 +1,5 @@
-// The variables that one page shows: their values between two frames, of each sender by itself (two hands both
-// send TOOL_STATE), thinned out to what a screen can show. Pure; bounded.
+// The variables that one page shows: their values between two frames, separate for each sender (two hands both send
+// TOOL_STATE), thinned to the resolution of a screen. Pure; bounded.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,20 @@ namespace tactus::live {
 
 class Watches {
  public:
-  // Design: no screen shows more values of one curve in one second than 200.
+  // Design: no screen shows more than 200 values of one curve per second.
   static constexpr sync::Nanoseconds kThinnest{5'000'000};
-  // Values of one curve for one frame, the newest: what lies before a place in a log comes at once when the log is wound there,
-  // LogPlayer::kBefore of it.
+  // Values of one curve for one frame, the newest: after a seek, LogPlayer::kBefore of the log arrives at once.
   static constexpr std::size_t kMaxWaiting = 600;
-  // Curves of one variable; of more senders the values are left out. Design: as many colours can be told apart.
+  // Curves of one variable; values of further senders are left out. Design: the number of distinguishable colours.
   static constexpr std::size_t kMaxSenders = 8;
 
-  // Instead of those before. A name that is none is left out; the sentence says why, "": all are names.
+  // Replaces the shown variables. Invalid names are left out. Returns a sentence with the reason; "": all are valid.
   // "CHANNEL:path" is a field, anything else "node.tag".
   std::string set(const std::vector<std::string>& names);
 
   bool wants(std::string_view channel) const;
   void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // Of a tagged variable.
+  // A value of a tagged variable.
   void take_tag(const std::string& name, sync::HostTime time, double value);
   std::vector<std::string> tags() const;
 

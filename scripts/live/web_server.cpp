@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t kMaxHeaderBytes = 8192;
 constexpr std::chrono::seconds kRequestPatience{10};  // design
-// Design: a page that says nothing for so long, also not to pings, is closed. One that is frozen costs a full queue till then.
+// Design: a page that is silent for this time, also to pings, is closed. Until then a frozen page costs a full queue.
 constexpr std::chrono::seconds kIdle{60};
 
 class Page;
@@ -51,7 +51,7 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
 
 namespace {
 
-// One WebSocket. All in one thread.
+// One WebSocket. Single-threaded.
 class Page : public std::enable_shared_from_this<Page> {
  public:
   Page(beast::tcp_stream stream, std::shared_ptr<WebServer::Impl> server) : socket_(std::move(stream)), server_(server) {}
@@ -114,7 +114,7 @@ class Page : public std::enable_shared_from_this<Page> {
   int number_ = 0;
 };
 
-// One request; it becomes a page, is answered with a file, or refused.
+// One request: it becomes a WebSocket, is answered with a file, or is refused.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, std::shared_ptr<WebServer::Impl> server) : stream_(std::move(socket)), server_(server) {

@@ -1,4 +1,5 @@
-// Serves the page and its WebSockets from the loop of its owner: no thread, no wait. One file knows the library, Boost.Beast.
+// Serves the page and its WebSockets from the loop of its owner: without a thread, without waiting. Boost.Beast is used only
+// in web_server.cpp.
 #pragma once
 
 #include <chrono>
@@ -20,7 +21,7 @@ struct PageFile {
 
 class WebServer {
  public:
-  // Design: the windows of some people, and no flood of connections.
+  // Design: enough windows for a few users, and a limit against floods of connections.
   static constexpr std::size_t kMaxPages = 8, kMaxConnections = 32;
 
   struct Impl;  // of web_server.cpp
@@ -28,29 +29,29 @@ class WebServer {
     std::function<void(int page)> opened, closed;
     std::function<void(int page, std::string_view text)> message;
   };
-  // listen_fd: a socket that listens already; it is the server's from here on. files: by path, "/" first of all. Throws
-  // std::runtime_error with one sentence when it is none.
+  // listen_fd: a listening socket; the server takes ownership. files: by path, "/" at least. Throws std::runtime_error with
+  // one sentence when listen_fd is no listening socket.
   WebServer(int listen_fd, std::map<std::string, PageFile> files, std::string token, bool loopback, Events events);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  // Handles what has come until something was done or so much time has passed; returns after `at_most` at the latest.
+  // Handles events until at least one was handled or at_most has passed.
   void run_for(std::chrono::nanoseconds at_most);
 
-  // To one page, or none when it has gone.
+  // To one page; no effect when it is closed.
   void send(int page, std::shared_ptr<const std::string> text);
   void send_picture(int page, std::shared_ptr<const std::string> picture);
   const SendQueue* queue(int page) const;
   int port() const;
-  // Requests of foreign pages and wrong tokens.
+  // Requests of foreign pages and with wrong tokens.
   std::int64_t refused() const;
 
  private:
   std::shared_ptr<Impl> impl_;
 };
 
-// A socket that listens on this address. Throws std::runtime_error with one sentence.
+// Opens a socket that listens on this address. Throws std::runtime_error with one sentence.
 int listen_on(const std::string& address, int port);
 
 }  // namespace tactus::live

@@ -7,7 +7,7 @@
 namespace tactus::participant {
 namespace {
 
-// The tremor keeps its direction for so long (design: movements are corrected some five times a second).
+// Correlation time of the tremor (design: movements are corrected about five times a second).
 constexpr double kTremor_s = 0.2;
 
 }  // namespace
@@ -15,7 +15,7 @@ constexpr double kTremor_s = 0.2;
 void Arm::step(const Eigen::Vector3d& wanted_m, const Eigen::Vector3d& force_N, double dt_s) {
   const Eigen::Vector3d commanded = (wanted_m - wanted_) / dt_s;
   wanted_ = wanted_m;
-  // A first-order process with the standard deviation of a share of the commanded speed.
+  // A first-order process; its standard deviation is a share of the commanded speed.
   const double keep = std::exp(-dt_s / kTremor_s);
   Eigen::Vector3d drawn;
   for (int axis = 0; axis < 3; ++axis)

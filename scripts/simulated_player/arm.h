@@ -1,4 +1,4 @@
-// The arm that holds the device: it goes where the player wants, as fast as an arm can, trembles, and yields to force. Pure.
+// The arm that holds the device: it follows the player's target with the speed, tremor and compliance of an arm. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,13 +6,13 @@
 
 namespace tactus::participant {
 
-// Design, in the range of what is measured of hands that hold a posture (Tsuji, Morasso, Goto and Ito 1995, Biological
-// Cybernetics 72, "Human hand impedance characteristics during maintained posture").
+// Design, in the range of measured hands that hold a posture (Tsuji, Morasso, Goto and Ito 1995, Biological Cybernetics 72,
+// "Human hand impedance characteristics during maintained posture").
 struct ArmDef {
   double mass_kg = 1.0;
   double stiffness_N_m = 300;
   double damping_N_s_m = 25;
-  // Noise of movement grows with what is commanded (Harris and Wolpert 1998, Nature 394, "Signal-dependent noise determines
+  // Movement noise grows with the motor command (Harris and Wolpert 1998, Nature 394, "Signal-dependent noise determines
   // motor planning"); the share is design.
   double noise_share = 0.02;
 };

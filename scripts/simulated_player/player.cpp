@@ -10,31 +10,31 @@ namespace {
 
 using Eigen::Vector3d;
 
-// All design.
+// All values are design.
 constexpr double kThere_m = 0.006;     // near enough to a place
-constexpr double kMoved_m = 0.03;      // a ball that has moved so far is gone after anew
-constexpr double kFallen_m = -0.01;    // a ball whose centre is below that is in a hole
-constexpr double kHeard_s = 1.0;       // a fall that was heard is believed against the eyes for so long
-constexpr double kLost_s = 0.6;        // pushing without seeing or feeling for so long, the ball is gone
-constexpr double kStuck_s = 1.5;       // what does not move for so long is no ball
-constexpr double kTurn_m = 0.025;      // a search widens by so much each turn
-constexpr double kWidest_m = 0.2;      // then it begins anew
-constexpr double kSteer_1_s = 6;       // how quickly it goes sideways to get behind a ball
-constexpr double kSeenSpeed_s = 0.05;  // the speed of what is seen is a mean over so long
-constexpr double kFeltSpeed_s = 0.06;  // and of what is felt
-constexpr double kFeltPlace_s = 0.03;  // and so is its place on the hand
-constexpr double kSightWeight = 0.5;   // of sight against touch, for where a ball lies on the hand
-constexpr double kDamping_1_s = 1.5;    // a ball that runs to a side is braked so quickly
-constexpr double kBalance_1_s =
-    4;  // how quickly the hand goes where it balances: slower than what steers, for sight is late
-constexpr double kFurthest_m = 0.05;  // nobody reckons further ahead than this
-constexpr double kSteepest =
-    0.5;                        // a ball lies no further to a side of the hand than this share of their distance
-constexpr double kHolds_N = 4;  // nothing that it pushes resists so much for long
+constexpr double kMoved_m = 0.03;      // a ball that has moved this far is approached again
+constexpr double kFallen_m = -0.01;    // a ball with its centre below this is in a hole
+constexpr double kHeard_s = 1.0;       // a heard fall overrides sight for this time
+constexpr double kLost_s = 0.6;        // after pushing for this time without sight or touch, the ball is lost
+constexpr double kStuck_s = 1.5;       // an object that does not move for this time is no ball
+constexpr double kTurn_m = 0.025;      // a search widens by this each revolution
+constexpr double kWidest_m = 0.2;      // then it restarts
+constexpr double kSteer_1_s = 6;       // rate of the sideways movement behind a ball
+constexpr double kSeenSpeed_s = 0.05;  // averaging time of the seen speed
+constexpr double kFeltSpeed_s = 0.06;  // averaging time of the felt speed
+constexpr double kFeltPlace_s = 0.03;  // averaging time of the felt place on the hand
+constexpr double kSightWeight = 0.5;   // weight of sight against touch, for the place of a ball on the hand
+constexpr double kDamping_1_s = 1.5;    // rate at which the sideways speed of a ball is braked
+// Rate at which the hand moves to the balance point: slower than the steering, because sight is late.
+constexpr double kBalance_1_s = 4;
+constexpr double kFurthest_m = 0.05;  // limit of the prediction
+// Limit of the ball's sideways offset on the hand, as a share of their distance.
+constexpr double kSteepest = 0.5;
+constexpr double kHolds_N = 4;  // objects that can be pushed do not resist this long
 constexpr double kGives_m = 0.05;
 constexpr double kLevel_m_s2 = 0.05;  // less of a slope needs no balance
-constexpr double kFirstGuess_m =
-    0.2;  // a ball that was never seen lies so far in front of its hole: as told beforehand
+// Distance of a ball that was never seen in front of its hole, as given before the game.
+constexpr double kFirstGuess_m = 0.2;
 
 Vector3d flat(const Vector3d& v) { return {v.x(), v.y(), 0}; }
 
@@ -48,7 +48,7 @@ Player::Player(Rules rules, const PlayerDef& def)
 
 double Player::height() const { return std::max(0.75 * target().ball_radius_m, rules_.hand_radius_m + 0.004); }
 
-// The hand touches a ball below its middle: its centre is nearer than the sum of the radii.
+// The hand touches a ball below its middle, so its centre is nearer than the sum of the radii.
 double Player::reach_m() const {
   const double sum = target().ball_radius_m + rules_.hand_radius_m, up = target().ball_radius_m - height();
   return std::sqrt(std::max(0.0, sum * sum - up * up));
@@ -118,8 +118,8 @@ Vector3d Player::act(const Percept& p) {
 
 Vector3d Player::over_floor(const Vector3d& at) const {
   if (rules_.floor_m.isEmpty()) return at;
-  const Eigen::Vector2d edge =
-      Eigen::Vector2d::Constant(2 * rules_.hand_radius_m);  // design: it does not touch the walls
+  // design: the hand does not touch the walls
+  const Eigen::Vector2d edge = Eigen::Vector2d::Constant(2 * rules_.hand_radius_m);
   const Eigen::Vector2d on =
       at.head<2>().cwiseMax(rules_.floor_m.min() + edge).cwiseMin(rules_.floor_m.max() - edge);
   return {on.x(), on.y(), at.z()};
@@ -171,7 +171,7 @@ void Player::feel(const Percept& p) {
     felt_speed_m_s_ += std::min(1.0, dt_s_ / kFeltSpeed_s) * ((at - felt_at_m_) / dt_s_ - felt_speed_m_s_);
   felt_at_m_ = at;
   if (sees() || (doing_ != Doing::kPush && doing_ != Doing::kSearch)) return;
-  // What it cannot see lies where it pushes back from.
+  // An unseen ball lies where the reaction force comes from.
   Belief& b = ball();
   b.at_m = p.hand_m - force / force_N_ * (target().ball_radius_m + rules_.hand_radius_m);
   b.at_m.z() = target().ball_radius_m;
@@ -180,7 +180,7 @@ void Player::feel(const Percept& p) {
   only_felt_ = true;
 }
 
-// The next ball that is not in its hole, when this one is.
+// Selects the next ball that is not in its hole, when the present one is.
 void Player::choose() {
   const int count = static_cast<int>(beliefs_.size());
   if (goal_ < count && !ball().in_hole) return;
@@ -194,7 +194,7 @@ void Player::choose() {
 }
 
 Vector3d Player::rise(const Percept& p) {
-  // A hand that is held gives way to where it is drawn, until it is free.
+  // A hand that is held yields in the direction of the pull until it is free.
   if (held()) return begun_m_ = towards(p.hand_m + kGives_m * pull_N_.normalized(), def_.reach_m_s);
   Vector3d up = begun_m_;
   up.z() = def_.clear_m;
@@ -203,10 +203,10 @@ Vector3d Player::rise(const Percept& p) {
 }
 
 Vector3d Player::travel(const Percept&) {
-  // Where nothing is known, a search begins behind the place.
+  // Without any belief about the ball, a search begins behind its place.
   Vector3d to = over_floor(behind(def_.gap_m));
   to.z() = def_.clear_m;
-  // Over a ball that rolls it waits until that is slow: coming down behind it would be coming down on it.
+  // It waits above a rolling ball until the ball is slow, so that it does not come down on it.
   if ((wanted_m_ - to).norm() < kThere_m && !rolls()) begin(Doing::kDescend);
   return towards(to, def_.reach_m_s);
 }
@@ -243,16 +243,16 @@ Vector3d Player::push(const Percept& p) {
   const Vector3d steer = rules_.slope_m_s2.norm() > kLevel_m_s2 ? balance(p, u)
                          : sees()                               ? Vector3d(-kSteer_1_s * aside)
                                                                 : Vector3d::Zero();
-  // Nobody pushes further ahead of his hand than this.
+  // Limits the distance by which the target leads the hand.
   Vector3d next = wanted_m_ + dt_s_ * (speed * u + steer);
   if (flat(next - p.hand_m).norm() > 0.03) next = p.hand_m + 0.03 * flat(next - p.hand_m).normalized();
   next.z() = height();
   return next;
 }
 
-// On a slope the hand carries the ball's weight along it, N = m g_u / c_u; aside it gives N c_a, so the ball's
-// acceleration there is 5/7 (g_a + g_u c_a / c_u) (a rolling sphere has 7/5 of its mass). It is made to brake what
-// the ball does to the side.
+// On a slope the hand carries the ball's weight along it, N = m g_u / c_u; sideways it gives N c_a, so the ball's sideways
+// acceleration is 5/7 (g_a + g_u c_a / c_u) (a rolling sphere has 7/5 of its mass). The controller sets it so that it brakes
+// the sideways motion.
 Vector3d Player::balance(const Percept& p, const Vector3d& u) {
   const Vector3d a(-u.y(), u.x(), 0);
   const bool seen = sees(), felt = feels();
@@ -261,9 +261,8 @@ Vector3d Player::balance(const Percept& p, const Vector3d& u) {
   const double offset_m = (sight * flat(expected_m() - p.hand_m) + (1 - sight) * felt_from_hand_m_).dot(a);
   const double speed_m_s = (sight * ball().speed_m_s + (1 - sight) * felt_speed_m_s_).dot(a);
   const double against = -rules_.slope_m_s2.dot(u);
-  double tangent =
-      -speed_m_s /
-      def_.push_m_s;  // of a ball that is not on the hand: the next push gives it its own speed along the way
+  // Without contact: the next push gives the ball its own speed along the way.
+  double tangent = -speed_m_s / def_.push_m_s;
   if (felt && against > kLevel_m_s2)
     tangent = (-1.4 * kDamping_1_s * speed_m_s - rules_.slope_m_s2.dot(a)) / against;
   const double wanted_m = reach_m() * std::clamp(tangent, -kSteepest, kSteepest);
@@ -275,7 +274,7 @@ Vector3d Player::search(const Percept&) {
     begin(Doing::kRise);
     return wanted_m_;
   }
-  // A spiral about where it was last, at the speed of a push.
+  // A spiral about its last place, at the speed of a push.
   const Vector3d centre = flat(ball().at_m);
   const double radius = std::max(searched_m_, 0.01);
   turned_rad_ += dt_s_ * def_.push_m_s / radius;

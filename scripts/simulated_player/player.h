@@ -1,16 +1,15 @@
-// A hand that plays: finds each ball, goes behind it and pushes it into its hole, with nothing but what its senses
-// say. Pure: time is an argument.
+// A simulated player: finds each ball, moves the hand behind it and pushes it into its hole, with nothing but the percepts of
+// its modalities. Pure: time is an argument.
 //
-// What it does with them:
-//   sight     where a ball is, and whether it lies in its hole. What was seen is as old as the picture; nothing
-//   more is known. hearing   a ball that falls into a hole sounds as nothing else does; and about where one hits
-//   that it cannot see. touch     that it pushes something: a hand that feels how hard pushes gently, one that
-//   does not pushes on; where on the hand
-//             it lies; and where a thing lies that it cannot see.
-// A ball that it neither sees nor feels it looks for where it knew it last, in widening turns. On a slope it
-// balances the ball on the hand, as a pole is balanced: what runs away to a side is overtaken. Sight and touch of
-// where it lies are combined (Ernst and Banks 2002, Nature 415); who is given one of them late is not told so, and
-// is misled.
+// Use of the modalities:
+//   sight     the place of a ball, and whether it lies in its hole, as old as the picture
+//   hearing   the distinct sound of a ball that falls into a hole; the approximate place where an unseen ball hits
+//   touch     contact with an object, and its force: with force feedback the hand pushes gently, without it steadily;
+//             the place of the ball on the hand; the place of an unseen object
+// It searches for a ball that it neither sees nor feels around its last known place, in a widening spiral. On a slope it
+// balances the ball on the hand like an inverted pendulum: the hand moves beyond a ball that escapes to a side. It combines
+// sight and touch of the ball's place (Ernst and Banks 2002, Nature 415); a delay of one of them is not announced to it, and
+// misleads it.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,31 +22,31 @@
 
 namespace tactus::participant {
 
-// What the senses say at an instant.
+// The percepts of all modalities at an instant.
 struct Percept {
   double time_s = 0;
-  Eigen::Vector3d hand_m{0, 0, 0};   // of the own arm, which needs no sense of the system
+  Eigen::Vector3d hand_m{0, 0, 0};   // of its own arm, independent of the system
   Eigen::Vector3d force_N{0, 0, 0};  // on the hand, as the device exerts it
   std::vector<std::optional<Eigen::Vector3d>>
-      balls_m{};             // one for each goal: where the picture shows it; none: it does not
+      balls_m{};             // one for each goal: its place in the picture; nullopt: not visible
   std::vector<bool> fell{};  // one for each goal: its fall into the hole was heard since the last percept
   std::vector<std::optional<Eigen::Vector3d>>
-      heard_m{};  // one for each goal: where it was heard to hit something, about; none: it was not
+      heard_m{};  // one for each goal: approximate place of a heard hit; nullopt: none
 };
 
-// All design: how a careful person pushes a ball the size of an egg.
+// All values are design: a careful person who pushes a ball the size of an egg.
 struct PlayerDef {
-  double reaction_s = 0.15;        // from what is seen or heard to what is done about it
-  double touch_reaction_s = 0.07;  // from what is felt
+  double reaction_s = 0.15;        // from sight or sound to action
+  double touch_reaction_s = 0.07;  // from touch to action
   double reach_m_s = 0.5;          // in the air
   double push_m_s = 0.16;          // at the ball
-  double gentle_N = 1.5;           // a push that is felt to be harder slows down
-  double felt_N = 0.15;    // less is not noticed (about the absolute threshold of a fingertip on a held tool)
+  double gentle_N = 1.5;           // a push with more force slows down
+  double felt_N = 0.15;    // a smaller force is not noticed (about the absolute threshold of a fingertip on a held tool)
   double clear_m = 0.13;   // height of travel over the floor
-  double slow_m_s = 0.15;  // a ball that rolls faster is waited for
-  double reckons_s =
-      0.2;  // what is seen is this old when it is acted upon: the reaction, and a picture that is not degraded
-  double gap_m = 0.02;  // from the ball, where the hand comes down behind it
+  double slow_m_s = 0.15;  // it waits for a ball that rolls faster
+  // Predicted age of sight at the time of action: the reaction time plus the age of an undegraded picture.
+  double reckons_s = 0.2;
+  double gap_m = 0.02;  // distance behind the ball at which the hand comes down
 };
 
 class Player {
@@ -56,21 +55,21 @@ class Player {
 
   Player(Rules rules, const PlayerDef& def);
 
-  // Where the arm is to go from now on, m, world. Call with time growing.
+  // The target of the arm from now on, m, world. Call it in order of time.
   Eigen::Vector3d step(const Percept& percept);
   Doing doing() const { return doing_; }
-  // Goal that it is at; the number of goals: it believes all to be reached.
+  // The present goal; the number of goals: all are believed to be reached.
   int goal() const { return goal_; }
 
  private:
   struct Belief {
     Eigen::Vector3d at_m{0, 0, 0};
-    Eigen::Vector3d speed_m_s{0, 0, 0};  // as it was seen to move
+    Eigen::Vector3d speed_m_s{0, 0, 0};  // as seen
     bool known = false, in_hole = false;
-    double since_s = -1e9;             // it was last seen or felt
-    double changed_s = -1e9;           // the picture last showed it elsewhere
-    Eigen::Vector3d shown_m{0, 0, 0};  // there
-    double heard_s = -1e9;             // it was heard to fall
+    double since_s = -1e9;             // when it was last seen or felt
+    double changed_s = -1e9;           // when the picture last showed it elsewhere
+    Eigen::Vector3d shown_m{0, 0, 0};  // its place then
+    double heard_s = -1e9;             // when its fall was heard
   };
   void perceive(const Percept& p);
   void feel(const Percept& p);
@@ -82,53 +81,53 @@ class Player {
   Eigen::Vector3d push(const Percept& p);
   Eigen::Vector3d search(const Percept& p);
   Eigen::Vector3d rise(const Percept& p);
-  // In push: the speed of the hand across its way, which keeps the ball before it.
+  // In push: the speed of the hand across its way, which keeps the ball in front of it.
   Eigen::Vector3d balance(const Percept& p, const Eigen::Vector3d& way);
-  // From hand to ball where they touch, in the plane of the floor, m.
+  // Distance from hand to ball at contact, in the plane of the floor, m.
   double reach_m() const;
-  // Where the ball is by now: who sees reckons with his own slowness.
+  // The predicted present place of the ball: sight compensates for its own delay.
   Eigen::Vector3d expected_m();
-  // The ball is seen to roll.
+  // True while the ball is seen to roll.
   bool rolls();
   const Goal& target() const { return rules_.goals[static_cast<std::size_t>(goal_)]; }
   Belief& ball() { return beliefs_[static_cast<std::size_t>(goal_)]; }
   // Unit vector from the ball to its hole, in the plane of the floor.
   Eigen::Vector3d way();
-  // Where the hand stands to push, so far behind the touch of ball and hand.
+  // The place of the hand for a push, with this gap to the contact of ball and hand.
   Eigen::Vector3d behind(double gap_m);
   Eigen::Vector3d towards(const Eigen::Vector3d& to, double speed_m_s) const;
   double height() const;
 
   bool sees() { return now_s_ - ball().since_s < kSeen_s && !only_felt_; }
-  // Something holds the hand back: it has gone where it cannot, as over a wall or into a hole.
+  // True while an obstacle holds the hand back, such as a wall or the rim of a hole.
   bool held() const { return now_s_ - free_s_ > kHeld_s; }
-  // Over the floor, as near as can be.
+  // The nearest place over the floor.
   Eigen::Vector3d over_floor(const Eigen::Vector3d& at) const;
 
   bool feels() const { return now_s_ - felt_s_ < kFeltLately_s; }
 
-  // What was seen so lately is seen still: a few pictures.
+  // A ball seen within this time counts as visible: a few pictures.
   static constexpr double kSeen_s = 0.1;
   static constexpr double kFeltLately_s = 0.1;
   static constexpr double kHeld_s = 0.4;
 
   Rules rules_;
   PlayerDef def_;
-  std::deque<Percept> seen_, felt_;  // not yet heeded, oldest first
+  std::deque<Percept> seen_, felt_;  // waiting for their reaction time, oldest first
   std::vector<Belief> beliefs_;
   Doing doing_ = Doing::kTravel;
   int goal_ = 0;
   double now_s_ = 0, dt_s_ = 0;
-  double since_s_ = 0;                         // it has been doing that
-  double felt_s_ = -1e9;                       // it last felt something
-  double force_N_ = 0;                         // that it feels, in the plane of the floor
-  Eigen::Vector3d pull_N_{0, 0, 0};            // that it feels
-  double free_s_ = -1e9;                       // it last felt nothing that could hold it
-  bool only_felt_ = false;                     // what it knows of its ball it knows by touch, or by ear
-  Eigen::Vector3d felt_from_hand_m_{0, 0, 0};  // where the ball lies on the hand, as it is felt
+  double since_s_ = 0;                         // since when it has been doing that
+  double felt_s_ = -1e9;                       // when it last felt a contact
+  double force_N_ = 0;                         // felt, in the plane of the floor
+  Eigen::Vector3d pull_N_{0, 0, 0};            // felt
+  double free_s_ = -1e9;                       // when it last felt no force that could hold it
+  bool only_felt_ = false;                     // the belief about the ball comes from touch or hearing alone
+  Eigen::Vector3d felt_from_hand_m_{0, 0, 0};  // place of the ball relative to the hand, as felt
   Eigen::Vector3d felt_at_m_{0, 0, 0}, felt_speed_m_s_{0, 0, 0};  // of the ball
-  Eigen::Vector3d begun_m_{0, 0, 0};                              // where the hand was then
-  double searched_m_ = 0;                                         // radius of the turn that it is at
+  Eigen::Vector3d begun_m_{0, 0, 0};                              // place of the hand at the start of the present action
+  double searched_m_ = 0;                                         // radius of the present revolution of the search
   double turned_rad_ = 0;
   Eigen::Vector3d wanted_m_{0, 0, 0};
   bool begun_ = false;

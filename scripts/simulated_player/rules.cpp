@@ -8,7 +8,7 @@
 namespace tactus::participant {
 namespace {
 
-// What stands at the height of the holes' rims: static boxes with their top there, within a millimetre.
+// The floor around the holes: static boxes with their top at the height of the rims, within a millimetre.
 Eigen::AlignedBox2d floor_of(const sim::WorldDef& world, double rim_m) {
   Eigen::AlignedBox2d floor;
   for (const sim::ShapeDef& shape : world.shapes) {

@@ -1,5 +1,5 @@
-// What a player is told before the game: which ball belongs into which hole, and where the holes are. Read from
-// the scene.
+// The rules of the game that a player is given beforehand: the hole of each ball, and the places of the holes. Read from the
+// scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,10 +19,10 @@ struct Goal {
 struct Rules {
   std::vector<Goal> goals;   // in the order of the scene
   double hand_radius_m = 0;  // of the scene's first tool
-  // Where a hand may go: over the floor that holds the holes. Empty: anywhere.
+  // The permitted area of the hand: over the floor that contains the holes. Empty: unlimited.
   Eigen::AlignedBox2d floor_m{};
-  Eigen::Vector3d slope_m_s2{
-      0, 0, 0};  // along the floor: what accelerates a ball that is let go, before its rolling takes its share
+  // Along the floor: the acceleration of a free ball, before the share of its rotation.
+  Eigen::Vector3d slope_m_s2{0, 0, 0};
 };
 
 // Throws std::runtime_error with one sentence when the file holds no game of balls.

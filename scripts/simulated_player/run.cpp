@@ -1,11 +1,12 @@
-// participant: a hand that plays a scene's game with what its senses deliver, in place of a person.
+// participant: a simulated player that plays a scene's game with the output of the cluster's modalities, in place of a
+// person.
 //
-//   in   WORLD_STATE, CONTACT_EVENTS   as visual_node and audio_node present them, whatever a profile does to them
-//        DEVICE_FORCE                  what the hand feels
-//        PLAYOUT, DEGRADATION          when and how well those present
-//   out  DEVICE_STATE                  where the hand is, a thousand times a second
+//   in   WORLD_STATE, CONTACT_EVENTS   as visual_node and audio_node present them, with the degradations of the profile
+//        DEVICE_FORCE                  the force on the hand
+//        PLAYOUT, DEGRADATION          the delays and degradations of these modalities
+//   out  DEVICE_STATE                  the pose of the hand, a thousand times a second
 //
-// Losing any of them it plays on without. Beside it: haptic_node --device external:player.
+// When an input is lost, it continues without it. Run it beside haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
 
 #include <CLI/CLI.hpp>
@@ -31,10 +32,10 @@ const sync::NodeDescriptor kParticipant{.name = "participant",
                                         .rate_Hz = 1000,
                                         .fifo_priority = 55,
                                         .about = "Plays a scene's game in place of a person."};
-// Where the hand rests before the world begins: over the near edge of the dark room.
+// Rest position of the hand before the world begins: over the near edge of the dark room.
 constexpr double kRest_m[]{-0.2, 0, 0.13};
 
-// The newest force on the hand, as long as it holds.
+// The newest force on the hand, while it is valid.
 Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::HostTime now) {
   if (now - arrival > sync::Nanoseconds(m.valid_for_ns)) return Eigen::Vector3d::Zero();
   return {m.force_N.x, m.force_N.y, m.force_N.z};
@@ -103,11 +104,11 @@ int tactus::participant::run(int argc, char** argv, const Rules* read_before) tr
     Percept percept = senses.perceive(now);
     percept.force_N = force_of(force, felt_at, now);
     percept.hand_m = arm.position_m();
-    // A turn that came late moves no further than one on time.
+    // A late tick moves no further than one on time.
     const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(before, now)));
     if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
       setup->step(now, replies);
-      percept.balls_m.assign(rules.goals.size(), std::nullopt);  // nothing is looked at before the game begins
+      percept.balls_m.assign(rules.goals.size(), std::nullopt);  // sight is off before the game begins
     } else if (scenes.scene()) {
       arm.step(player.step(percept), percept.force_N, dt_s);
     }

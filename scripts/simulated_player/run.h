@@ -1,12 +1,13 @@
-// What the program does. A function, so that a virtual time can run it beside others in one process (sync/virtual_time).
+// The program participant, as a function, so that virtual time can run it beside other programs in one process
+// (sync/virtual_time).
 #pragma once
 
 namespace tactus::participant {
 
 struct Rules;
 
-// Returns the exit status, after one sentence on stderr where that is not 0. rules: of the scene of the command line, where that has
-// been read already; null: it is read.
+// Returns the exit status, after one sentence on stderr where that is not 0. rules: of the command line's scene, when they
+// have been read already; null: they are read from the scene.
 int run(int argc, char** argv, const Rules* rules = nullptr);
 
 }  // namespace tactus::participant

@@ -11,21 +11,21 @@
 namespace tactus::participant {
 namespace {
 
-// Those whose senses these are: visual_node and audio_node.
+// The nodes whose output is observed: visual_node and audio_node.
 sync::NodeDescriptor of(const char* node, const char* modality, int owes) {
   return {.name = node, .modality = modality, .expected_events = owes, .about = ""};
 }
 
-// Below the rim by so much, a ball that hits something lies in the hole (design: a third of the shallowest ball).
+// A ball that hits an object this far below the rim lies in the hole (design: a third of the shallowest ball).
 constexpr double kBelowRim_m = 0.02;
 constexpr sync::Nanoseconds kGone{
-    300'000'000};  // after so long without a word a node stands still, as sync_node counts it
-// How well it is heard where a sound comes from, standard deviation. A still head tells 3.6 degrees to the side
-// (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor; a little less, and the
-// same for distance, is design: a ball that is heard lies on the floor, and the head moves.
+    300'000'000};  // a node that is silent for this time counts as stalled, as in sync_node
+// Uncertainty of the direction and distance of a sound source, standard deviation. A still head resolves 3.6 degrees to the
+// side (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor. A slightly smaller value, and
+// the same for distance, is design: an audible ball lies on the floor, and the head moves.
 constexpr double kBlur_m = 0.05;
-constexpr std::uint64_t kOfEars = 13;            // stream of random numbers of the seed
-constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, as audio_node takes them
+constexpr std::uint64_t kOfEars = 13;            // random stream of the seed
+constexpr sync::Nanoseconds kEarly{20'000'000};  // events this far ahead are accepted, as in audio_node
 
 }  // namespace
 
@@ -68,7 +68,7 @@ bool Senses::rendered(const std::string& modality, sync::HostTime now) const {
   return at != heard_of_.end() && now - at->second < kGone;
 }
 
-// A picture shows the world as it was when what it presents now happened, and stays until the next.
+// A picture shows the world at its presentation delay, and stays until the next.
 void Senses::look(sync::HostTime now) {
   const double slow_Hz = eyes_.output().frame_rate_Hz;
   next_look_ = now + sync::from_seconds(1 / (slow_Hz > 0 ? slow_Hz : frame_rate_Hz_));
@@ -77,7 +77,7 @@ void Senses::look(sync::HostTime now) {
     shown_[i].reset();
     if (!map || !rendered("visual", now)) continue;
     const auto pose = bodies_.pose(rules_.goals[i].body, map->to_sim(now - eyes_.delay()));
-    // A picture of what is too old says so itself.
+    // A stale picture is not used.
     if (pose.status != sync::SampleStatus::kNone && pose.status != sync::SampleStatus::kStale) shown_[i] = pose.value.position;
   }
 }

@@ -1,6 +1,5 @@
-// What the cluster's senses deliver to a person, put together: he sees what the pictures show, when they show it,
-// and hears what sounds, when it sounds. Whatever a profile makes late, rare or silent comes so to him; and where
-// nobody draws he sees nothing.
+// The percepts of a user, assembled from the output of the cluster: sight from the pictures and hearing from the sounds, at
+// the time of their presentation. The degradations of a profile apply to them. Without a visual node there is no sight.
 #pragma once
 
 #include <map>
@@ -22,16 +21,15 @@ namespace tactus::participant {
 
 class Senses {
  public:
-  // Pictures come so often. Throws std::runtime_error as sync::Sense does.
+  // frame_rate_Hz: rate of the pictures. Throws std::runtime_error as sync::ModalityEndpoint does.
   Senses(sync::Node& node, Rules rules, double frame_rate_Hz);
 
   void set_scene(const scene_t& scene);
-  // Once a tick. What is seen and heard at `now`, for the player: his hand and the force on it are not of the bus
-  // alone.
+  // Call it once a tick. Sight and hearing at `now`; the caller adds the hand and the force on it.
   Percept perceive(sync::HostTime now);
 
  private:
-  // Somebody renders that sense, or did so a moment ago.
+  // True when a node renders that modality, or did so a moment ago.
   bool rendered(const std::string& modality, sync::HostTime now) const;
   void look(sync::HostTime now);
   void listen(sync::HostTime now, Percept& percept);
@@ -45,16 +43,16 @@ class Senses {
   sync::ContactStream contacts_;
   double frame_rate_Hz_;
   std::uint64_t seed_;
-  std::map<std::string, sync::HostTime> heard_of_;  // who renders a sense, by modality
+  std::map<std::string, sync::HostTime> heard_of_;  // newest health of the node that renders a modality, by modality
   sync::HostTime next_look_{};
   std::vector<std::optional<Eigen::Vector3d>> shown_;
   struct Sound {
     sync::HostTime at;
     std::size_t goal;
     bool falls;              // into its hole
-    Eigen::Vector3d from_m;  // where it seems to come from
+    Eigen::Vector3d from_m;  // perceived place of the source
   };
-  std::vector<Sound> sounds_;  // to come
+  std::vector<Sound> sounds_;  // pending
 };
 
 }  // namespace tactus::participant

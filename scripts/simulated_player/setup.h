@@ -1,5 +1,5 @@
-// How a game begins: each ball is put somewhere else by who leads the game, so that nobody can play it from memory. Pure but for
-// the bus.
+// The setup of a game: moves each ball to a random place, so that no player can play it from memory. Pure, except for the
+// bus.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace tactus::participant {
 
-// Where balls may lie: in front of their holes, out of reach of each other and of what stands in the room.
+// The area for the balls: in front of their holes, apart from each other and from the objects in the room.
 struct Scatter {
-  double along_m = 0;  // towards or away from the hole, to either side of where the scene has it
-  double aside_m = 0;  // across
+  double along_m = 0;  // half range towards or away from the hole, around the place in the scene
+  double aside_m = 0;  // half range across
 };
 
 // A place for each ball, m, world: at rest on the floor; uniform, from the seed.
 std::vector<Eigen::Vector3d> places(const Rules& rules, const scene_t& scene, const Scatter& scatter, std::uint64_t seed);
 
-// Asks the simulation for it, until it has answered.
+// Requests these places from the simulation until it has answered.
 class Setup {
  public:
   Setup(sync::Bus& bus, const scene_t& scene, const Rules& rules, const std::vector<Eigen::Vector3d>& places, std::uint64_t seed);
-  // Once a tick, when the world has begun.
+  // Call it once a tick after the world has begun.
   void step(sync::HostTime now, sync::Queue<sim_reply_t>& replies);
   bool done() const { return commands_.empty(); }
 

@@ -1,4 +1,4 @@
-// Whether every sense has the profile of the trial: it is sent until all that live say so. Pure.
+// Publishes the profile of the trial until every present modality reports it in force. Pure.
 #pragma once
 
 #include <map>
@@ -14,17 +14,17 @@ namespace tactus::conductor {
 class Enforcement {
  public:
   static constexpr sync::Nanoseconds kRepeat{100'000'000};     // a datagram may be lost
-  static constexpr sync::Nanoseconds kForgotten{500'000'000};  // health comes every 100 ms: such a node is gone
+  static constexpr sync::Nanoseconds kForgotten{500'000'000};  // health comes every 100 ms: a node silent for this time is gone
   static constexpr std::size_t kMaxSenses = 64;
 
-  // To be put in force from now on.
+  // Puts this profile in force from now on.
   void begin(sync::ProfileInForce profile) { profile_ = std::move(profile), told_ = false, next_.reset(); }
   void push(const node_health_t& m, sync::HostTime arrival);
-  // The profile, when it is time to send it (again).
+  // The profile, when it is due to be sent (again).
   const sync::ProfileInForce* to_send(sync::HostTime now);
-  // The senses that have it, the first time that all that are there do; nothing else.
+  // The modalities with the profile, once, when all present ones have it; nullopt otherwise.
   std::optional<std::vector<std::string>> take_in_force(sync::HostTime now);
-  // Those that are there and have it not.
+  // The present modalities without the profile.
   std::vector<std::string> missing(sync::HostTime now) const;
   const std::optional<sync::ProfileInForce>& profile() const { return profile_; }
 

@@ -6,9 +6,9 @@
 namespace tactus::conductor {
 namespace {
 
-constexpr double kApproach_s = 0.5;  // to the surface before a press and back after it, design
+constexpr double kApproach_s = 0.5;  // to the surface before a press, and back after it; design
 
-// From 0 to 1 and still at both ends.
+// From 0 to 1, with zero speed at both ends.
 double smooth(double share) { return 0.5 - 0.5 * std::cos(std::numbers::pi * share); }
 
 }  // namespace

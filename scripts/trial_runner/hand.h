@@ -1,5 +1,4 @@
-// The hand that strikes or presses in place of a person, so that each trial has its stimulus when it is wanted.
-// Pure.
+// The hand that taps or presses in place of a person, so that each trial has its stimulus at the right time. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +13,10 @@ class Hand {
   // Design: as the hand of sim_node/scenes/metronome.sdf.
   static constexpr double kDown_m_s = 0.49, kDwell_s = 0.04, kUp_s = 0.12;
 
-  // Rests at `rest_m`, world; the surface that it strikes is `above_m` below.
+  // Rests at `rest_m`, world; the surface to tap is `above_m` below.
   Hand(const Eigen::Vector3d& rest_m, double above_m) : rest_m_(rest_m), above_m_(above_m), position_m_(rest_m) {}
 
-  // Begins at the next step; false: it is busy.
+  // Starts at the next step; false: it is busy.
   bool tap(const TapOrder& order);
   bool press(const PressOrder& order);
   bool busy() const { return tap_ || press_; }
@@ -28,7 +27,7 @@ class Hand {
   bool presses() const { return press_.has_value(); }
 
  private:
-  // How far below its rest it is after so long; nothing: it is over.
+  // Depth below its rest at the present time of the movement; nullopt: it has ended.
   std::optional<double> below_m() const;
 
   Eigen::Vector3d rest_m_;

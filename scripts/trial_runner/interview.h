@@ -1,4 +1,4 @@
-// The question that is asked now: repeated until it is answered. Pure.
+// The present question of the study: repeated until it is answered. Pure.
 #pragma once
 
 #include <optional>
@@ -15,18 +15,17 @@ class Interview {
 
   explicit Interview(std::uint64_t seed) : seed_(seed) { ask({}); }
 
-  // Asked from now on in place of the one before. Throws std::invalid_argument with one sentence when nobody could
-  // answer it.
+  // Replaces the present question. Throws std::invalid_argument with one sentence when no answer to it is possible.
   void ask(question_t question);
-  // True when something is asked that is not answered.
+  // True while a question waits for its answer.
   bool waits() const { return waits_; }
   const question_t& asked() const { return question_; }
-  // The answer, when this is the first to the question that is asked and fits it.
+  // The answer, when it is the first to the present question and fits it.
   std::optional<answer_t> take(const answer_t& answer);
-  // The answer to the question asked, from a button of the device or a simulated participant; nothing: it asks for
-  // something else.
+  // The answer to the present question, from a button of the device or a simulated participant; nullopt: it does not fit the
+  // question.
   std::optional<answer_t> answer(int choice, double number, const char* by, sync::HostTime now) const;
-  // The question, when it is time to say it (again).
+  // The question, when it is due to be published (again).
   std::optional<question_t> step(sync::HostTime now);
 
  private:

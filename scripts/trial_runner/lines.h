@@ -1,5 +1,5 @@
-// Lines in and out of this process, never waited for: who reads slowly loses nothing up to a bound, and then this
-// process ends with a word rather than hold up its hand.
+// Non-blocking line input and output of this process: unread output is buffered up to a bound; beyond it the process ends
+// with an error, because waiting would stop its hand.
 #pragma once
 
 #include <deque>
@@ -15,14 +15,13 @@ class Lines {
   // Makes both descriptors non-blocking.
   Lines(int in, int out);
 
-  // The next whole line that has come; nothing: there is none yet. Throws std::runtime_error for one that never
-  // ends.
+  // The next complete line; nullopt: there is none yet. Throws std::runtime_error for a line longer than kLongestLine.
   std::optional<std::string> next();
-  // True when whoever gave the orders has gone.
+  // True when the sender of the commands has closed the input.
   bool ended() const { return ended_ && in_.find('\n') == std::string::npos; }
-  // Throws std::runtime_error when nobody reads any more.
+  // Throws std::runtime_error when the output is closed or too much is unread.
   void say(const std::string& line);
-  // Writes what can be written now.
+  // Writes as much as possible without waiting.
   void flush();
 
  private:

@@ -1,4 +1,5 @@
-// What the conductor says of what it hears, a JSON object a line. Times are host times of its own clock, ns. Pure.
+// Converts received messages to the output of the trial runner, a JSON object a line. Times are host times of its own clock,
+// ns. Pure.
 #pragma once
 
 #include <map>
@@ -23,7 +24,7 @@ namespace tactus::conductor {
 
 class Observations {
  public:
-  // So many ids of events are remembered, to say each once.
+  // Number of remembered event ids, so that each event is written once.
   static constexpr std::size_t kRemembered = 4096;
   static constexpr std::size_t kMaxSenders = 256;
 
@@ -31,15 +32,15 @@ class Observations {
 
   // {"event": id as text, "kind": "begin" | "hit" | "end", "tool": , "sim_ns": , "speed_m_s": }, each event once.
   std::vector<nlohmann::json> push(const contact_events_t& m);
-  // {"presented": id as text, "modality": , "part": , "outcome": , "at_ns": null where it was not or nobody knows
-  // when, "scheduled_ns": , "uncertainty_ns": of the report and of the clock map together}, each once.
+  // {"presented": id as text, "modality": , "part": , "outcome": , "at_ns": null when it was not presented or the time is
+  // unknown, "scheduled_ns": , "uncertainty_ns": of the report plus the clock map}, each once.
   std::vector<nlohmann::json> push(const presented_t& m, sync::HostTime arrival);
   // {"medium": , "index": , "at_ns": , "reason": }
   std::optional<nlohmann::json> push(const media_clock_t& m, sync::HostTime arrival);
   // {"game": {"won": , "won_sim_ns": , "filled": , "wrong": }}, when it has changed.
   std::optional<nlohmann::json> push(const game_state_t& m);
-  // {"picture": number, "sim_ns": , "at_ns": when it was out, null where nobody knows, "jpeg": base64}, of a picture
-  // whose pieces have all come.
+  // {"picture": number, "sim_ns": , "at_ns": time of its presentation, null when unknown, "jpeg": base64}, of a complete
+  // picture.
   std::optional<nlohmann::json> push(const picture_chunk_t& m, sync::HostTime arrival);
   // {"pulse": {"tool": , "at_ns": , "force_N": }} of the first tick in which a hit vibrates in the hand.
   std::optional<nlohmann::json> push(const tool_state_t& m, sync::HostTime arrival);

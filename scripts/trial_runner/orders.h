@@ -1,4 +1,4 @@
-// What the conductor is told to do, a JSON object with one member a line. Pure.
+// The commands to the trial runner, a JSON object with one member a line. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,28 +9,26 @@
 
 namespace tactus::conductor {
 
-// {"profile": "<profile .../>"}: is put in force, and said when every sense has it.
+// {"profile": "<profile .../>"}: puts it in force, and reports when every modality has it.
 struct ProfileOrder {
   std::string text;
 };
-// {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest":
-// , "step": , "trial": , "condition": , "progress": }}: is asked until it is answered. "nothing": a trial is under
-// way.
+// {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest": , "step": ,
+// "trial": , "condition": , "progress": }}: asks it until it is answered. "nothing": a trial is in progress.
 struct QuestionOrder {
   question_t question;
 };
-// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: what a simulated participant says to the question that
-// is asked.
+// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the present question.
 struct AnswerOrder {
   int choice = -1;
   double number = 0;
 };
-// {"tap": {"depth_m": 0.012}}: the hand strikes what lies below it. Needs --hand.
+// {"tap": {"depth_m": 0.012}}: the hand taps the surface below it. Needs --hand.
 struct TapOrder {
   double depth_m = 0;
 };
-// {"press": {"depth_m": 0.012, "period_s": 1, "times": 2}}: the hand goes down and up so often, smoothly; what it
-// feels is said.
+// {"press": {"depth_m": 0.012, "period_s": 1, "times": 2}}: the hand moves down and up this number of times, smoothly; the
+// force on it is reported.
 struct PressOrder {
   double depth_m = 0, period_s = 0;
   int times = 0;
@@ -45,7 +43,7 @@ struct EndOrder {};
 
 using Order = std::variant<ProfileOrder, QuestionOrder, AnswerOrder, TapOrder, PressOrder, CommandOrder, EndOrder>;
 
-// Throws std::invalid_argument with one sentence for a line that is none of these.
+// Throws std::invalid_argument with one sentence for any other line.
 Order parse_order(std::string_view line);
 
 }  // namespace tactus::conductor

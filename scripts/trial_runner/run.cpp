@@ -1,19 +1,19 @@
-// conductor: leads the trials of a study: puts their profiles in force, asks the participant, moves a hand where
-// the study has one, and says what was presented when. Orders come on standard input, observations go to standard
-// output, a line of JSON each.
+// conductor: the trial runner of a study. It puts the profiles of the trials in force, asks the participant, moves a hand
+// where the study has one, and reports presentations and their times. Commands come on standard input, observations go to
+// standard output, a line of JSON each.
 //
-//   in   NODE_HEALTH, DEGRADATION      which sense has which profile
+//   in   NODE_HEALTH, DEGRADATION      the profile of each modality
 //        CONTACTS                      the time of the world
-//        CONTACT_EVENTS, PRESENTED     what happened and what each sense made of it
-//        MEDIA_CLOCK, PICTURE_CHUNK    which sample was heard when; the pictures, when told to look
-//        GAME_STATE, SIM_REPLY         how the game stands; what became of a command
-//        TOOL_STATE                    buttons of the device, which answer; in which tick a hit vibrates
-//        DEVICE_FORCE                  what its hand feels
+//        CONTACT_EVENTS, PRESENTED     events, and their presentation by each modality
+//        MEDIA_CLOCK, PICTURE_CHUNK    the time of each sound sample; the pictures, on request
+//        GAME_STATE, SIM_REPLY         the state of the game; the result of a command
+//        TOOL_STATE                    buttons of the device, which answer; the tick in which a hit vibrates
+//        DEVICE_FORCE                  the force on its hand
 //        ANSWER                        of a window or a page
 //   out  DEGRADATION, QUESTION, ANSWER (of buttons and of simulated participants), SIM_COMMAND
-//        DEVICE_STATE                  where its hand is, with --hand
+//        DEVICE_STATE                  the pose of its hand, with --hand
 //
-// Losing any of them it goes on. When whoever gives the orders has gone, it ends.
+// When an input is lost, it continues. When its standard input is closed, it ends.
 #include "scripts/trial_runner/run.h"
 
 #include <unistd.h>
@@ -94,7 +94,7 @@ class Conductor {
     state_.header.sim_time_ns = -1;
   }
 
-  // One turn. False: it was told to end, or nobody is there to tell it anything.
+  // One tick. Returns false at the end command, or when the standard input is closed.
   bool step(sync::HostTime now) {
     if (!heed_orders(now)) return false;
     listen(now);
@@ -118,7 +118,7 @@ class Conductor {
   }
 
  private:
-  // What was quoted and is no UTF-8, as a text that was cut, is no reason to leave.
+  // Invalid UTF-8, as in quoted or truncated text, is replaced instead of ending the process.
   void say(const json& line) { lines_.say(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
   bool heed_orders(sync::HostTime now) {
@@ -171,7 +171,7 @@ class Conductor {
   }
   void obey(const EndOrder&, sync::HostTime) {}
 
-  // An answer that was given here is heard by all, as one of a window is.
+  // Publishes an answer that was given here, as a window publishes its own.
   void give(answer_t answer) {
     node_.bus().publish(channels::kAnswer, answer);
     heed(answer);
@@ -226,7 +226,7 @@ class Conductor {
     }
   }
 
-  // Button 1 is the first choice; any button goes on after a text.
+  // Button 1 is the first choice; any button continues after a text.
   void push_button(const tool_state_t& m, sync::HostTime now) {
     int& before = buttons_[m.header.source];
     const int pressed = m.buttons & ~std::exchange(before, m.buttons);
@@ -257,7 +257,7 @@ class Conductor {
   void move(sync::HostTime now) {
     if (!hand_) return;
     const bool moved = hand_->busy();
-    // A turn that came late moves no further than one on time.
+    // A late tick moves no further than one on time.
     hand_->step(std::clamp(sync::to_seconds(now - std::exchange(before_, now)), 1e-4, 2e-3));
     const auto& at = hand_->position_m();
     const auto& v = hand_->velocity_m_s();

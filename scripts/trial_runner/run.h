@@ -1,4 +1,4 @@
-// conductor: leads the trials of a study on the bus, as whoever started it says, a line of JSON each way.
+// conductor: runs the trials of a study on the bus, with JSON lines as commands and observations.
 #pragma once
 
 namespace tactus::conductor {

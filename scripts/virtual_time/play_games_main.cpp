@@ -1,9 +1,8 @@
-// play_games: games of the artificial player in virtual time, one after the other, each on its own seed and under
-// its own profile.
+// play_games: plays games of the simulated player in virtual time, one after the other, each with its own seed and profile.
 //
-// It reads a line for each game from stdin and writes a line for each to stdout, JSON both; a game that fails says
-// why in its line. The scene is read once. Each game is a process of its own, begun as a copy of this one: what
-// one leaves behind, or dies of, no other meets, and one seed gives the same game whatever was played before.
+// It reads one JSON line for each game from stdin and writes one to stdout; the line of a failed game contains the reason.
+// The scene is read once. Each game is a forked process, so that state or a crash of one game cannot affect another, and one
+// seed gives the same game in any order.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -53,7 +52,7 @@ struct GameDef {
   std::string profile;  // XML; empty: none
 };
 
-// The words of a program, as main() gets them.
+// Runs a program with these arguments, as main() gets them.
 int run_with(std::vector<std::string> words, const std::function<int(int, char**)>& program) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -116,7 +115,7 @@ json told(const Loaded& loaded, const GameDef& game) try {
   return {{"trouble", e.what()}};
 }
 
-// What a game says on stderr is kept for the sentence that tells why it failed.
+// The last line that a game wrote to stderr, for the reason of its failure.
 std::string last_line(int fd) {
   std::string text(4096, '\0');
   const off_t size = lseek(fd, 0, SEEK_END);
@@ -170,7 +169,7 @@ int main(int argc, char** argv) try {
   Loaded loaded;
   std::string
       along = "0.08",
-      aside = "0.08";  // design: the balls of the dark room stay apart from each other and from what stands there
+      aside = "0.08";  // design: the balls of the dark room stay apart from each other and from the objects there
   app.add_option("SCENE", loaded.scene, "SDF file of a world with a game")->required()->check(CLI::ExistingFile);
   app.add_option("--out", loaded.out, "empty folder for what the nodes write")
       ->required()

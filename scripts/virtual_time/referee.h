@@ -1,5 +1,4 @@
-// Who watches a game: whether it was won, when, with how many mistakes, how hard the hand was pushed and how far
-// it went. Pure.
+// Judges a game: success, time, mistakes, the largest force on the hand, and the length of its path. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +11,20 @@
 namespace tactus {
 struct GameVerdict {
   bool won = false;
-  double time_s = 0;        // of the world, until it was won or ended
+  double time_s = 0;        // simulated time until it was won or ended
   int filled = 0;           // holes with the right ball in them
-  int wrong = 0;            // balls that came into a wrong hole
-  double peak_force_N = 0;  // on the first tool, as it was felt
+  int wrong = 0;            // balls that entered a wrong hole
+  double peak_force_N = 0;  // on the first tool, as felt
   double path_m = 0;        // of the first tool
 };
 
 class Referee {
  public:
-  // What crosses the bus, all of it.
+  // Receives all messages of the bus.
   void hear(std::string_view channel, std::span<const std::uint8_t> data);
-  // The world has been told of.
+  // True once the simulation has published the world.
   bool begun() const { return begun_; }
-  // It is won, or cannot be any more: a ball lies in a wrong hole.
+  // True when it is won, or cannot be won any more: a ball lies in a wrong hole.
   bool decided() const { return verdict_.won || verdict_.wrong > 0; }
   const GameVerdict& verdict() const { return verdict_; }
 

@@ -1,5 +1,5 @@
-// virtual_time: a cluster in one process, on a simulated clock and a simulated bus. Its nodes are those that run live, with the
-// same options; with one seed, what they write is the same to the bit.
+// virtual_time: runs a cluster in one process, on a simulated clock and a simulated bus. Its nodes are the live ones, with
+// the same options; with one seed, their output is the same to the bit.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
@@ -41,7 +41,7 @@ using Words = std::vector<std::string>;
 
 constexpr sync::Nanoseconds kTurn{100'000'000};
 constexpr sync::Nanoseconds kWorldBegins{60'000'000'000};   // at the latest: a scene's grace is some seconds
-constexpr sync::Nanoseconds kPresentTheLast{300'000'000};  // what has just happened is presented and reported
+constexpr sync::Nanoseconds kPresentTheLast{300'000'000};  // time to present and report the last events
 constexpr std::chrono::seconds kProgress{5};
 
 // One line of the plan.
@@ -77,7 +77,7 @@ int run_program(const Words& given) {
   return kPrograms.at(words.front())(static_cast<int>(words.size()), argv.data());
 }
 
-// The simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
+// Ends the simulation first, so that all modalities present its last events; the recorder last, so that the log is complete.
 void end_in_order(sync::VirtualTime& time, const std::vector<Planned>& programs) {
   const auto ask = [&](auto&& concerns) {
     for (const Planned& program : programs)

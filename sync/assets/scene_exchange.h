@@ -1,5 +1,5 @@
-// Carries the scene and its assets: sim_node announces them once a second, a node that lacks chunks asks for them.
-// Everything is named by the hash of its content, so a restarted simulation with the same scene costs nothing.
+// Transfers the scene and its assets over the bus: sim_node announces them once a second, and a node that lacks chunks
+// requests them. Everything is named by the hash of its content, so a restarted simulation with the same scene costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -23,21 +23,21 @@ namespace tactus::sync {
 
 inline constexpr std::size_t kChunkBytes = 1024;
 
-// The sending side, in sim_node. Sends at most kChunksPerPoll chunks a call (bulk port), so that a late joiner
-// never delays a tick by more than a few microseconds.
+// The sending side, in sim_node. Sends at most kChunksPerPoll chunks a call (bulk port), so that a late joiner never delays a
+// tick by more than a few microseconds.
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;
-  // Throws std::runtime_error with one sentence when that is more than any receiver takes.
+  // Throws std::runtime_error with one sentence when the assets exceed the limits of the receivers.
   SceneSender(Bus& bus, std::vector<Asset> assets);
-  // Once a tick: the manifest when due, then chunks that were asked for.
+  // Call it once a tick: sends the manifest when due, then requested chunks.
   void poll(HostTime now);
   const std::vector<asset_ref_t>& manifest() const { return refs_; }
 
  private:
   struct Outgoing {
     Asset asset;
-    std::vector<bool> wanted;  // per chunk: asked for and not yet sent
+    std::vector<bool> wanted;  // per chunk: requested and not yet sent
   };
   void announce();
   void send_chunk(std::int64_t hash, const Outgoing& outgoing, std::size_t chunk);
@@ -52,47 +52,47 @@ class SceneSender {
 
 // The receiving side, in every renderer and in the recorder. Listens on both ports (a replayed log has only one).
 //
-// Lives in loops of 1 kHz, so whatever arrives one poll costs less than 1 ms: memory comes chunk by chunk as it is
-// filled, and hashing and freeing are done a bounded amount at a time. Decoding a scene whose hash is right is the
-// exception; it happens when poll returns true.
+// It runs in loops of 1 kHz, so one poll costs less than 1 ms for any input: memory is allocated chunk by chunk as it is
+// filled, and hashing and freeing are done a bounded amount at a time. The exception is the decoding of a scene with the
+// right hash; it happens when poll returns true.
 class SceneReceiver {
  public:
-  // A scene is complete or it is not there. A manifest of more, or of larger ones, is refused.
+  // A scene is complete or absent. A manifest with more or larger assets is refused.
   static constexpr std::size_t kMaxAssetBytes = 64 << 20;
   static constexpr std::size_t kMaxTotalBytes = 256 << 20;
   static constexpr std::size_t kMaxAssets = 512;
-  // A sender of manifests is listened to, and no other, until it has been silent for two periods of its manifest
-  // or has sent nothing of use for kGiveUp; then it is not listened to for as long.
+  // Only one sender of manifests is accepted, until it has been silent for two periods of its manifest or has sent no useful
+  // chunk for kGiveUp; then it is ignored for the same time.
   static constexpr Nanoseconds kSilence{2'500'000'000};
   static constexpr Nanoseconds kGiveUp{3'000'000'000};
 
   explicit SceneReceiver(Bus& bus);
 
-  // Once a tick. Asks for what is missing, rate-limited (again after 100 ms). True when a scene has just become
-  // complete that differs from the one before, which stays until then.
+  // Call it once a tick. Requests missing chunks, rate-limited (again after 100 ms). Returns true when a new scene has just
+  // become complete; the previous one stays until then.
   bool poll(HostTime now);
 
   const scene_t* scene() const { return scene_ ? &*scene_ : nullptr; }
-  // Null when there is none of that hash. Puts its chunks together when it is asked for first.
+  // Null when no asset has that hash. Joins the chunks at the first call.
   const Asset* asset(std::int64_t hash) const;
   const std::vector<asset_ref_t>& manifest() const { return refs_; }
-  // Manifests that no scene can have.
+  // Invalid manifests.
   std::int64_t refused() const { return refused_; }
-  // What chunks and assets take up.
+  // Memory of chunks and assets, bytes.
   std::size_t bytes_held() const { return bytes_held_; }
 
  private:
-  // The first `hashed` chunks are there and hashed; of those behind only the next kWindow are let in.
+  // The first `hashed` chunks are present and hashed; of the following ones only the next kWindow are accepted.
   struct Incoming {
     std::size_t size = 0;
-    std::deque<Bytes> chunks;  // empty: not there
+    std::deque<Bytes> chunks;  // empty: missing
     std::size_t hashed = 0;
     std::uint64_t hash = kFnv1aBegin;
     std::size_t chunk_count() const { return (size + kChunkBytes - 1) / kChunkBytes; }
     bool has(std::size_t chunk) const { return chunk < chunks.size() && !chunks[chunk].empty(); }
   };
   struct Arrived {
-    std::deque<Bytes> chunks;  // until they are put together
+    std::deque<Bytes> chunks;  // until they are joined
     Asset asset;
   };
   bool follow(const header_t& header, HostTime arrival);
@@ -111,16 +111,16 @@ class SceneReceiver {
   Queue<asset_chunk_t>& chunks_;
   std::optional<scene_t> scene_;
   std::int64_t scene_hash_ = 0;
-  std::int64_t refused_scene_ = 0;  // complete, but not decodable: not asked for again
+  std::int64_t refused_scene_ = 0;  // complete, but not decodable: not requested again
   std::int64_t followed_ = 0;       // incarnation that the pages below come from
-  HostTime heard_{};                // of it
-  std::int64_t given_up_ = 0;       // incarnation that is not listened to
+  HostTime heard_{};                // newest message of it
+  std::int64_t given_up_ = 0;       // ignored incarnation
   HostTime given_up_until_{};
   PageGroup<std::vector<asset_ref_t>> pages_;
   bool pages_new_ = false;
   std::vector<asset_ref_t> refs_;
   std::map<std::int64_t, Incoming> incoming_;
-  HostTime progress_{};  // when a chunk of use arrived last
+  HostTime progress_{};  // when a useful chunk arrived last
   mutable std::map<std::int64_t, Arrived> assets_;
   std::deque<std::deque<Bytes>> garbage_;
   std::size_t bytes_held_ = 0;

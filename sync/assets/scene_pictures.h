@@ -1,5 +1,5 @@
-// The pictures that lie on the surfaces of a scene, its reliefs and friction maps, for a thread that reads them:
-// no loop may, since that can take as long as a second. Pure.
+// The pictures on the surfaces of a scene, its height maps and friction maps, for a thread that decodes them: decoding can
+// take a second, too long for a loop. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace tactus::sync {
 
 using Pictures = std::map<std::int64_t, Bytes>;  // by content hash
 
-// The pictures that the materials of the receiver's scene name, as far as they were sent. It copies them.
+// The pictures that the materials of the receiver's scene name, as far as they have arrived. It copies them.
 Pictures pictures_of(const SceneReceiver& scenes);
 
 }  // namespace tactus::sync

@@ -17,14 +17,14 @@ namespace {
 // Chunks wait here between two ticks of the slowest receiver (20 ms at 4 a millisecond).
 constexpr std::size_t kChunkQueue = 4096;
 constexpr std::size_t kManifestQueue = 128;
-constexpr int kMaxPages = 64;  // of twelve assets as our sender fills them
+constexpr int kMaxPages = 64;  // of twelve assets as filled by SceneSender
 constexpr Nanoseconds kAskAgainAfter{100'000'000};
-constexpr int kMaxRequests = 16;  // per round of asking, and assets under way at a time
+constexpr int kMaxRequests = 16;  // per round of requests, and assets in transfer at a time
 constexpr int kLongestRun = 256;   // chunks per request: 64 ms of the sender's budget
-// Of each asset under way: what a sender sends in 250 ms.
+// Of each asset in transfer: the chunks that a sender sends in 250 ms.
 constexpr std::size_t kWindow = 1024;
 
-// One poll does so much at the most: some 0.5 ms.
+// Limits of one poll: about 0.5 ms.
 constexpr int kPagesPerPoll = 8;
 constexpr int kChunksPerPoll = 256;
 constexpr std::size_t kHashedPerPoll = 96 << 10;
@@ -90,7 +90,7 @@ bool SceneReceiver::follow(const header_t& header, HostTime arrival) {
   return true;
 }
 
-// A manifest is the same for the whole life of its sender, so pages of different sendings complete each other.
+// A manifest is the same for the whole incarnation of its sender, so pages of different repetitions complete each other.
 void SceneReceiver::take(const scene_manifest_t& page) {
   if (page.pages > kMaxPages) {
     ++refused_;
@@ -155,7 +155,7 @@ void SceneReceiver::hash_some() {
       continue;
     }
     const std::int64_t hash = it->first;
-    if (static_cast<std::int64_t>(in.hash) != hash) {  // a forged or mixed-up chunk: begin again
+    if (static_cast<std::int64_t>(in.hash) != hash) {  // a forged or mixed-up chunk: starts again
       drop(in.chunks);
       in.hashed = 0;
       in.hash = kFnv1aBegin;
@@ -183,7 +183,7 @@ void SceneReceiver::free_some() {
   }
 }
 
-// Whoever announced this does not send it.
+// The announcing sender does not send the chunks.
 void SceneReceiver::give_up(HostTime now) {
   for (auto& [hash, in] : incoming_) drop(in.chunks);
   incoming_.clear();

@@ -19,15 +19,15 @@
 namespace tactus::sync {
 namespace {
 
-// For LCM's own queues, which a bus in memory uses. It drops the newest message when one is full, so it must not
+// Size of LCM's own queues, which a bus in memory uses. LCM drops the newest message when a queue is full, so it must not
 // fill.
 constexpr int kLcmQueue = 20000;
-// Multicast comes back to its sender at once, or a firewall keeps it.
+// Time limit of the self test. Multicast returns to its sender at once, unless a firewall blocks it.
 constexpr Nanoseconds kSelfTest = std::chrono::seconds(2);
-constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // LCM's own: stock tools know what it is
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // LCM's own channel: stock tools recognise it
 
-// LCM explains to stderr, at length, why it cannot start; one sentence of ours is enough. Takes what is written to
-// stderr while it lives.
+// Captures stderr during its lifetime. LCM prints long explanations to stderr when it cannot start; one sentence of this
+// library replaces them.
 class CapturedStderr {
  public:
   CapturedStderr() : kept_(dup(STDERR_FILENO)), file_(memfd_create("stderr", MFD_CLOEXEC)) {
@@ -51,14 +51,14 @@ class CapturedStderr {
   int kept_, file_;
 };
 
-// Below SenderClock::kTolerance, above what it takes to read what has arrived.
+// Below SenderClock::kTolerance, above the time that reading a batch takes.
 constexpr Nanoseconds kHeldUp{500'000};
 
 std::string joining(const Identity& id, const std::string& url) {
   return id.node + ": cannot join the bus at " + url + ": ";
 }
 
-// For sending. LCM binds no port for that and starts no thread.
+// Opens a connection for sending. LCM binds no port for that and starts no thread.
 std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id) {
   const CapturedStderr lcm_says;
   auto connection = std::make_shared<lcm::LCM>(url);
@@ -84,9 +84,9 @@ std::unique_ptr<UdpReader> listen(const Identity& id, const BusOptions& options)
 struct Bus::Connections {
   std::shared_ptr<lcm::LCM> realtime;
   std::shared_ptr<lcm::LCM> bulk;
-  std::unique_ptr<UdpReader> reader;  // none in memory: there LCM hands over what arrives
-  std::unique_ptr<VirtualEnd> end;    // in a virtual time: instead of all of them
-  HostTime now{};                     // stamp for what is drained
+  std::unique_ptr<UdpReader> reader;  // null in memory: LCM delivers the messages there
+  std::unique_ptr<VirtualEnd> end;    // in virtual time: replaces all of them
+  HostTime now{};                     // arrival time of the messages that are being drained
 
   struct Handler {
     Connections* connections;
@@ -102,7 +102,7 @@ struct Bus::Connections {
   void hear(std::size_t side, const ChannelBytes& m) {
     const auto at = subscribers[side].find(m.channel);
     if (at == subscribers[side].end()) return;
-    // A piece of a long message is told as what it is: too long.
+    // A fragment of a long message is passed on as too long.
     const std::size_t size = m.whole ? m.data.size() : channels::kMaxMessageBytes + 1;
     for (InboxBase* inbox : at->second) inbox->accept(m.data.data(), size, now);
   }
@@ -168,7 +168,7 @@ void Bus::subscribe(const char* channel, InboxBase* inbox, Port port) {
 }
 
 namespace {
-// Stores what is known of clocks where it is looked up, not where it is taken out.
+// Stores clock maps where they are looked up, instead of in a queue.
 class MapInbox : public InboxBase {
  public:
   explicit MapInbox(ClockMaps& maps) : InboxBase(channels::kClockMap), maps_(maps) {}
@@ -195,7 +195,8 @@ void Bus::drain(HostTime now) {
   c.now = now;
   if (c.reader) {
     const auto hear = [&](std::size_t side, const ChannelBytes& m) {
-      // Held up since `now` was read: what came meanwhile would seem to have arrived before it was sent.
+      // The loop was held up since `now` was read: a newer arrival time keeps messages from appearing to arrive before they
+      // were sent.
       if (const HostTime later = host_now(); later - c.now > kHeldUp) c.now = later;
       c.hear(side, m);
     };

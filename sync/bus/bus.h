@@ -1,7 +1,7 @@
-// Access to the bus: two LCM ports, stamped messages out, checked messages in. LCM sends; sync/bus/udp_reader.h
-// receives.
+// Access to the bus: two LCM ports; sent messages are stamped, received messages are checked. LCM sends;
+// sync/bus/udp_reader.h receives.
 //
-// Nothing here waits for another process. Queues are bounded; what does not fit is dropped and counted.
+// No call waits for another process. Queues are bounded; overflow is dropped and counted.
 #pragma once
 
 #include <map>
@@ -23,24 +23,24 @@ namespace tactus::sync {
 
 struct BusOptions {
   std::string group = channels::kGroup;
-  int port = channels::kDefaultPort;  // bulk is the next one
+  int port = channels::kDefaultPort;  // of the real-time port; the bulk port is the next one
   int ttl = 0;                        // 0: never leaves this machine
   bool memory = false;                // within this process only, for tests and logs: no network
-  std::int32_t clock = 0;             // of the machine that a log was recorded on; 0: this process reads its own
+  std::int32_t clock = 0;             // clock of the machine that a log was recorded on; 0: the clock of this process
 };
 
 enum class Port { kRealtime, kBulk, kBoth };
 
 class Bus {
  public:
-  // Opens both ports. Throws std::runtime_error with one sentence (what is wrong and what to do) when it cannot.
-  // The thread that it starts inherits the caller's scheduling: set that first.
+  // Opens both ports. Throws std::runtime_error with one sentence (cause and remedy) when it cannot. Its thread inherits the
+  // caller's scheduling, so set that first.
   Bus(Identity identity, const BusOptions& options);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // Subscriptions live as long as the bus; make them before the first drain.
+  // Subscriptions exist as long as the bus; create them before the first drain.
   template <class Message>
   Latest<Message>& latest(const char* channel, Port port = Port::kRealtime) {
     return add(std::make_unique<Latest<Message>>(channel), channel, port);
@@ -49,29 +49,28 @@ class Bus {
   Queue<Message>& queue(const char* channel, std::size_t capacity, Port port = Port::kRealtime) {
     return add(std::make_unique<Queue<Message>>(channel, capacity), channel, port);
   }
-  // The bytes of any channel, unread. One may come later, too: what came before is not in it.
+  // The encoded messages of any channel. A raw queue may be added later; it then receives only later messages.
   RawQueue& raw(const char* channel, std::size_t capacity, Port port = Port::kBoth) {
     return add(std::make_unique<RawQueue>(channel, capacity), channel, port);
   }
 
-  // An inbox of the caller's, which outlives the bus' last drain and is not among inboxes().
+  // Subscribes an inbox of the caller's. It must outlive the last drain of the bus, and is not among inboxes().
   void attach(InboxBase& inbox) { subscribe(inbox.count().channel.c_str(), &inbox, Port::kRealtime); }
 
-  // Heeds the clock maps of this run from now on. For processes that drain; call before the first drain.
+  // Applies the clock maps of this run from now on. For processes that drain; call before the first drain.
   void follow_clocks();
-  // Our clock and what is known of others. Refers to this bus.
+  // The clock of this process and the maps of others. Refers to this bus.
   OwnClock clocks() const { return {identity_.run_id, identity_.clock, &maps_}; }
 
-  // Hands everything that has arrived to the inboxes, at most kMaxDrain messages, without waiting.
+  // Distributes all received messages to the inboxes, at most kMaxDrain, without waiting.
   void drain(HostTime now);
   static constexpr int kMaxDrain = 8192;
-  // What somebody else has received, as a recorder did: to the inboxes of that channel.
+  // Passes on a message that was received elsewhere, as by the recorder, to the inboxes of its channel.
   void hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival);
-  // For processes that are driven by events: waits until something arrives, at most so long.
+  // For event-driven processes: waits until a message arrives, at most this time.
   void wait(Nanoseconds at_most);
 
-  // Stamps the header (all but sim_time_ns) and sends. False when the message is too large or the network refused
-  // it.
+  // Stamps the header (all but sim_time_ns) and sends. Returns false when the message is too large or the network refused it.
   template <class Message>
   bool publish(const char* channel, Message& m, Port port = Port::kRealtime) {
     stamp(channel, m.header);
@@ -84,8 +83,7 @@ class Bus {
   std::int64_t refused() const { return refused_; }
 
   const Identity& identity() const { return identity_; }
-  // To everyone this process is another from here on, as if it had been started anew: a fresh incarnation, numbered from
-  // the beginning. Throws as Identity::fresh does.
+  // Starts a new incarnation; receivers see a restart. Numbering starts again. Throws as Identity::fresh does.
   void begin_incarnation();
   const std::vector<std::unique_ptr<InboxBase>>& inboxes() const { return inboxes_; }
 
@@ -102,7 +100,7 @@ class Bus {
   void stamp(const char* channel, header_t& header);
   bool send(const char* channel, const void* data, unsigned size, Port port);
   bool refuse() { return ++refused_, false; }
-  // Throws when what is sent to both ports does not come back.
+  // Throws when a message sent to both ports does not return.
   void test_self(const std::string& url);
 
   Identity identity_;

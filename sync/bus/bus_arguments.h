@@ -1,5 +1,5 @@
-// The options by which a tool finds the bus of a running cluster: those of a node, and the environment of
-// tactus attach.
+// The options by which a tool joins the bus of a running cluster: the same as those of a node, with the environment of tactus
+// attach as defaults.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The border: bytes become a message only if they are exactly one, of the right type, and valid.
+// Decodes received bytes: accepts only exactly one valid message of the right type.
 #pragma once
 
 #include <exception>
@@ -10,7 +10,7 @@
 
 namespace tactus::sync {
 
-// Nothing when the bytes are truncated, too many, of another type, or hold a value out of range.
+// nullopt when the bytes are truncated, too many, of another type, or hold a value out of range.
 template <class Message>
 std::optional<Message> decode(const void* data, std::size_t size) {
   if (size > channels::kMaxMessageBytes) return std::nullopt;
@@ -23,7 +23,7 @@ std::optional<Message> decode(const void* data, std::size_t size) {
   }
 }
 
-// The same for an asset, which has no limit on its size and its validity checked all the same.
+// The same for an asset: without a size limit, but with the same validation.
 template <class Asset>
 std::optional<Asset> decode_asset(const std::vector<std::uint8_t>& bytes) {
   try {

@@ -1,5 +1,5 @@
-// The inputs that a node's health lists: one line a channel, and no more than fit into a datagram, since a report that
-// cannot be sent is that of a node that is dead to the others.
+// The inputs that a NODE_HEALTH message lists: one line a channel, limited to one datagram, because a node whose report
+// cannot be sent counts as dead.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace tactus::sync {
 
-// Adds a line; of a channel that is heard in several ways the first stays, with the worst of their losses.
+// Adds a line. When a channel is received in several ways, the first line stays, with the largest of their losses.
 void add_input(node_health_t& m, const input_health_t& input);
 
-// Leaves out lines from the last on until the message has at most so many bytes encoded, and says so in its note.
-// What a node cannot do without should be added first. Without any line a message that is still too large stays so.
+// Removes lines from the end until the encoded message has at most this number of bytes, and notes the removal. Add required
+// inputs first. A message that is too large without any line stays so.
 void fit(node_health_t& m, std::size_t bytes);
 
 }  // namespace tactus::sync

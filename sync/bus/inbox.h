@@ -1,5 +1,5 @@
-// Where a subscriber finds what arrived: the newest message of a channel, or a bounded queue of them. Filled by
-// Bus::drain, read in the same thread.
+// The inboxes of a subscriber: the newest message of a channel, or a bounded queue. Bus::drain fills them; they are read in
+// the same thread.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@
 
 namespace tactus::sync {
 
-// What all inboxes of one channel count.
+// The counts that all kinds of inboxes share, per channel.
 struct InputCount {
   std::string channel;
   SequenceTracker sequence;
   std::int64_t bad = 0;
-  std::int64_t dropped = 0;  // pushed out of a full queue
+  std::int64_t dropped = 0;  // removed from a full queue
   std::int64_t newest_publish_ns = -1;
   std::int64_t newest_run_id = 0;
   std::int32_t newest_clock = 0;
   HostTime newest_arrival{};
 };
 
-// How old the newest message is: by the sender's clock where it can be read on ours, else since its arrival.
+// The age of the newest message: by the sender's clock where it can be converted to ours, else since its arrival.
 struct InputAge {
-  Nanoseconds age{-1};          // -1: nothing has come
+  Nanoseconds age{-1};          // -1: no message has arrived
   Nanoseconds uncertainty{-1};  // half width; -1: not known
 };
 InputAge age_of(const InputCount& input, const OwnClock& own, HostTime now);
@@ -64,7 +64,7 @@ class InboxBase : public MessageReceiver {
   InputCount count_;
 };
 
-// Keeps the newest message of all sources and when it arrived.
+// Stores the newest message of all sources and its arrival.
 template <class Message>
 class Latest : public InboxBase {
  public:
@@ -93,8 +93,8 @@ class Latest : public InboxBase {
   bool fresh_ = false;
 };
 
-// Keeps messages in order of arrival; when full the oldest is dropped and counted. Old and repeated ones are kept too:
-// pages of one step may overtake each other.
+// Stores messages in order of arrival; when it is full, the oldest is dropped and counted. Old and repeated messages are
+// stored, too: pages of one step may overtake each other.
 template <class Message>
 class Queue : public InboxBase {
  public:

@@ -12,8 +12,8 @@ namespace tactus::sync {
 
 namespace {
 
-// What a filter of its own refuses, as that of the clocks' probes, the kernel counts as dropped, too; it is no
-// loss.
+// The kernel also counts messages as dropped that a socket's own filter rejects, as at the sockets of the clock probes; those
+// are no losses.
 bool has_filter(int fd) {
   socklen_t instructions = 0;
   return getsockopt(fd, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) == 0 && instructions > 0;

@@ -1,4 +1,4 @@
-// Datagrams that the kernel dropped at this process' own sockets because their buffers were full.
+// Counts datagrams that the kernel dropped at the sockets of this process because their buffers were full.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace tactus::sync {
 // Sums the `drops` column of a table in the format of /proc/net/udp over the sockets with these inodes.
 std::int64_t sum_drops(const std::string& proc_net_udp, const std::set<std::string>& inodes);
 
-// Reads /proc. Sockets with a filter do not count: the kernel counts what that refuses among their drops. -1 when
-// that cannot be read. Not realtime-safe: call it once a second or less.
+// Reads /proc. Leaves out sockets with a filter: the kernel counts rejected messages among their drops. -1 when /proc cannot
+// be read. Not realtime-safe: call it once a second or less.
 std::int64_t kernel_drops();
 
 }  // namespace tactus::sync

@@ -1,4 +1,4 @@
-// Messages as bytes, in the order of their arrival, in memory that is kept when it is emptied.
+// A batch of encoded messages in order of arrival; clear() keeps its memory.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,11 @@ class MessageBatch {
     HostTime arrival;
   };
 
-  // False, and nothing is added, when the batch would take more than max_bytes.
+  // Returns false without adding when the batch would take more than max_bytes.
   bool add(HostTime arrival, const ChannelBytes& message, std::size_t max_bytes);
   void clear();
   std::size_t size() const { return entries_.size(); }
-  // What it takes of memory.
+  // Memory in use, bytes.
   std::size_t bytes() const { return bytes_.size() + entries_.size() * sizeof(Entry); }
   Message operator[](std::size_t i) const;
 

@@ -19,8 +19,8 @@ class PageGroup {
     Page page;
   };
 
-  // Stores page `number` of `count`. A page of the same number is replaced; a page that gives another count starts the
-  // group again. False, and nothing changes, when there is no such page.
+  // Stores page `number` of `count`. A page replaces one of the same number; a page with another count restarts the group.
+  // Returns false, without a change, for a number out of range.
   bool put(int number, int count, Page page) {
     if (number < 0 || number >= count) return false;
     if (count != count_) pages_.clear();
@@ -58,18 +58,18 @@ class PageGroup {
 };
 
 struct PageLimits {
-  std::size_t groups = 4;             // incomplete ones
+  std::size_t groups = 4;             // incomplete groups
   int pages = 1024;                   // of one message; a page of a larger one is ignored
-  std::size_t total = SIZE_MAX;       // pages of all incomplete groups, while there are two or more
+  std::size_t total = SIZE_MAX;       // of all incomplete groups, while there are two or more
   std::size_t remembered = 0;         // complete groups whose repeated pages are ignored
 };
 
-// Which incomplete group is given up when there are too many: the one whose first page came first, the one whose newest
-// page came first, or the one of the smallest key.
+// The incomplete group to drop when there are too many: the one whose first page is the oldest, the one whose newest page is
+// the oldest, or the one with the smallest key.
 enum class PageOrder : std::uint8_t { kFirstPage, kNewestPage, kKey };
 
-// Key: all pages of one message have it in common, and no page of another message has it.
-// Realtime-safe: once its memory has grown, as far as Page is.
+// Key: the same for all pages of one message, and different for those of other messages. Realtime-safe once its memory has
+// grown, if Page is.
 template <class Page, class Key>
 class PageAssembler {
  public:
@@ -80,8 +80,8 @@ class PageAssembler {
 
   explicit PageAssembler(const PageLimits& limits, PageOrder order = PageOrder::kFirstPage) : limits_(limits), order_(order) {}
 
-  // Stores a page. The group, when this page completes it, valid until the next call; else null. given_up(Group&): for
-  // each incomplete group that is dropped to keep the limits.
+  // Stores a page. Returns the group when this page completes it, valid until the next call; else null. Calls
+  // given_up(Group&) for each incomplete group that is dropped to keep the limits.
   template <class GivenUp>
   Group* add(const Key& key, int number, int count, Page page, GivenUp&& given_up) {
     repeated_ = std::find(done_.begin(), done_.end(), key) != done_.end();
@@ -98,9 +98,9 @@ class PageAssembler {
   Group* add(const Key& key, int number, int count, Page page) {
     return add(key, number, count, std::move(page), [](Group&) {});
   }
-  // Whether the page that was added last was of a group that is remembered as complete.
+  // True when the page that was added last belongs to a remembered complete group.
   bool repeated() const { return repeated_; }
-  // Incomplete groups.
+  // Number of incomplete groups.
   std::size_t size() const { return groups_.size(); }
   // Drops the incomplete groups for which which(key) is true.
   template <class Which>
@@ -153,7 +153,7 @@ class PageAssembler {
 
   PageLimits limits_;
   PageOrder order_;
-  std::vector<Group> groups_, spare_;  // in the order in which they are given up
+  std::vector<Group> groups_, spare_;  // in the order in which they are dropped
   Group whole_;
   std::deque<Key> done_;
   bool repeated_ = false;

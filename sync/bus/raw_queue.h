@@ -1,5 +1,5 @@
-// Bytes of a channel as they arrived, for who looks at any field of any type (lcmtypes/fields.h). Bounded: when
-// full the oldest is dropped and counted. What is not wanted now costs one comparison a message.
+// The encoded messages of a channel, for programs that read any field of any type (lcmtypes/fields.h). Bounded: when full,
+// the oldest is dropped and counted. While the queue is disabled, a message costs one comparison.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class RawQueue : public InboxBase {
     std::copy(bytes, bytes + size, entry.bytes.begin());
   }
 
-  // Hands all that is there to take(bytes, arrival), oldest first.
+  // Passes all stored messages to take(bytes, arrival), oldest first.
   template <class Take>
   void read(Take&& take) {
     for (; count_in_ring_ > 0; --count_in_ring_) {

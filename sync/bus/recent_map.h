@@ -1,4 +1,4 @@
-// The newest keys and a value of each: a memory of what has been received, of bounded size. Pure.
+// A map of bounded size that keeps the newest keys, for instance of received messages. Pure.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@ namespace tactus::sync {
 template <class Key, class Value>
 class RecentMap {
  public:
-  // The oldest key is forgotten when there are more than max >= 1.
+  // Removes the oldest key when there are more than max >= 1.
   explicit RecentMap(std::size_t max) : max_(max) {}
 
-  // The value of a key, and whether the key is new; then its value is `value`.
+  // Returns the value of a key, and whether the key is new; a new key gets `value`.
   std::pair<Value&, bool> try_emplace(const Key& key, Value value = {}) {
     const auto [at, is_new] = values_.try_emplace(key, std::move(value));
     if (!is_new) return {at->second, false};
@@ -25,18 +25,18 @@ class RecentMap {
     }
     return {at->second, true};
   }
-  // Null: the key is not known, or not any more.
+  // Null: the key was never added, or has been removed.
   const Value* find(const Key& key) const {
     const auto at = values_.find(key);
     return at == values_.end() ? nullptr : &at->second;
   }
-  // use(key, value), the newest key first, until it returns false.
+  // Calls use(key, value), newest key first, until it returns false.
   template <class Use>
   void each_newest_first(Use use) const {
     for (auto key = order_.rbegin(); key != order_.rend(); ++key)
       if (!use(*key, values_.at(*key))) return;
   }
-  // By key.
+  // In order of the keys.
   auto begin() { return values_.begin(); }
   auto end() { return values_.end(); }
   auto begin() const { return values_.begin(); }

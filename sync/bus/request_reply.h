@@ -1,5 +1,5 @@
-// How a program asks a node for one thing: it repeats the question, which carries a random id, until a reply
-// carries that id.
+// Sends a request to a node and waits for the reply: repeats the request, which carries a random id, until a reply carries
+// that id.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,10 @@
 
 namespace tactus::sync {
 
-// A number that no other question has, > 0. Throws std::runtime_error when the system has no random numbers.
+// A random number > 0, different for each request. Throws std::runtime_error when the system has no random numbers.
 std::int64_t request_id();
 
-// The reply of this run to `question`; nothing: nobody answered for so long. For programs that a person runs: it
-// waits.
+// The reply of this run to `question`; nullopt: no reply within `patience`. It blocks: for command-line programs only.
 template <class Question, class Reply>
 std::optional<Reply> request(Bus& bus, const char* channel, Question& question, Queue<Reply>& replies,
                          Nanoseconds patience) {

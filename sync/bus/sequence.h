@@ -1,4 +1,4 @@
-// Counts what is missing in the numbering of one channel and tells restarts from losses.
+// Counts missing messages of a channel by sequence number, and distinguishes restarts of a sender from losses.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,28 @@
 namespace tactus::sync {
 
 enum class Arrival {
-  kNew,             // next, or after a gap that has been counted
+  kNew,             // the next number, or after a gap that has been counted
   kOld,             // a repetition, or overtaken by a newer one
-  kNewIncarnation,  // the sender was restarted (or is heard for the first time)
-  kNewEpoch,  // the same incarnation, its clock back by more than 1 s or its numbering elsewhere: a log replayed
-              // anew
+  kNewIncarnation,  // the sender was restarted, or is received for the first time
+  // The same incarnation, with a clock back by more than 1 s or a different numbering: a log is replayed again.
+  kNewEpoch,
 };
 
-// Keyed by source; keeps the newest incarnation of each. No message, whatever its number, makes all that follow it
+// Keyed by source; keeps the newest incarnation of each. No message, with any number, can make all later messages count as
 // old.
 class SequenceTracker {
  public:
-  // No loss is as long: 1000 s of 1 kHz.
+  // Larger than any loss: 1000 s at 1 kHz.
   static constexpr std::int64_t kLongestGap = 1'000'000;
-  // A sender numbers and stamps in one order. So many messages in a row with an older number and a newer stamp
-  // than the newest say that the number of that one was wrong.
+  // A sender numbers and stamps its messages in one order. When this number of messages in a row have an older number but a
+  // newer stamp than the newest message, the number of that message was wrong.
   static constexpr int kContradictions = 3;
   static constexpr std::size_t kMaxSenders = 256;
 
   Arrival observe(const header_t& header);
   std::int64_t gaps() const { return gaps_; }
   std::int64_t messages() const { return messages_; }
-  // Senders that had to make room: those not heard for longest.
+  // Removed senders: when there are too many, the one that is silent for longest is removed.
   std::int64_t forgotten() const { return forgotten_; }
 
  private:
@@ -40,9 +40,9 @@ class SequenceTracker {
     std::int64_t seq = 0;
     std::int64_t publish_ns = 0;
     std::set<std::int64_t>
-        missing{};  // the newest kRemembered of them: a late one closes its gap, a repeated one none
+        missing{};  // the newest kRemembered missing numbers; a late message removes its number
     int contradictions = 0;
-    std::int64_t heard = 0;  // messages_ then
+    std::int64_t heard = 0;  // messages_ at its newest message
   };
   Sender& find_or_add(std::int32_t source);
   static constexpr std::int64_t kRemembered = 256;

@@ -13,8 +13,7 @@
 namespace tactus::sync {
 namespace {
 
-// 4 MB: a burst of 20,000 datagrams of 100 bytes. Without the right to administrate the network the kernel gives
-// at most net.core.rmem_max.
+// 4 MB: a burst of 20,000 datagrams of 100 bytes. Without CAP_NET_ADMIN the kernel limits it to net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 << 20;
 
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
@@ -35,12 +34,13 @@ void prepare(int socket, const std::string& group, int port) {
     errno = EINVAL;
     fail("group");
   }
-  // To the group's address, so that other groups on this port are not heard.
+  // Binds to the address of the group, so that other groups on this port are not received.
   if (bind(socket, reinterpret_cast<const sockaddr*>(&at), sizeof at) < 0) fail("bind");
   ip_mreq member{};
   member.imr_multiaddr = at.sin_addr;
   set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &member, sizeof member, "IP_ADD_MEMBERSHIP");
-  // On that interface only: otherwise what another program joined the group for elsewhere is heard too.
+  // Receives the group on that interface only. By default a socket also receives groups that other programs joined on other
+  // interfaces.
   const int no = 0;
   set(socket, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no, "IP_MULTICAST_ALL");
 }

@@ -1,11 +1,9 @@
-// One port of the bus, for receiving: a multicast socket that is read in batches by whoever wants to know, without
-// a thread of its own.
+// One receiving port of the bus: a multicast socket that the owner reads in batches, without a thread.
 //
-// LCM's own receiver wakes a thread for each datagram of the port, whatever its channel, and hands it on through a
-// pipe; with 10,000 malformed messages a second that took 0.8 of a core from eight processes, and a picture drawn
-// on the processor fell below its rate. It also puts fragments together in memory that a forged one can overrun
-// (shared by all releases of LCM, see its pull request 628); no message of this bus is fragmented, so none is put
-// together here.
+// LCM's own receiver wakes a thread for each datagram of the port, on any channel, and passes it on through a pipe. With
+// 10,000 malformed messages a second that used 0.8 of a core in eight processes, and a software-rendered picture fell below
+// its rate. LCM also reassembles fragments in memory that a forged fragment can overrun (in all releases of LCM, see its pull
+// request 628). No message of this bus is fragmented, so this class reassembles none.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +18,7 @@ namespace tactus::sync {
 
 class UdpPort {
  public:
-  // Joins the group on the interface that the route to it names. Throws std::system_error.
+  // Joins the group on the interface of the route to it. Throws std::system_error.
   UdpPort(const std::string& group, int port);
   ~UdpPort();
   UdpPort(const UdpPort&) = delete;
@@ -28,9 +26,9 @@ class UdpPort {
 
   int descriptor() const { return socket_; }
 
-  // Calls hear(ChannelBytes) for what has arrived, at most `at_most` datagrams, oldest first; waits for nothing.
-  // Returns how many datagrams were read: fewer than `at_most` when none are left. A message that is too long for
-  // the bus is cut, to more than channels::kMaxMessageBytes. Realtime-safe: yes.
+  // Calls hear(ChannelBytes) for the received datagrams, at most `at_most`, oldest first, without waiting. Returns the number
+  // of datagrams read: fewer than `at_most` when none are left. A message that is too long for the bus is truncated, but
+  // stays longer than channels::kMaxMessageBytes. Realtime-safe: yes.
   template <class Hear>
   int read(int at_most, Hear&& hear) {
     int count = 0;
@@ -47,10 +45,10 @@ class UdpPort {
 
  private:
   static constexpr int kBatch = 32;
-  // The longest message with the longest channel, and then some, so that one which is longer shows.
+  // The longest message with the longest channel name, plus a margin that makes a longer one detectable.
   static constexpr std::size_t kDatagramBytes = channels::kMaxMessageBytes + 136;
 
-  // Receives up to `wanted` datagrams into buffers_, no more than kBatch. Returns how many.
+  // Receives up to `wanted` datagrams into buffers_, at most kBatch. Returns their number.
   int receive(int wanted);
   std::span<const std::uint8_t> datagram(int i) const {
     return {buffers_[static_cast<std::size_t>(i)].data(), sizes_[static_cast<std::size_t>(i)]};

@@ -11,14 +11,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A stock Debian keeps some 90 of the largest messages for a socket (net.core.rmem_max); a busy bus brings 6 in a
+// A default Debian buffers about 90 of the largest messages per socket (net.core.rmem_max); a busy bus carries 6 a
 // millisecond.
 constexpr Nanoseconds kUnattended = milliseconds(4);
-// What is kept for a loop that is held up; beyond that the kernel's buffers fill, and it counts what it drops.
-// Four seconds of a busy bus.
+// Limit of the stored messages while the loop is held up: four seconds of a busy bus. Beyond it the kernel's buffers fill,
+// and the kernel counts the dropped datagrams.
 constexpr std::size_t kMaxKeptBytes = 16 << 20;
 constexpr int kTurn = 256;
-// Who only counts and coordinates loses nothing by it, and wakes a third as often as with 1 ms.
+// Event-driven processes only count and coordinate, so they can wait; they wake a third as often as with 1 ms.
 constexpr Nanoseconds kTogether = milliseconds(3);
 
 }  // namespace

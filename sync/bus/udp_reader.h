@@ -1,8 +1,8 @@
-// Both ports of the bus, read by the loop that needs them, in its own tick.
+// Reads both ports of the bus, from the loop of the process, within its tick.
 //
-// A loop that ticks seldom, or is held up, would leave more in its sockets than the kernel keeps for it: then a
-// thread takes it out and keeps it, in order, until the loop comes. Neither waits for the other: while one reads,
-// the other has its turn later.
+// A loop that ticks rarely, or is held up, would overflow the buffers of its sockets. A thread then reads the sockets and
+// stores the messages, in order, until the loop reads them. Neither side waits for the other: while one reads, the other
+// skips its read.
 #pragma once
 
 #include <array>
@@ -18,18 +18,17 @@ namespace tactus::sync {
 
 class UdpReader {
  public:
-  // Joins the group on `port` and on the next one. The thread inherits the caller's scheduling. Throws
-  // std::system_error.
+  // Joins the group on `port` and on the next one. The thread inherits the caller's scheduling. Throws std::system_error.
   UdpReader(const std::string& group, int port);
   ~UdpReader();
   UdpReader(const UdpReader&) = delete;
   UdpReader& operator=(const UdpReader&) = delete;
 
-  // Calls hear(side, ChannelBytes), side 0 for the first port and 1 for the next, for what has arrived, each
-  // port's oldest first, at most `at_most` messages; without waiting.
+  // Calls hear(side, ChannelBytes) for the received messages, at most `at_most`, without waiting. side: 0 for the first port,
+  // 1 for the next. The order of each port is kept.
   template <class Hear>
   void read(int at_most, Hear&& hear) {
-    if (busy_.test_and_set(std::memory_order_acquire)) return;  // the thread reads: next time
+    if (busy_.test_and_set(std::memory_order_acquire)) return;  // the thread is reading: read at the next call
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       Side& side = sides_[i];
       for (; side.next < side.kept.size() && at_most > 0; ++side.next, --at_most) hear(i, side.kept[side.next]);
@@ -42,8 +41,8 @@ class UdpReader {
     busy_.clear(std::memory_order_release);
   }
 
-  // Waits until something arrives, at most so long; then for a moment more, so that what comes together is handled
-  // together, and a flood wakes us no more often than that.
+  // Waits until a message arrives, at most this time, and then a moment longer: messages that arrive together are handled
+  // together, and a flood cannot wake the process more often.
   void wait(Nanoseconds at_most);
 
  private:
@@ -57,7 +56,7 @@ class UdpReader {
 
   std::array<Side, 2> sides_;
   std::atomic_flag busy_;
-  std::atomic<HostTime> attended_;  // when the loop last read; far in the future while it waits for the sockets
+  std::atomic<HostTime> attended_;  // last read by the loop; far in the future while it waits for the sockets
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// All other clocks as sync_node knows them, and the maps that it publishes of them. Pure.
+// The offset trackers of all other clocks, and the maps that sync_node publishes of them. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace tactus::sync {
 
 class ClockAgreement {
  public:
-  // A host that has not answered for so long is gone: its map is no longer published (design: 15 waves; those who need it go
-  // on with the last one, which says how uncertain it has become).
+  // A host that has not answered for this time is gone, and its map is no longer published (design: 15 waves). Receivers
+  // continue with the last map, which contains the growth of its uncertainty.
   static constexpr Nanoseconds kGone{30'000'000'000};
 
   explicit ClockAgreement(std::int32_t own_clock) : own_clock_(own_clock) {}
 
   OffsetTracker::Outcome add(const ProbeWave& wave);
-  // One map of each clock, of this instant.
+  // One map of each clock, for this instant.
   std::vector<clock_map_t> maps(HostTime now);
-  // Since the start, over all clocks: jumps and changes of rate that were noticed.
+  // Detected jumps and changes of rate since the start, over all clocks.
   std::int64_t jumps() const { return jumps_; }
   std::int64_t rate_changes() const { return rate_changes_; }
 

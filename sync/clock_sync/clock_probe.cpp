@@ -21,7 +21,7 @@ HostTime ClockProber::next() const {
 
 std::optional<clock_probe_t> ClockProber::request(HostTime now, HostTime stamp, std::int64_t nonce) {
   if (static_cast<int>(sent_.size()) == kProbes || now < next()) return std::nullopt;
-  // After a stall the spacing is kept: answers to a burst would wait for each other.
+  // After a stall the spacing is kept: answers to a burst would delay each other.
   if (now > next() + kSpacing) wave_begin_ = now - static_cast<int>(sent_.size()) * kSpacing;
   sent_.push_back({nonce, to_ns(stamp)});
   clock_probe_t m{};
@@ -45,7 +45,7 @@ bool ClockProber::takes(const clock_probe_t& r, HostTime back) const {
 }
 
 void ClockProber::reply(const clock_probe_t& r, HostTime back) {
-  if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // to somebody else
+  if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // addressed to another process
   const auto known = heard_.find(r.header.clock);
   const bool room = known != heard_.end() ? known->second.wave.replies < 2 * kProbes : heard_.size() < kMaxClocks;
   if (!takes(r, back) || !room) {
@@ -56,7 +56,7 @@ void ClockProber::reply(const clock_probe_t& r, HostTime back) {
                  replied = host_time(r.reply_sent_ns);
   const ProbeWave wave{r.header.clock, probe_sample(sent, arrived, replied, back),
                        (back - sent) - (replied - arrived), 1};
-  // Seen from any instant of the wave, the clocks have drifted by no more than that of its whole length.
+  // From any instant of the wave, the clocks drift by no more than over its whole length.
   const Nanoseconds margin = wave.sample.half_width + Nanoseconds(static_cast<std::int64_t>(
                                                           OffsetTracker::kMaxDrift * static_cast<double>(kPeriod.count())));
   const Heard heard{wave, wave.sample.offset - margin, wave.sample.offset + margin};
@@ -83,7 +83,7 @@ std::vector<ProbeWave> ClockProber::finish(HostTime now) {
       ++contradictory_;
   }
   Nanoseconds period = kPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(out.size() / kFewClocks));
-  if (waves_.size() > kMaxClocks) waves_.clear();  // hosts that come and go for months
+  if (waves_.size() > kMaxClocks) waves_.clear();  // limits the memory when hosts come and go for months
   for (const ProbeWave& wave : out)
     if (waves_[wave.clock] < kFirstWaves && ++waves_[wave.clock] < kFirstWaves) period = kFirstPeriod;
   heard_.clear();

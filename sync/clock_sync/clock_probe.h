@@ -1,4 +1,4 @@
-// Two-way probes between hosts: who is asked when, what is answered, which answer counts. Pure.
+// Two-way clock probes between hosts: the schedule of requests, the answers, and the selection of the best answer. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace tactus::sync {
 
-// The answer of `own` to a request that arrived at `arrived`; the sender fills reply_sent_ns and the header's numbering.
-// Nothing for what is no request, of another run, or of our own clock.
+// The answer of `own` to a request that arrived at `arrived`; the sender sets reply_sent_ns and the header's numbering.
+// nullopt for a message that is no request, or is of another run or of our own clock.
 std::optional<clock_probe_t> probe_answer(const clock_probe_t& request, const Identity& own, HostTime arrived);
 
-// What one wave of probes says of one clock.
+// The result of one wave of probes for one clock.
 struct ProbeWave {
   std::int32_t clock = 0;
   OffsetSample sample;  // of the smallest round trip
@@ -25,39 +25,39 @@ struct ProbeWave {
   std::int32_t replies = 0;
 };
 
-// Asks in waves and keeps of each clock the answer with the smallest round trip.
+// Sends requests in waves, and keeps for each clock the answer with the smallest round trip.
 class ClockProber {
  public:
-  // As the Lab Streaming Layer does it (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
+  // As in the Lab Streaming Layer (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
   // TimeUpdateInterval 2 s); its limit of 128 ms for a round trip, rounded up to the next probes.
   static constexpr int kProbes = 8;
   static constexpr Nanoseconds kSpacing{64'000'000};
   static constexpr Nanoseconds kPeriod{2'000'000'000};
-  // A clock that is new is asked again sooner, so that its rate is known after two seconds, not four (design).
+  // A new clock is probed again sooner, so that its rate is known after two seconds instead of four (design).
   static constexpr int kFirstWaves = 3;
   static constexpr Nanoseconds kFirstPeriod{1'000'000'000};
   static constexpr Nanoseconds kLongestTrip{128'000'000};
-  // Of more clocks than these each is asked less often in proportion, so that the probes of a network grow with its hosts
-  // and not with their square: of 64 every 8 s, in which the 15 ppm that a measured rate leaves open (RFC 5905, PHI)
-  // are 120 us.
+  // With more clocks than this, each is probed less often in proportion, so that the probes of a network grow with the number
+  // of hosts and not with its square. 64 clocks are probed every 8 s, in which the 15 ppm uncertainty of a measured rate (RFC
+  // 5905, PHI) amounts to 120 us.
   static constexpr std::size_t kFewClocks = 16;
-  // Design: more hosts than a cluster has; what answers beyond that is counted as refused.
+  // Design: more hosts than a cluster has; further answers count as refused.
   static constexpr std::size_t kMaxClocks = 64;
 
   ClockProber(Identity own, HostTime first_wave) : own_(std::move(own)), wave_begin_(first_wave) {}
 
-  // When request() or finish() has something to do.
+  // The next time at which request() or finish() has work to do.
   HostTime next() const;
-  // The request that is due, if one is. It leaves now, which is `stamp` on the clock that is compared; `nonce` is random.
+  // The due request, if any. It is sent now, which is `stamp` on the clock that is compared; `nonce` is random.
   std::optional<clock_probe_t> request(HostTime now, HostTime stamp, std::int64_t nonce);
   // back: on the clock that is compared.
   void reply(const clock_probe_t& reply, HostTime back);
-  // After the last answer of a wave could have come: what it says. Then the next wave begins.
+  // Returns the results of a wave after its last possible answer, and starts the next wave.
   std::vector<ProbeWave> finish(HostTime now);
 
-  // Answers that nobody asked for, too late, impossible, or one too many.
+  // Number of answers that were not requested, late, impossible or in excess.
   std::int64_t refused() const { return refused_; }
-  // Waves of a clock whose answers contradicted each other: it jumped meanwhile, or somebody lies.
+  // Waves in which the answers of a clock contradicted each other: it jumped meanwhile, or an answer was forged.
   std::int64_t contradictory() const { return contradictory_; }
 
  private:
@@ -66,7 +66,7 @@ class ClockProber {
   };
   struct Heard {
     ProbeWave wave;
-    Nanoseconds least, most;  // what all answers of the wave allow the offset to be
+    Nanoseconds least, most;  // range of the offset that all answers of the wave allow
   };
   bool takes(const clock_probe_t& reply, HostTime back) const;
 
@@ -74,7 +74,7 @@ class ClockProber {
   HostTime wave_begin_;
   std::vector<Sent> sent_;  // of this wave
   std::map<std::int32_t, Heard> heard_;
-  std::map<std::int32_t, int> waves_;  // heard of each clock, up to kFirstWaves
+  std::map<std::int32_t, int> waves_;  // received of each clock, up to kFirstWaves
   std::int64_t refused_ = 0, contradictory_ = 0;
 };
 

@@ -14,7 +14,7 @@ OffsetSample probe_sample(HostTime sent, HostTime arrived_there, HostTime replie
   OffsetSample s;
   s.at = sent + round_trip / 2;
   s.offset = least + (most - least) / 2;
-  // The two bounds are of two instants; between them the clocks drift. Halving rounds by 1 ns.
+  // The two bounds belong to two instants, and the clocks drift in between. Halving rounds by 1 ns.
   s.half_width = (most - least) / 2 + OffsetTracker::kGranularity +
                  Nanoseconds(static_cast<std::int64_t>(ns(round_trip) * OffsetTracker::kMaxDrift) + 1);
   return s;
@@ -85,7 +85,7 @@ void OffsetTracker::measure_rate() {
     rate_ = rate;
     return;
   }
-  // No one rate fits: it has changed within the half minute.
+  // No single rate fits: it has changed within the half minute.
   rate_ = {};
   measured_ = {newest};
 }

@@ -7,7 +7,7 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'T', 'P', 'P', '1'};
-// Nobody sends more in a round: a forged number shall not fill the memory or spoil a share.
+// A round never has more: the limit keeps a forged number from filling the memory or spoiling a share.
 constexpr std::uint64_t kMaxNumbers = 1 << 20;
 constexpr std::int64_t kLatest = std::int64_t{1} << 60;
 
@@ -82,11 +82,11 @@ void PairRecord::hear(const PairDatagram& m, int ttl) {
 void PairRecord::hear_answer(const PairDatagram& m, HostTime at) {
   const std::int64_t there = m.answered_ns - m.heard_ns;
   const std::int64_t round = to_ns(at) - m.asked_ns - there;
-  if (there < 0 || round < 0) return;  // no clock runs so: forged
+  if (there < 0 || round < 0) return;  // negative durations are impossible: forged
   round_trips_.push_back(Nanoseconds(round));
   if (Nanoseconds(round) >= best_) return;
   best_ = Nanoseconds(round);
-  // Cristian's and NTP's estimate (RFC 5905, section 8): true within half the round trip.
+  // Cristian's and NTP's estimate (RFC 5905, section 8): accurate to half the round trip.
   offset_ = Nanoseconds((m.heard_ns - m.asked_ns) / 2 + (m.answered_ns - to_ns(at)) / 2);
 }
 

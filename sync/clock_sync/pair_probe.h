@@ -1,5 +1,5 @@
-// What hosts learn of each other before a cluster runs: who hears whom, what is lost, how long it takes, how their
-// clocks differ. Every host sends numbered datagrams to the group, and answers those of the others. Pure.
+// Measurements between hosts before a cluster runs: reachability, losses, round trips and clock offsets. Every host sends
+// numbered datagrams to the group, and answers those of the others. Pure.
 #pragma once
 
 #include <array>
@@ -15,40 +15,39 @@
 
 namespace tactus::sync {
 
-// One datagram. Times are of the monotonic clock of whoever wrote them, in ns.
+// One datagram. Times are of the sender's monotonic clock, ns.
 struct PairDatagram {
   enum Kind : std::uint8_t { kAsk = 1, kAnswer = 2, kBurst = 3, kEnd = 4 };
   static constexpr std::size_t kLongestName = 40;
   static constexpr std::size_t kShortest = 4 + 8 + 1 + 8 + 2 * (kLongestName + 1) + 3 * 8;
   static constexpr std::size_t kLongest = 1400;
 
-  std::uint64_t run = 0;  // of this round of probes: others are strangers
+  std::uint64_t run = 0;  // id of this round of probes; others are ignored
   Kind kind = kAsk;
-  std::uint64_t number = 0;  // from 0 for each kind; kEnd: how many were asked
+  std::uint64_t number = 0;  // from 0 for each kind; kEnd: the number of requests
   std::string from, to;      // to: of an answer
   std::int64_t asked_ns = 0, heard_ns = 0, answered_ns = 0;
 
   // Padded with zeros to `size` bytes.
   std::vector<std::uint8_t> encode(std::size_t size) const;
-  // Nothing for what is no such datagram.
+  // nullopt when the bytes are no such datagram.
   static std::optional<PairDatagram> decode(std::span<const std::uint8_t> data);
 };
 
-// What one host has heard of another.
+// The messages that one host has received from another.
 class PairRecord {
  public:
   void hear(const PairDatagram& m, int ttl);
-  // An answer to a question of ours, that arrived at `at`.
+  // An answer to our request, which arrived at `at`.
   void hear_answer(const PairDatagram& m, HostTime at);
 
   bool heard() const { return !asked_.empty(); }
   bool answered() const { return !round_trips_.empty(); }
-  // Share of the other's numbered datagrams that did not arrive, by their highest number or what it says at its
-  // end.
+  // Share of the other host's numbered datagrams that did not arrive, by their highest number or by its kEnd.
   double lost() const;
-  // Datagrams of bursts that arrived.
+  // Number of received datagrams of bursts.
   std::size_t of_bursts() const { return bursts_.size(); }
-  int ttl() const { return ttl_; }                                        // as they arrived; -1: unknown
+  int ttl() const { return ttl_; }                                        // on arrival; -1: unknown
   Nanoseconds round_trip(double share) const;                             // a quantile
   Nanoseconds offset() const { return offset_; }                          // of the other's clock to ours
   Nanoseconds uncertainty() const { return best_ / 2 + Nanoseconds(1); }  // half the least round trip

@@ -22,12 +22,12 @@ namespace {
 constexpr std::uint32_t kMagic = 0x4c433032;  // "LC02", a message in one datagram
 constexpr std::size_t kChannelBytes = 12;     // "CLOCK_PROBE" and its zero
 constexpr std::size_t kPrefix = 8 + kChannelBytes;
-// A stamp of the kernel older than this is not corrected for: in doubt an arrival is called later than it was.
+// An older kernel stamp is not used for a correction: in doubt an arrival counts as later than it was.
 constexpr Nanoseconds kOldest{100'000'000};
 // Reading one clock after the other takes less than this unless the thread was interrupted or the clock was set.
 constexpr Nanoseconds kSteady{50'000};
 
-// The kernel drops all but our channel: its words lie behind 8 bytes of UDP and 8 of LCM.
+// Makes the kernel drop all other channels: the channel name follows 8 bytes of UDP and 8 of LCM.
 void attach_filter(int fd) {
   const auto word = [](const char* s) {
     std::uint32_t w = 0;
@@ -42,7 +42,7 @@ void attach_filter(int fd) {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 24), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, word(name + 8), 0, 1),
       BPF_STMT(BPF_RET | BPF_K, 0xffff),      BPF_STMT(BPF_RET | BPF_K, 0)};
   const sock_fprog program{sizeof code / sizeof code[0], code};
-  // Without it all works the same, only more often for nothing.
+  // The filter is optional: without it the thread only wakes more often.
   setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
 }
 
@@ -58,7 +58,7 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (socket_ < 0 || wake_ < 0) throw trouble(o, "open a socket");
-  attach_filter(socket_);  // before anything can arrive
+  attach_filter(socket_);  // before any datagram can arrive
   const int on = 1;
   const auto ttl = static_cast<unsigned char>(o.ttl);
   setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);

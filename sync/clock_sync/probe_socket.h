@@ -1,7 +1,8 @@
-// A socket on the bus that hears only CLOCK_PROBE, and says when each arrived.
+// A socket on the bus that receives only CLOCK_PROBE, with the arrival time of each message.
 //
-// It speaks LCM's datagrams ("UDP Multicast Protocol Description") without LCM: LCM's receiving thread hands messages on through
-// a queue and stamps them with the settable clock in microseconds, and here every microsecond between wire and stamp counts.
+// It uses LCM's datagram format ("UDP Multicast Protocol Description") without LCM: LCM's receiving thread passes messages on
+// through a queue and stamps them with the settable clock in microseconds, and here every microsecond between wire and stamp
+// counts.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +24,14 @@ class ProbeSocket {
 
   struct Arrived {
     clock_probe_t probe;
-    HostTime at;  // never earlier than it arrived
+    HostTime at;  // never earlier than the true arrival
   };
-  // The next valid one, if it is there before `until`; nothing also after wake().
+  // The next valid message that arrives before `until`; nullopt at that time or after wake().
   std::optional<Arrived> receive(HostTime until);
   bool send(const clock_probe_t& probe);
   // Ends a receive(). Thread-safe: yes.
   void wake();
-  // Datagrams of the channel that were no valid message.
+  // Number of datagrams of the channel that were no valid message.
   std::int64_t bad() const { return bad_; }
 
  private:
@@ -39,7 +40,7 @@ class ProbeSocket {
   std::uint32_t address_ = 0;  // network order
   std::uint16_t port_ = 0;
   std::uint32_t next_number_ = 0;
-  Nanoseconds realtime_ahead_{0};  // of the monotonic clock, when last seen
+  Nanoseconds realtime_ahead_{0};  // of the monotonic clock, when last read
   std::int64_t bad_ = 0;
 };
 

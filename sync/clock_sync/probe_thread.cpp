@@ -20,7 +20,7 @@ void ProbeThread::send(clock_probe_t probe) {
   probe.header.publish_time_ns = to_ns(host);
   const std::int64_t now_ns = to_ns(clock_.read(host));
   if (probe.kind == clock_probe_t::REPLY) {
-    // A clock that was put back meanwhile: no answer that could be valid.
+    // The clock was set back meanwhile: no valid answer is possible.
     if (now_ns < probe.request_arrived_ns) return;
     probe.reply_sent_ns = now_ns;
   }

@@ -1,5 +1,5 @@
-// The thread of sync_node that asks other hosts for their time and answers theirs at once: it blocks on the probes and on
-// nothing else. What it learns goes to the loop by value through a queue without locks.
+// The thread of sync_node that probes the clocks of other hosts and answers their probes at once: it blocks only on the probe
+// socket. It passes its results to the loop by value through a lock-free queue.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace tactus::sync {
 
-// For tests: a clock that drifts and jumps as told. Else the host's own.
+// For tests: a clock with a given drift and jump. By default, the host's own clock.
 struct EmulatedClock {
   double drift = 0;           // s/s, from `since` on
-  Nanoseconds jump{0};        // by so much, once, at `jump_at`
+  Nanoseconds jump{0};        // by this amount, once, at `jump_at`
   HostTime since{}, jump_at = HostTime::max();
 
   HostTime read(HostTime host) const {
@@ -27,7 +27,7 @@ struct EmulatedClock {
   }
 };
 
-// One producer, one consumer, by value. Realtime-safe: yes.
+// A queue for one producer and one consumer, by value. Realtime-safe: yes.
 template <class Item, std::size_t kRoom>
 class HandOver {
  public:
@@ -53,17 +53,17 @@ class HandOver {
 
 class ProbeThread {
  public:
-  // Runs from here to the destructor, with the caller's scheduling. Throws std::runtime_error with one sentence.
+  // The thread runs until the destructor, with the caller's scheduling. Throws std::runtime_error with one sentence.
   ProbeThread(const BusOptions& options, const Identity& own, const EmulatedClock& clock = {});
   ~ProbeThread();
   ProbeThread(const ProbeThread&) = delete;
   ProbeThread& operator=(const ProbeThread&) = delete;
 
-  // The next wave that has ended, in order. One consumer.
+  // The next completed wave, in order. One consumer.
   std::optional<ProbeWave> pop() { return waves_.pop(); }
 
  private:
-  // A flood of requests is answered only so often: eight probes of 64 hosts in half a second, twice (design).
+  // Limit on answers, against a flood of requests: eight probes of 64 hosts in half a second, twice (design).
   static constexpr int kAnswersPerPeriod = 1024;
 
   void run();
@@ -74,7 +74,7 @@ class ProbeThread {
   EmulatedClock clock_;
   ProbeSocket socket_;
   ClockProber prober_;
-  HandOver<ProbeWave, 256> waves_;  // a period of all the clocks that a prober minds, four times
+  HandOver<ProbeWave, 256> waves_;  // a period of all the clocks that a prober tracks, four times
   std::int64_t seq_ = 0;
   int answers_ = 0;  // in this period
   HostTime answers_since_{};

@@ -9,7 +9,7 @@ namespace {
 Nanoseconds scaled(Nanoseconds d, double factor) {
   return Nanoseconds(std::llround(static_cast<double>(d.count()) * factor));
 }
-// Times off the bus may be anything; the border bounds those of a map, these are bounded here.
+// Received times may have any value. Those of a map are range-checked on reception, other times here.
 constexpr std::int64_t kLatest = std::int64_t{1} << 60;
 bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kLatest; }
 
@@ -28,7 +28,7 @@ Nanoseconds ClockLine::uncertainty_at(Nanoseconds since) const {
 }
 
 ClockReading ClockLine::from_of(HostTime of) const {
-  // of = to + offset + drift * (to - at), solved for to - at: the difference is small, so a double holds it exactly enough.
+  // of = to + offset + drift * (to - at), solved for to - at: the difference is small, so a double is precise enough.
   const Nanoseconds since = scaled(of - at_ - offset_, 1 / (1 + drift_));
   return {at_ + since, uncertainty_at(since)};
 }

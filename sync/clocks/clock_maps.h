@@ -1,4 +1,4 @@
-// What is known of other clocks: the published maps of this run, and how a time of one clock reads on another. Pure.
+// The published clock maps of this run, and the conversion of a time from one clock to another. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace tactus::sync {
 
-// An instant on the clock asked for, and the half width of the interval that surely holds it.
+// An instant on the requested clock, and the half width of the interval that certainly contains it.
 struct ClockReading {
   HostTime time{};
   Nanoseconds uncertainty{0};
 };
 
-// One clock as a line in another.
+// The linear map between two clocks.
 class ClockLine {
  public:
   explicit ClockLine(const clock_map_t& m);
-  ClockReading from_of(HostTime of) const;  // reads a time of of_clock on to_clock
-  ClockReading to_of(HostTime to) const;    // and back
+  ClockReading from_of(HostTime of) const;  // converts a time of of_clock to to_clock
+  ClockReading to_of(HostTime to) const;    // the inverse
 
  private:
   Nanoseconds uncertainty_at(Nanoseconds since) const;
@@ -35,19 +35,19 @@ class ClockLine {
 
 class ClockMaps {
  public:
-  // A map that nobody renews grows less certain; beyond this the one-way estimate is no worse, whose bias is a latency
-  // (design: one frame at 60 Hz).
+  // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is no worse; its bias is
+  // a latency (design: one frame at 60 Hz).
   static constexpr Nanoseconds kMaxUncertain{16'000'000};
-  // Of two publishers of one map the first is heeded until it has been silent for four of its periods.
+  // Of two publishers of one map, the first is used until it has been silent for four of its periods.
   static constexpr Nanoseconds kSilence{2'000'000'000};
-  // More clocks than a cluster has hosts: beyond this, maps are an attack or a mistake.
+  // More clocks than a cluster has hosts: more maps can only come from an attack or a mistake.
   static constexpr std::size_t kMax = 1024;
 
-  // Maps of another run speak of clocks as they were: ignored and counted. Run 0: that of the first map.
+  // Maps of another run describe other clocks: they are ignored and counted. Run 0: the run of the first map.
   explicit ClockMaps(std::int64_t run_id) : run_id_(run_id) {}
 
   void observe(const clock_map_t&, HostTime arrival);
-  // Nothing when no map leads from one to the other, or none that is certain enough.
+  // nullopt when no sufficiently certain map connects the two clocks.
   std::optional<ClockReading> read(HostTime time, std::int32_t of_clock, std::int32_t on_clock) const;
   std::int64_t foreign() const { return foreign_; }
   std::int64_t run_id() const { return run_id_; }
@@ -62,7 +62,7 @@ class ClockMaps {
   std::int64_t foreign_ = 0;
 };
 
-// Whose clock is ours, and what is known of others. A bare run id says: all of this run share one clock.
+// The clock of this process, and the maps of others. A bare run id means that all processes of the run share one clock.
 struct OwnClock {
   OwnClock(std::int64_t run, std::int32_t clock_id = 0, const ClockMaps* known = nullptr)
       : run_id(run), clock(clock_id), maps(known) {}

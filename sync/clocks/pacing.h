@@ -1,4 +1,4 @@
-// The host clock and loops on absolute deadlines. The only place, with mains, where a clock is read.
+// The host clock, and loops with absolute deadlines. Beside the mains, clocks are read only here.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace tactus::sync {
 // CLOCK_MONOTONIC. Realtime-safe: yes. Thread-safe: yes.
 HostTime host_now();
 
-// The deadlines of a loop, without a clock: pure, so that tests move time by hand.
+// The deadlines of a loop, without a clock. Pure: tests set the time.
 class Deadlines {
  public:
   Deadlines(double rate_Hz, HostTime start) : start_(start), next_(start) { set_rate(rate_Hz); }
@@ -20,10 +20,11 @@ class Deadlines {
   double rate_Hz() const { return rate_Hz_; }
 
   HostTime next() const { return next_; }
-  // Call after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
-  // burst. Returns how many ticks were skipped.
+  // Call it after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
+  // burst. Returns the number of skipped ticks.
   std::int64_t advance(HostTime now);
-  // The next deadline is then, and others count from there; so many before it were left out on purpose and count as missed.
+  // Re-phases the loop: the next deadline is at `next`, and later ones count from there. The left_out ticks before it count
+  // as missed.
   void align(HostTime next, std::int64_t left_out = 0);
 
   std::int64_t ticks() const { return ticks_; }
@@ -38,7 +39,7 @@ class Deadlines {
   std::int64_t missed_ = 0;
 };
 
-// Sleeps until then; not at all when that is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
+// Sleeps until t; returns at once when t is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
 void sleep_until(HostTime t);
 
 // Sleeps on absolute deadlines.
@@ -46,13 +47,13 @@ class Loop {
  public:
   explicit Loop(double rate_Hz) : deadlines_(rate_Hz, host_now()) {}
 
-  // Sleeps until the next deadline and returns the clock after waking. A signal ends the sleep early.
-  // Realtime-safe: yes (it only sleeps).
+  // Sleeps until the next deadline and returns the clock after waking. A signal ends the sleep early. Realtime-safe: yes (it
+  // only sleeps).
   HostTime wait();
   void set_rate(double rate_Hz) { deadlines_.set_rate(rate_Hz); }
   void align(HostTime next, std::int64_t left_out) { deadlines_.align(next, left_out); }
 
-  // How late the last wake-up was.
+  // Lateness of the last wake-up.
   Nanoseconds wake_lateness() const { return lateness_; }
   const Deadlines& deadlines() const { return deadlines_; }
 

@@ -1,4 +1,4 @@
-// Reads the times of one sender on this host's clock, by the best that is known of its clock. Pure.
+// Converts the times of one sender to this host's clock, by the best available source. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,30 @@
 
 namespace tactus::sync {
 
-// In this order:
-//   kSame     of our run and our clock: nothing to read
-//   kMapped   of our run, and a map of its clock is published: good to the map's uncertainty
-//   kOneWay   anything else, as a replayed log: by arrival, good to the smallest latency, which nobody knows
-// A map is not believed for a while when the sender's stamps contradict it, for nothing arrives before it was sent: its clock
-// has just jumped forward. A jump back looks like latency until the probes have noticed it, within three seconds.
+// In order of precedence:
+//   kSame     this run and this clock: no conversion
+//   kMapped   this run, and a map of the sender's clock is published: accurate to the map's uncertainty
+//   kOneWay   all else, such as a replayed log: by arrival, accurate to the smallest latency, which is unknown
+// A map is distrusted for a while when stamps of the sender contradict it, because no message arrives before it was sent: the
+// sender's clock has just jumped forward. A jump back looks like latency until the probes detect it, within three seconds.
 class SenderClock {
  public:
   enum class ClockSource { kUnknown, kSame, kMapped, kOneWay };
   struct Reading {
     HostTime time{};
     ClockSource source = ClockSource::kUnknown;
-    Nanoseconds uncertainty{-1};  // half width; -1: not known
+    Nanoseconds uncertainty{-1};  // half width; -1: unknown
   };
-  // The next waves of probes have noticed the jump by then: two periods, their length and the maps' own.
+  // Duration of the distrust. The next waves of probes have detected the jump by then: two periods, their length, and the
+  // period of the maps.
   static constexpr Nanoseconds kDistrust{6'000'000'000};
-  // A stamp that lies so far beyond its arrival contradicts the map. Arrivals read from a log are good to 1 us and the
+  // A stamp this far beyond its arrival contradicts the map. Arrivals read from a log are accurate to 1 us, and the
   // recorder's own clock pairs to less than this (design).
   static constexpr Nanoseconds kTolerance{1'000'000};
 
   explicit SenderClock(OwnClock own) : own_(own) {}
 
-  // True when the clock is seen to have jumped.
+  // Returns true when a jump of the clock was detected.
   bool observe(const header_t& header, HostTime arrival);
 
   bool known() const { return heard_; }

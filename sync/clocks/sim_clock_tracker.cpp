@@ -10,7 +10,7 @@ Nanoseconds distance(SimTime a, SimTime b) { return a < b ? b - a : a - b; }
 
 }  // namespace
 
-// Compares on the sender's clock. The rate may have changed at any instant since, so either is good enough.
+// Compares on the sender's clock. The rate may have changed at any instant since, so either rate is accepted.
 bool SimClockTracker::contradicts(const header_t& header, const sim_clock_t& clock) const {
   const HostTime t = host_time(header.publish_time_ns);
   const TimeMap told{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};

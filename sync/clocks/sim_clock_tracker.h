@@ -1,5 +1,5 @@
-// Follows one simulation on the bus: which incarnation is the present one, whether its time began anew, and the
-// map from its time to our clock. Pure.
+// Follows one simulation on the bus: its present incarnation, restarts of its time, and the map from its time to our clock.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,30 @@
 namespace tactus::sync {
 
 enum class TrackResult {
-  kSame,     // of the simulation that we follow
-  kRestart,  // of a new one, or of the same whose time fell back: everything known before has ended
-  kIgnore,   // of one that was replaced, or its time contradicts what was heard just now
+  kSame,     // of the followed simulation
+  kRestart,  // of a new one, or its time fell back: the known world has ended
+  kIgnore,   // of a replaced one, or its time contradicts the most recent messages
 };
 
 class SimClockTracker {
  public:
-  // A replaced incarnation is heard again only when its successor has been silent for so long.
+  // A replaced incarnation is accepted again only when its successor has been silent for this time.
   static constexpr Nanoseconds kSilence{300'000'000};
-  // publish_time_ns falling back by more than this is a log replayed anew.
+  // A publish_time_ns that falls back by more than this means that a log is replayed again.
   static constexpr Nanoseconds kEpoch{1'000'000'000};
-  // A clock that lies farther from the present one than this is believed only when that one has not been confirmed
-  // for kSilence: a forged message moves nobody's time.
+  // A clock that differs from the present one by more than this is accepted only when the present one has not been confirmed
+  // for kSilence, so a forged message cannot shift the time.
   static constexpr Nanoseconds kFar{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;
 
   explicit SimClockTracker(OwnClock own) : own_(own) {}
 
   TrackResult follow(const header_t& header, const sim_clock_t& clock, HostTime arrival);
-  // Nothing before the first message.
+  // nullopt before the first message.
   std::optional<TimeMap> map(HostTime now) const;
   std::int64_t incarnation() const { return incarnation_; }
-  // Nothing that a simulation publishes lies farther ahead than some 20 ms, so what lies kFar ahead of the newest
-  // arrival is false. Call after follow.
+  // A simulation publishes at most about 20 ms ahead, so a time kFar ahead of the newest arrival is invalid. Call it after
+  // follow.
   SimTime latest_credible() const { return map(last_arrival_).value_or(TimeMap{}).to_sim(last_arrival_) + kFar; }
 
  private:

@@ -1,6 +1,5 @@
-// The Weber deadband: an update is sent only when it differs noticeably from the last one that was (Hinterseer,
-// Hirche, Chaudhuri, Steinbach and Buss 2008, "Perception-based data reduction and transmission of haptic data").
-// Pure.
+// The Weber deadband: an update is sent only when it differs noticeably from the last update that was sent (Hinterseer,
+// Hirche, Chaudhuri, Steinbach and Buss 2008, "Perception-based data reduction and transmission of haptic data"). Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +13,7 @@ namespace tactus::sync {
 
 enum class Quantity : std::uint8_t { kForce, kVelocity, kPosition };
 
-// One signal of a snapshot: which (of which contact, body or plane) and its value in N, m/s or m.
+// One signal of a snapshot: its id (of a contact, body or plane) and its value in N, m/s or m.
 struct Signal {
   std::int64_t id = 0;
   Quantity quantity = Quantity::kForce;
@@ -27,9 +26,8 @@ struct DeadbandDef {
   Quantity quantity = Quantity::kVelocity;
   double floor = 0;       // least band, in the unit of the quantity
   double lowpass_Hz = 0;  // of the signal before it is compared, first order; 0: none
-  // The fraction grows by so much per m/s of speed (Kammerl, Vittorias, Nitsch, Faerber, Steinbach and Hirche
-  // 2010, "Perception-based data reduction for haptic force-feedback signals using velocity-adaptive deadbands"),
-  // s/m.
+  // Growth of the fraction per m/s of speed, in s/m (Kammerl, Vittorias, Nitsch, Faerber, Steinbach and Hirche 2010,
+  // "Perception-based data reduction for haptic force-feedback signals using velocity-adaptive deadbands").
   double adaptive_s_m = 0;
 };
 
@@ -37,14 +35,14 @@ class Deadband {
  public:
   explicit Deadband(const DeadbandDef& def) : def_(def) {}
 
-  // True when the snapshot is to be sent: a signal left its band, came or went. speed_m_s: of what moves, for the
-  // adaptive form.
+  // Returns true when the snapshot must be sent: a signal left its band, appeared or disappeared. speed_m_s: of the moving
+  // object, for the adaptive form.
   bool send(SimTime t, std::span<const Signal> signals, double speed_m_s);
 
  private:
   struct Memory {
     Eigen::Vector3d filtered, sent;
-    bool heard;  // in this snapshot
+    bool heard;  // present in this snapshot
   };
   DeadbandDef def_;
   std::map<std::int64_t, Memory> memory_;

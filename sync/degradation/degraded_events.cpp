@@ -22,7 +22,7 @@ StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime 
 
 }  // namespace
 
-// Whether the event is to be decided on: true once.
+// Returns true once for each event: the profile decides on it now.
 bool DegradedEvents::decides(std::int64_t id) {
   return !std::exchange(memory_.try_emplace(id).first.decided, true);
 }
@@ -31,7 +31,7 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorC
   const bool replaced = m.header.incarnation != newest_.header.incarnation ||
                         m.header.publish_time_ns < newest_.header.publish_time_ns - 1'000'000'000;
   if (replaced)
-    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again brings the same ids
+    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again contains the same ids
   for (const contact_event_t& e : m.events) memory_.try_emplace(e.event_id, {arrival, false});
   if (replaced || m.header.publish_time_ns >= newest_.header.publish_time_ns) {
     newest_.header = m.header;

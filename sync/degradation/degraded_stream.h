@@ -1,9 +1,9 @@
-// Streams on their way from the bus to a renderer, with the operators of its profile in between. Without a profile
-// they pass through untouched. Pure.
+// Message streams between bus and renderer, with the operators of the modality's profile applied. Without a profile, messages
+// pass unchanged. Pure.
 //
-// A message that is let through late carries the newest publication time and clock of its stream, and the arrival
-// of the message that they are of: it is old news of the world, not a message from before a restart, and says
-// nothing about the clock of who sent it. Loss is judged on raw arrivals (sync/node/modality_endpoint.h).
+// A delayed message carries the newest publication time and clock of its stream, and the arrival of the message that they
+// belong to. So it counts as old state of the world, not as a message from before a restart, and it does not affect the
+// estimate of the sender's clock. Losses are counted on raw arrivals (sync/node/modality_endpoint.h).
 #pragma once
 
 #include <algorithm>
@@ -36,12 +36,12 @@ struct DecisionRecord {
 };
 using Decisions = std::vector<DecisionRecord>;
 
-// What waits to be let through, in order of its time; what is let through at the same time keeps its order.
-// Bounded: when full the oldest is dropped and counted.
+// Messages that wait for their release time, in the order of that time; equal times keep their order. Bounded: when it is
+// full, the oldest message is dropped and counted.
 template <class Message>
 class DelayQueue {
  public:
-  // The longest delay of a profile, a minute, of a stream of 1 kHz.
+  // Enough for the longest delay of a profile, one minute, of a stream of 1 kHz.
   static constexpr std::size_t kMax = 1 << 16;
   void push(HostTime release, Message m, HostTime arrival) {
     waiting_.emplace(release, std::make_pair(std::move(m), arrival));
@@ -63,19 +63,19 @@ class DelayQueue {
   std::int64_t dropped_ = 0;
 };
 
-// What identifies one message among those that repeat or page the same thing.
+// A key of one message, also among repetitions and pages of the same content.
 template <class Message>
 std::uint64_t wire_key(const Message& m) {
   return mixed(mixed(static_cast<std::uint64_t>(m.header.incarnation), static_cast<std::uint64_t>(m.header.seq)),
                static_cast<std::uint64_t>(m.header.source));
 }
 
-// Snapshots: each is decided on once, with its first page, and the others share its fate; under a deadband, which
-// compares all that a snapshot tells, with its last page, for which the others wait.
+// Snapshots. The profile decides once per snapshot, on its first page; the other pages share the decision. A deadband
+// compares all values of a snapshot: then the decision falls on the last page, and the other pages wait for it.
 template <class Message>
 class DegradedSnapshots {
  public:
-  // decisions: where those are noted; null: nowhere.
+  // decisions: list to which decisions are appended; null: none.
   void push(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
     note_newest(m, arrival);
     const SimTime time = sim_time(m.header.sim_time_ns);
@@ -89,13 +89,13 @@ class DegradedSnapshots {
     const Decision v = verdict_on(m, arrival, signals_of(m), stack, decisions);
     put(std::move(m), arrival, v, stack);
   }
-  // From now on another profile decides. The snapshots whose pages are just arriving were begun under the one
-  // before: what is still to come of them is dropped, so that nobody puts halves of two profiles together.
+  // From now on a new profile decides. Snapshots whose pages are arriving began under the previous profile: their remaining
+  // pages are dropped, so that no receiver combines pages of two profiles.
   void change_profile() {
     for (auto& [stream, pages] : arriving_) pages.split = pages.arrived < pages.of;
     gathering_.clear();
   }
-  // The next message that is let through by now, and when it arrived.
+  // The next message that is released by now, and its arrival.
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
     auto next = waiting_.pop(now);
     if (next) freshen(next->first, next->second);
@@ -104,22 +104,22 @@ class DegradedSnapshots {
 
  private:
   static constexpr std::size_t kRemembered = 256;
-  // Pages of a snapshot are sent within the time to the next; four may be on their way at once. 2,000 pages of 18
-  // bodies are the largest.
+  // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at once. The largest has
+  // 2,000 pages of 18 bodies.
   static constexpr PageLimits kGathering{.groups = 4, .pages = 4096};
   using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 
-  // The pages of the snapshot of a stream that arrived last.
+  // The pages of the most recent snapshot of a stream.
   struct Arriving {
     std::uint64_t key = 0;
     int arrived = 0, of = 0;
     bool split = false;
   };
-  // More streams than there are tools and groups are of false messages.
+  // More streams than tools and groups exist come only from corrupt messages.
   static constexpr std::size_t kStreams = 64;
 
-  // Whether it belongs to a snapshot that was begun under another profile. While the world stands still the same
-  // snapshot comes again and again, and begins anew with its first page.
+  // True when the page belongs to a snapshot that began under another profile. While the world stands still, the same
+  // snapshot is repeated; it starts again with its first page.
   bool of_two_profiles(const Message& m) {
     if (arriving_.size() >= kStreams && !arriving_.contains(stream_of(m))) arriving_.clear();
     Arriving& now = arriving_[stream_of(m)];
@@ -135,7 +135,7 @@ class DegradedSnapshots {
     } else if (stack.changes_values()) {
       change_values(m, stack);
     }
-    // Later pages of a snapshot that waits wait as long as its first.
+    // Later pages of a delayed snapshot have the same delay as the first.
     const HostTime release = std::max(v.release, arrival);
     if (v.twice) waiting_.push(release, m, arrival);
     waiting_.push(release, std::move(m), arrival);
@@ -153,7 +153,8 @@ class DegradedSnapshots {
       const Decision v = verdict_on(group.pages.begin()->page.first, arrival, signals, stack, decisions);
       for (auto& [number, page] : group.pages) put(std::move(page.first), page.second, v, stack);
     };
-    // One that newer ones have overtaken is judged by what came of it: what is missing counts as a change.
+    // An incomplete snapshot that newer ones have overtaken is judged by its received pages: missing signals count as a
+    // change.
     if (auto* whole = gathering_.add(key, number, count, {std::move(m), arrival}, judge)) judge(*whole);
   }
 
@@ -199,21 +200,21 @@ class DegradedSnapshots {
   sim_clock_t newest_clock_{};
 };
 
-// Events: each is decided on once, by its id, when it is first heard of; repetitions change nothing.
+// Events. The profile decides once per event id, at its first arrival; repetitions change nothing.
 class DegradedEvents {
  public:
   void push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions);
-  // The next message that is let through by now, and when its events arrived: one with only its header and clock
-  // comes through at once.
+  // The next message that is released by now, and the arrival of its events. A message with only header and clock is released
+  // at once.
   std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);
-  // When each event arrived first, by its id, also one that was lost on the wire on purpose.
+  // The first arrival of each event, by its id; also of events that the profile lost on the wire.
   struct Known {
     HostTime arrival{};
-    bool decided = false;  // in this life of the simulation
+    bool decided = false;  // in this incarnation of the simulation
   };
   using Memory = RecentMap<std::int64_t, Known>;
   const Memory& memory() const { return memory_; }
-  // Events that the profile dropped since the last call; whoever owes them says so.
+  // Events that the profile dropped since the last call; a modality that must present them reports them as dropped.
   std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
 
  private:
@@ -223,7 +224,7 @@ class DegradedEvents {
 
   DelayQueue<contact_events_t> waiting_;
   contact_events_t newest_{};  // header and clock
-  HostTime newest_arrival_{};  // of that
+  HostTime newest_arrival_{};  // of newest_
   Memory memory_{kRemembered};
   std::vector<contact_event_t> dropped_;
 };

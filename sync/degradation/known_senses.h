@@ -1,5 +1,5 @@
-// The senses of this repository, and what of a profile acts on the output of each: their mains declare it. A sense
-// of one's own may have any name and declare what it likes.
+// The modalities of this repository, and the output operators of a profile that each supports, as declared by their mains. A
+// modality of the user's own may have any name and declare any operators.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@ namespace tactus::sync {
 
 bool is_known_sense(const std::string& modality);
 
-// The known senses whose output such an operator acts on ("frame_rate": visual), with a comma between them.
+// The known modalities whose output supports this operator ("frame_rate": visual), separated by commas.
 std::string senses_with(const std::string& output_operator);
 
-// What acts on the output of a known sense; none of an unknown one.
+// The output operators of a known modality; empty for an unknown one.
 std::vector<std::string> known_output_operators(const std::string& modality);
 
 }  // namespace tactus::sync

@@ -10,12 +10,12 @@
 namespace tactus::sync {
 namespace {
 
-// Which decision about an item a random number is for.
+// The decision about an item that a random number is drawn for.
 enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicateDraw, kWireDraw };
 
 constexpr std::size_t kRememberedValues = 4096;
-constexpr std::size_t kMaxStreams = 256;  // more channels, groups and tools than a sense reads
-// Simulated time that falls back by more is a world that began anew, as in sync/clocks/sim_clock_tracker.h.
+constexpr std::size_t kMaxStreams = 256;  // more channels, groups and tools than a modality reads
+// A larger fall of simulated time means that the world restarted, as in sync/clocks/sim_clock_tracker.h.
 constexpr Nanoseconds kAnew{1'000'000'000};
 
 double slot_s(const RateDef& rate, std::int64_t slot) {
@@ -28,7 +28,7 @@ OperatorChain::OperatorChain(const Profile& profile, const std::string& modality
   for (std::size_t i = 0; i < profile.rules.size(); ++i) {
     const Rule& rule = profile.rules[i];
     if (rule.modality != modality) continue;
-    // Two senses, or two rules of one, draw different numbers for the same event.
+    // Two modalities, or two rules of one, draw different numbers for the same event.
     Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}};
     changes_values_ |= rule.quantise || rule.gain || rule.bias || rule.lowpass;
     compares_ |= rule.deadband.has_value();
@@ -36,7 +36,7 @@ OperatorChain::OperatorChain(const Profile& profile, const std::string& modality
   }
 }
 
-// Since the profile came into force; when the world began anew after that, since then.
+// Time since the profile came into force, or since a later restart of the world.
 double OperatorChain::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kAnew ? t - SimTime{} : t - start_); }
 
 bool OperatorChain::in_time(const Rule& rule, SimTime t) const {
@@ -74,8 +74,7 @@ bool OperatorChain::concerns(const Rule& rule, std::int32_t material_a, std::int
          (named(bodies, body_a, rule.body_b) && named(bodies, body_b, rule.body_a));
 }
 
-// Rate, deadband, loss, off, freeze: what is not let through at all. An event that a rate makes wait is not
-// dropped.
+// Rate, deadband, loss, off, freeze: the operators that drop items. An event that a rate delays is not dropped.
 bool OperatorChain::dropped(Active& a, Chain& chain, const StreamItem& item, Decision& v) {
   const Rule& rule = a.rule;
   const auto drop = [&](DropReason why, Conceal conceal) {
@@ -102,7 +101,7 @@ void OperatorChain::held(Active& a, Chain& chain, const StreamItem& item, Decisi
   const Rule& rule = a.rule;
   Nanoseconds hold{0};
   if (rule.rate && item.is_event) {
-    // The next instant at which news is let through.
+    // The next instant at which the rate releases messages.
     const double t = elapsed_s(item.time);
     const auto slot = static_cast<std::int64_t>(std::ceil((t - rule.rate->phase_s) * rule.rate->rate_Hz));
     hold += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
@@ -127,7 +126,7 @@ Decision OperatorChain::decide(const StreamItem& item) {
   Decision v;
   v.release = item.arrival;
   for (Active& a : rules_) {
-    // A snapshot holds many things: only its values can be told apart by what they concern.
+    // A snapshot covers many bodies and contacts, so a filtered rule applies only to its values.
     if (!in_time(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
     if (item.is_event && !concerns(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
     Chain& chain = chain_of(a, item);

@@ -1,5 +1,5 @@
-// The operators of a profile that concern one sense, applied to what arrives for it: once per event and once per
-// snapshot, never per repetition or page. Pure.
+// The operators of a profile for one modality, applied to its input: once per event and once per snapshot, never per
+// repetition or page. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,34 @@
 
 namespace tactus::sync {
 
-// What an event or a snapshot is judged by.
+// The properties of an event or a snapshot that the operators decide by.
 struct StreamItem {
-  std::uint64_t key = 0;  // an event's id, a snapshot's channel and instant: what its random numbers are drawn for
+  std::uint64_t key = 0;  // of an event its id, of a snapshot its channel and instant; random numbers are drawn for it
   bool is_event = false;
-  // Of a snapshot: whose sequence it belongs to, its channel and what that tells apart. And the life of the
-  // simulation.
+  // Of a snapshot: its stream, identified by channel and by group, tool or the like. And the incarnation of the simulation.
   std::uint64_t stream = 0;
   std::int64_t incarnation = 0;
   SimTime time{};
   HostTime arrival{};
   std::span<const Signal> signals;  // of a snapshot, for a deadband
-  double speed_m_s = 0;             // of the fastest thing in it
-  // Of an event: bodies and materials, as in the scene.
+  double speed_m_s = 0;             // of the fastest body or tool in it
+  // Of an event: bodies and materials, by their index in the scene.
   std::int32_t body_a = -1, body_b = -1, material_a = -1, material_b = -1;
 };
 
 enum class DropReason : std::int8_t { kKept = 0, kRate, kDeadband, kLoss, kOff, kFreeze };
 
 struct Decision {
-  DropReason why = DropReason::kKept;              // kKept: it is let through
-  Conceal conceal = Conceal::kHold;  // what a missing snapshot is replaced by
-  HostTime release{};                // when it is let through
-  Nanoseconds shift{0};              // of the instant of an event that a filtered presentation delay concerns
+  DropReason why = DropReason::kKept;              // kKept: it is released
+  Conceal conceal = Conceal::kHold;  // replacement of a missing snapshot
+  HostTime release{};                // time of release
+  Nanoseconds shift{0};              // of an event: the presentation delay of a filtered rule that applies to it
   bool twice = false;
-  bool touched = false;  // an operator was asked: worth a line in the log
+  bool touched = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }
 };
 
-// What the scene calls its bodies and materials, by index.
+// The names of the scene's bodies and materials, by index.
 struct SceneNames {
   std::vector<std::string> bodies, materials;
 };
@@ -49,17 +48,17 @@ struct SceneNames {
 class OperatorChain {
  public:
   OperatorChain() = default;
-  // start: when the profile came into force; its from and until count from there.
+  // start: when the profile came into force; its from and until count from that time.
   OperatorChain(const Profile& profile, const std::string& modality, SimTime start);
 
   bool empty() const { return rules_.empty(); }
   void set_scene(SceneNames names) { names_ = std::move(names); }
 
   Decision decide(const StreamItem& item);
-  // True: this message, which is one of several that repeat or page the same thing, is lost on the wire. message:
-  // what tells it from all others.
+  // Returns true when this message, one of several that repeat or page the same content, is lost on the wire. message: a key
+  // that no other message has.
   bool lost_on_wire(std::uint64_t message, SimTime now);
-  // How much later the whole sense presents, by delay and skew.
+  // Extra presentation delay of the whole modality, from delay and skew.
   Nanoseconds presentation_delay(SimTime now) const;
   OutputDef output(SimTime now) const;
 
@@ -67,12 +66,12 @@ class OperatorChain {
   double changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                  std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b);
   bool changes_values() const { return changes_values_; }
-  // Whether a snapshot is judged by what is in it, so that all of it must be there.
+  // True when a rule compares the content of a snapshot, so that all of its pages are needed for a decision.
   bool compares() const { return compares_; }
 
  private:
-  // The memory of the operators of one rule, of events and of each stream of snapshots apart: none disturbs
-  // another's sequence. It begins anew with the world.
+  // The state of the operators of one rule, separate for events and for each stream of snapshots. It is reset when the world
+  // restarts.
   struct Chain {
     std::int64_t incarnation = 0;
     SimTime newest{};
@@ -89,7 +88,7 @@ class OperatorChain {
   struct Active {
     Rule rule;
     std::uint64_t seed;
-    std::map<std::uint64_t, Chain> chains;  // by stream; of events 0
+    std::map<std::uint64_t, Chain> chains;  // by stream; 0: events
     std::map<std::pair<std::int64_t, int>, Filtered> lowpass;
   };
 

@@ -1,4 +1,4 @@
-// The attributes of <degrade>: a value with its unit, then words and name=value pairs in any order.
+// Parses the attributes of <degrade>: a value with its unit, then words and name=value pairs in any order.
 #include <algorithm>
 #include <charconv>
 #include <functional>
@@ -13,7 +13,7 @@
 namespace tactus::sync {
 namespace {
 
-// A profile is written for others to read: what has a dimension says its unit, unless it is 0.
+// A value with a dimension must state its unit, unless it is 0, so that profiles stay readable.
 double quantity(std::string_view text, std::string_view unit) {
   const double x = parse_quantity(text, unit);
   double bare = 0;
@@ -26,7 +26,7 @@ double quantity(std::string_view text, std::string_view unit) {
   return x;
 }
 
-// "5% burst=3 network" cut into its value, its words and its pairs; each may be taken once and none may be left.
+// "5% burst=3 network", split into its value, its words and its pairs. Each may be taken once; none may remain.
 class Words {
  public:
   explicit Words(const std::string& text) {
@@ -45,7 +45,7 @@ class Words {
     }
   }
 
-  // The first word as a number in `unit`, least .. most.
+  // The first word as a number in `unit`, from least to most.
   double value(std::string_view unit, double least, double most) {
     if (words_.empty()) throw std::invalid_argument("it needs a value in " + std::string(unit));
     const std::string first = words_.front();
@@ -67,9 +67,9 @@ class Words {
     return text;
   }
   bool has(const std::string& name) const { return pairs_.contains(name); }
-  // True when the word is there.
+  // Returns true and removes the word when it is present.
   bool word(const std::string& name) { return std::erase(words_, name) > 0; }
-  // Which of the words is there, if any.
+  // The value of the word that is present, if any.
   template <class Value>
   std::optional<Value> one_of(const std::map<std::string, Value>& choices) {
     std::optional<Value> chosen;
@@ -102,9 +102,9 @@ class Words {
   std::map<std::string, std::string> pairs_;
 };
 
-constexpr double kLongest_s = 60;  // design: what is later than a minute is another event
+constexpr double kLongest_s = 60;  // design: an output more than a minute late is a separate event
 constexpr double kLargest = 1e9;
-// An event is settled one second after it: a picture that comes less often would be called lost.
+// An event is settled one second after it happened; with a longer frame period it would count as lost.
 constexpr double kLeastFrameRate_Hz = 2;
 
 const std::map<std::string, Quantity> kQuantities{

@@ -13,9 +13,9 @@ namespace tactus::sync {
 namespace {
 
 using Element = tinyxml2::XMLElement;
-constexpr std::size_t kMaxRules = 64;  // design: a stack that one can still understand
+constexpr std::size_t kMaxRules = 64;  // design: a chain that a person can still understand
 
-// A known sense says of its output what can be degraded; one of somebody's own may have what it likes.
+// A known modality declares its degradable outputs; a modality of the user's own may have any.
 void refuse_what_it_has_not(const Rule& rule) {
   if (!is_known_sense(rule.modality)) return;
   const std::vector<std::string> has = known_output_operators(rule.modality);
@@ -65,7 +65,7 @@ std::uint64_t seed_of(const std::string& text) {
   return seed;
 }
 
-// UTF-8 is what a profile is read as, whatever it says that it is.
+// A profile is always read as UTF-8, so another declared encoding is refused.
 bool says_another_encoding(std::string declaration) {
   std::transform(declaration.begin(), declaration.end(), declaration.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -73,7 +73,7 @@ bool says_another_encoding(std::string declaration) {
          declaration.find("us-ascii") == std::string::npos;
 }
 
-// Elements and comments are all that may stand in an element.
+// An element may contain only elements and comments.
 void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& what, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment()) continue;
@@ -82,7 +82,7 @@ void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::stri
   }
 }
 
-// Of a file: its declaration, comments and one root.
+// A file may contain only its declaration, comments and one root.
 void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2::XMLElement* root, int& line) {
   for (const tinyxml2::XMLNode* n = document.FirstChild(); n; n = n->NextSibling()) {
     line = n->GetLineNum();
@@ -102,7 +102,7 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
 }  // namespace
 
 Profile parse_profile(const std::string& xml, const std::string& file) {
-  // XML has none; what comes after it would be lost in silence.
+  // XML allows no NUL; the parser would silently ignore all text after it.
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),

@@ -1,5 +1,5 @@
-// A degradation profile: what shall be wrong with each sense, as data. Read from XML, refused whole when it is
-// wrong.
+// A degradation profile: the degradations of each modality, as data. It is read from XML; an invalid file is refused as a
+// whole.
 //
 //   <profile name="late sound" seed="7">
 //     <degrade modality="audio" delay="40ms" jitter="3ms normal" loss="5% burst=3"/>
@@ -20,10 +20,10 @@
 
 namespace tactus::sync {
 
-// presentation: the output comes later by the full value, under every policy. network: the news comes later, which
-// a playout delay may absorb.
+// presentation: the output is later by the full value, under every policy. network: the input messages are later, and a
+// playout delay may absorb that.
 enum class DelayKind : std::uint8_t { kPresentation, kNetwork };
-// What a missing update is replaced by: the last one, or nothing felt, heard, seen.
+// Replacement of a missing update: the last one, or no contact at all.
 enum class Conceal : std::uint8_t { kHold, kZero };
 
 struct DelayDef {
@@ -46,15 +46,15 @@ struct ValueDef {
   double value = 0;  // factor, offset in the unit of the quantity, or Hz
 };
 struct ReorderDef {
-  double share = 0;  // of all are held back
+  double share = 0;  // share of all items that are held back
   double by_s = 0;
 };
-// What is wrong with the output itself: a slow renderer, not a slow network. 0: nothing.
+// Degradations of the output itself: they model a slow renderer, not a slow network. 0: none.
 struct OutputDef {
   double frame_rate_Hz = 0;    // visual
   double resolution = 0;       // visual, factor on width and height
   double dropout_s = 0;        // audio: silence of this length,
-  double dropout_every_s = 0;  // so often
+  double dropout_every_s = 0;  // audio: period of the silences
   double force_step_N = 0;     // haptic
   double response_s = 0;       // thermal: time constant
 
@@ -67,10 +67,10 @@ struct OutputDef {
 struct Rule {
   std::string modality;
   int line = 0;
-  // When, s of simulated time since the profile came into force.
+  // Begin and end of the rule, s of simulated time since the profile came into force.
   double from_s = 0;
   std::optional<double> until_s;
-  // What it is applied to; empty: everything. Two bodies in any order; a material of one of two surfaces.
+  // Filter; empty: everything. The two bodies in any order; the material of either surface.
   std::string body_a, body_b, material;
 
   std::optional<QuantiseDef> quantise;
@@ -78,14 +78,14 @@ struct Rule {
   std::optional<RateDef> rate;
   std::optional<DeadbandDef> deadband;
   std::optional<LossDef> loss;
-  std::optional<double> wire_loss;  // share of messages, repetitions and pages each by itself
+  std::optional<double> wire_loss;  // share of lost messages; repetitions and pages are drawn separately
   bool off = false;
   std::optional<DelayDef> delay;
   std::optional<JitterDef> jitter;
-  std::optional<double> skew;  // the sense's clock runs slow by this share: it falls behind ever more
+  std::optional<double> skew;  // the clock of the modality runs slow by this share, so its delay keeps growing
   std::optional<ReorderDef> reorder;
-  std::optional<double> duplicate;  // share of all that come twice
-  std::optional<Conceal> freeze;    // nothing new comes
+  std::optional<double> duplicate;  // share of items that arrive twice
+  std::optional<Conceal> freeze;    // no new messages arrive
   Conceal conceal = Conceal::kHold;
   OutputDef output;
 
@@ -98,26 +98,26 @@ struct Profile {
   std::vector<Rule> rules;
 };
 
-// Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is wrong; then nothing is changed.
-// file: the name for messages. No rules: a profile that degrades nothing.
+// Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is invalid; then nothing is changed. file: the
+// name for messages. A profile without rules degrades nothing.
 Profile parse_profile(const std::string& xml, const std::string& file);
 
-// A profile that is in force, and since when. Its text is parsed once in a process.
+// A profile in force, and the time since when. Its text is parsed once in a process.
 struct ProfileInForce {
   std::string text;  // XML; empty: none
   std::int64_t hash = 0;
   std::int64_t generation = 0;  // larger is newer
   SimTime start{};
-  std::shared_ptr<const Profile> parsed;  // null: nobody in this process needs what it says
+  std::shared_ptr<const Profile> parsed;  // null: this process needs no parsed rules
 };
 
 // Parses the text: generation 0, in force from the start. Throws as parse_profile does.
 ProfileInForce read_profile(std::string xml, const std::string& file);
 
-// The names of the attributes that ask something of the output itself.
+// The names of the attributes that degrade the output itself.
 std::vector<std::string> output_operators(const OutputDef& output);
 
-// Fills what an attribute of <degrade> says into the rule. Throws std::invalid_argument with one sentence.
+// Parses one attribute of <degrade> into the rule. Throws std::invalid_argument with one sentence.
 void parse_operator(Rule& rule, const std::string& name, const std::string& value);
 
 }  // namespace tactus::sync

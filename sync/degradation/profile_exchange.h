@@ -1,5 +1,5 @@
-// Carries a profile over the bus: its XML, in pages. The newest holds; sync_node repeats it for those who come
-// late, and nobody needs sync_node to change it.
+// Carries a profile over the bus: its XML, in pages. The newest holds. sync_node repeats it for late joiners; a profile can
+// be changed without sync_node.
 #pragma once
 
 #include <cstdint>
@@ -19,30 +19,30 @@ class Bus;
 // Longest profile, bytes.
 inline constexpr std::size_t kMaxProfileBytes = 65536;
 
-// Sends all pages. The text must not be longer than kMaxProfileBytes.
+// Publishes all pages. The text must not be longer than kMaxProfileBytes.
 void send_profile(Bus& bus, const ProfileInForce& profile);
 
-// The profile in force, kept in a file: a sync_node that was killed comes back with it.
+// Stores the profile in force in a file: a restarted sync_node reads it from there.
 void keep_profile(const std::filesystem::path& folder, const ProfileInForce& profile, std::int64_t run_id);
-// None when there is none, it is damaged, or it is of another run.
+// nullopt when there is no file, or when it is damaged or belongs to another run.
 std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, std::int64_t run_id);
 
-// Puts the pages together. Pure.
+// Assembles the pages. Pure.
 class ProfileReceiver {
  public:
-  // Profiles that may be on their way at once; the one whose newest page is the oldest is forgotten.
+  // Profiles that may be in flight at once; the one whose newest page is the oldest is discarded first.
   static constexpr std::size_t kMaxOnTheirWay = 4;
   // Of one profile.
   static constexpr int kMaxPages = 55;
 
-  // The profile, when this page has made one whole that is newer than the one before. One whose hash does not fit,
-  // or that is no profile, is refused whole: nothing changes.
+  // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
+  // hash, or that is no valid profile, is refused as a whole: nothing changes.
   std::optional<ProfileInForce> take(const degradation_t& page);
-  // One sentence on the last that was refused for what it says; told once, then empty.
+  // One sentence on the last profile with an invalid text; returned once, then empty.
   std::string take_refusal() { return std::exchange(refusal_, {}); }
-  // What holds already, from a file or a scene: only newer ones are taken.
+  // The generation already in force, from a file or a scene: only newer ones are accepted.
   void set_generation(std::int64_t generation) { generation_ = generation; }
-  // Of the newest; -1: none yet.
+  // Generation of the newest profile; -1: none yet.
   std::int64_t generation() const { return generation_; }
 
  private:
@@ -53,8 +53,8 @@ class ProfileReceiver {
   std::string refusal_;
 };
 
-// The profile of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
-// profile.
+// Reads the profile of a file. Throws std::invalid_argument with one sentence when it cannot be read, is too long or is no
+// valid profile.
 ProfileInForce read_profile_file(const std::string& path);
 
 }  // namespace tactus::sync

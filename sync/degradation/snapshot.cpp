@@ -17,7 +17,7 @@ std::uint64_t key(const header_t& h, std::uint64_t which) {
   return mixed(mixed(static_cast<std::uint64_t>(h.incarnation), which), static_cast<std::uint64_t>(h.sim_time_ns));
 }
 
-// Passes the values of one thing through the stack.
+// Applies the operators to the values of one contact, body or plane.
 class Changer {
  public:
   Changer(OperatorChain& stack, SimTime t, std::int64_t id, std::int32_t material_a = -1, std::int32_t material_b = -1,
@@ -59,8 +59,8 @@ std::uint64_t stream_of(const tool_state_t& m) { return 0x2000u + static_cast<st
 
 std::uint64_t snapshot_key(const contact_frame_t& m) { return key(m.header, stream_of(m)); }
 std::uint64_t snapshot_key(const world_state_t& m) { return key(m.header, stream_of(m)); }
-// A hand moves on while the world stands still, and all that is told of it is of one instant: the number of the
-// first page tells them apart.
+// A tool moves on while the world stands still, and all its messages then carry the same simulated time: the sequence number
+// of the first page distinguishes them.
 std::uint64_t snapshot_key(const touch_model_t& m) {
   return mixed(key(m.header, stream_of(m)), static_cast<std::uint64_t>(m.header.seq - m.page));
 }
@@ -126,7 +126,7 @@ void change_values(world_state_t& m, OperatorChain& stack) {
 void change_values(touch_model_t& m, OperatorChain& stack) {
   for (touch_plane_t& p : m.planes) {
     Changer change(stack, sim_time(m.header.sim_time_ns), p.contact_id, p.material, -1, p.body, -1);
-    change(Quantity::kForce, p.stiffness_N_m, 0);  // what a surface answers with
+    change(Quantity::kForce, p.stiffness_N_m, 0);  // scales the force with which a surface responds
     change.vector(Quantity::kPosition, p.point_m);
     change.vector(Quantity::kVelocity, p.velocity_m_s);
   }

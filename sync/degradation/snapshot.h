@@ -1,5 +1,5 @@
-// What a degradation needs to know of each kind of snapshot on the bus: which it is, its signals, its values, and
-// what it is when nothing is felt, heard or seen. Pure.
+// The degradable content of each kind of snapshot on the bus: its key, its signals, its values, and its form without any
+// contact. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,34 @@
 
 namespace tactus::sync {
 
-// What all pages of one snapshot have in common and no other snapshot has. Those of bodies and contacts while the
-// world stands still say the same, and are one.
+// A key that all pages of one snapshot share and no other snapshot has. While the world stands still, repeated snapshots of
+// bodies and contacts are identical and have the same key.
 std::uint64_t snapshot_key(const contact_frame_t&);
 std::uint64_t snapshot_key(const world_state_t&);
 std::uint64_t snapshot_key(const touch_model_t&);
 std::uint64_t snapshot_key(const tool_state_t&);
 
-// Whose sequence a snapshot belongs to: what takes turns on one channel is several.
+// The stream that a snapshot belongs to: groups or tools that alternate on one channel are separate streams.
 std::uint64_t stream_of(const contact_frame_t&);
 std::uint64_t stream_of(const world_state_t&);
 std::uint64_t stream_of(const touch_model_t&);
 std::uint64_t stream_of(const tool_state_t&);
 
-// Forces and velocities by contact, body or plane; of one page.
+// Forces and velocities by contact, body or plane, of one page.
 std::vector<Signal> signals_of(const contact_frame_t&);
 std::vector<Signal> signals_of(const world_state_t&);
 std::vector<Signal> signals_of(const touch_model_t&);
 std::vector<Signal> signals_of(const tool_state_t&);
 
-// Passes every value that may be degraded through the stack; what must not be negative stays so.
+// Applies the operators to every degradable value; values that must not be negative stay so.
 void change_values(contact_frame_t&, OperatorChain&);
 void change_values(world_state_t&, OperatorChain&);
 void change_values(touch_model_t&, OperatorChain&);
 void change_values(tool_state_t&, OperatorChain&);
 void change_values(contact_event_t&, OperatorChain&);
 
-// Nothing touches. False, and nothing is changed: there is no such thing as no pose, so such a message is not let through.
+// Changes the message to "no contact". A message of poses has no such form: returns false without a change, and the message
+// is not released.
 bool make_zero(contact_frame_t&);
 bool make_zero(world_state_t&);
 bool make_zero(touch_model_t&);

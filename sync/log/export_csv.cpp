@@ -9,7 +9,7 @@
 namespace tactus::sync {
 namespace {
 
-// Whole nanoseconds as seconds, exactly: a double of CLOCK_MONOTONIC loses them after three months.
+// Whole nanoseconds as exact seconds: a double of CLOCK_MONOTONIC loses nanoseconds after three months.
 std::string seconds(std::int64_t ns) {
   if (ns < 0) return "";
   char text[32];

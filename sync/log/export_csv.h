@@ -1,4 +1,4 @@
-// Rows of the tables that are made of a log: one per TOOL_STATE and one per THERMAL_STATE. Pure.
+// CSV rows of the tables that are exported from a log: one per TOOL_STATE and one per THERMAL_STATE. Pure.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace tactus::sync {
 
-// Lines of column names, with units, and of values; each ends with a newline. Times are s: simulated (empty when the
-// message speaks of no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths m, forces N, torques N m, world frame.
+// Lines of column names, with units, and of values; each ends with a newline. Times in s: simulated (empty when the message
+// belongs to no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths in m, forces in N, torques in N m, world
+// frame.
 std::string haptic_csv_names();
 std::string csv_row(const tool_state_t&);
 std::string thermal_csv_names();

@@ -1,5 +1,5 @@
-// Rows of the tables that lay sound and picture on the log's time: contact events, what was presented of them, and which
-// sample or frame was out when; and of the maps between the clocks of several hosts. Pure.
+// CSV rows of the tables that relate sound and picture to the log's time: contact events, their presentations, the sample or
+// frame of the output at a time, and the maps between the clocks of several hosts. Pure.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@
 
 namespace tactus::sync {
 
-// Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; of an event,
-// the instant at which its simulated time was now. -1: never.
+// Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; of an event, the
+// host time of its simulated time. -1: never.
 std::string events_csv_names();
 std::string csv_row(const contact_event_t& event, const sim_clock_t& clock);
 std::string presented_csv_names();
@@ -25,7 +25,7 @@ std::string media_clock_csv_names();
 std::string csv_row(const media_clock_t&);
 std::string clock_map_csv_names();
 std::string csv_row(const clock_map_t&);
-// name: of the wall's process. Its clock is that of publish_ns; due_ns is one of sim_node's host.
+// name: of the wall's process. publish_ns is on its clock; due_ns is on the clock of sim_node's host.
 std::string frame_shown_csv_names();
 std::string csv_row(const std::string& name, const frame_shown_t&);
 

@@ -5,7 +5,7 @@
 
 namespace tactus::sync {
 
-// Three times through the log: to know its run and its damage, to know its end, and to hand it over.
+// Reads the log three times: for its run and its damage, for its end, and for the inboxes.
 LogFeed::LogFeed(const std::string& path, double rate_Hz)
     : file_(path),
       whole_(file_.bytes()),

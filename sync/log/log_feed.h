@@ -1,6 +1,5 @@
-// A log in place of the bus: hands what was recorded to the inboxes, tick by tick, at the recorder's times, so
-// that a node renders it as it would have rendered the run, as fast as it can. Pure but for the mapping of the
-// file.
+// Replaces the bus by a log: passes the recorded messages to the inboxes, tick by tick, at the recorder's times. A node then
+// renders the log as it would have rendered the run, as fast as it can. Pure, except that it maps the file.
 #pragma once
 
 #include <cstdint>
@@ -23,24 +22,23 @@ class LogFeed {
   // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no message of a run.
   LogFeed(const std::string& path, double rate_Hz);
 
-  // Of the recorder: a node that takes part in its run reads the simulation's times as the recorder's neighbour
-  // would.
+  // Run and clock of the recorder: a node in that run converts the simulation's times as a node on the recorder's host would.
   std::int64_t run_id() const { return origin_.info.header.run_id; }
   std::int32_t clock() const { return origin_.info.header.clock; }
-  // That node's options: in memory, with the run and the clock of the log.
+  // Bus options for that node: in memory, with the run and the clock of the log.
   BusOptions bus() const;
 
-  // Messages on this channel are not handed over from now on.
+  // Messages on this channel are left out from now on.
   void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
-  // The next tick: everything that had arrived by then goes to the inboxes. Returns its time, CLOCK_MONOTONIC of
-  // the recorder.
+  // The next tick: passes every message that had arrived by then to the inboxes. Returns its time, CLOCK_MONOTONIC of the
+  // recorder.
   HostTime next(Bus& bus) { return next_at(bus, now_ + period_); }
-  // The same for a loop whose ticks are not even: the next one is then, and not before the last.
+  // The same for a loop with uneven ticks: the next one is at `tick`, not before the last.
   HostTime next_at(Bus& bus, HostTime tick);
-  // All has been handed over, and `after` has passed since.
+  // True when all messages have been passed on and the time `after` has passed since.
   bool over(Nanoseconds after) const { return now_ >= end_ + after; }
 
-  // All once more from the beginning, for who looks ahead. Refers to this.
+  // All events again from the beginning, for look-ahead. Refers to this object.
   TimestampedEvents from_begin() const {
     TimestampedEvents events(file_.bytes(), origin_, &ages_);
     events.start_at(0, begin_);
@@ -53,10 +51,10 @@ class LogFeed {
   std::int64_t events() const { return whole_.events(); }
   std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events whose stamps are damaged: further than LogTimeRanges::kApart_us from those of the run, and too few to
-  // be a later part of it. They are handed over with the event before them, and the run is no longer by them.
+  // Events with damaged stamps: further than LogTimeRanges::kApart_us from the stamps of the run, and too few to be a later
+  // part of it. They are passed on with the event before them, and do not lengthen the run.
   std::int64_t misdated() const { return ages_.misdated(); }
-  // One sentence when the log itself does not say, or not rightly, which run it is; empty: it does.
+  // One sentence when the log does not state its run, or states it wrongly; empty otherwise.
   const std::string& recovered() const { return origin_.recovered; }
 
  private:

@@ -1,4 +1,4 @@
-// The header of a message of any type: every type of ours has it first, behind LCM's fingerprint of 8 bytes.
+// Reads the header of a message of any type: every type of this system begins with it, after LCM's fingerprint of 8 bytes.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace tactus::sync {
 
-// Nothing when the bytes are too few or their values cannot be a header, as in a message of another system.
+// nullopt when the bytes are too few or their values cannot be a header, as in a message of another system.
 inline std::optional<header_t> peek_header(const void* data, std::size_t size) {
   constexpr int kFingerprintBytes = 8;
   constexpr std::int64_t kMaxTime_ns = 1'000'000'000'000'000'000;  // as lcmtypes/valid.cpp

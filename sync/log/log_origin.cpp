@@ -12,7 +12,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::int64_t kMaxStamp_ns = 4'000'000'000'000'000'000;  // the difference of two still is a number
+constexpr std::int64_t kMaxStamp_ns = 4'000'000'000'000'000'000;  // the difference of two stamps still fits the type
 
 std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
   std::uint64_t value = 0;
@@ -41,9 +41,9 @@ void LogClockDetector::observe(const LogEvent& event) {
     return;  // the head is stamped ahead of the run
   }
   const auto header = peek_header(event.data.data(), event.data.size());
-  // Bytes of another system may read as a header; that they begin as one of our types is no chance.
+  // Bytes of another system may read as a header, but do not begin with a fingerprint of this system.
   if (message_type(fingerprint_of(event.data)) == nullptr) return;
-  // A replay of another log, recorded beside a run, or the scene at the head: said by nobody at that time.
+  // Not published at that time: a replay of another log, recorded beside a run, and the scene at the head.
   if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
   auto it = pairs_.find({header->run_id, header->clock});
   if (it == pairs_.end()) {
@@ -119,7 +119,7 @@ LogOrigin LogClockDetector::find() const {
 }
 
 LogOrigin origin_of(std::span<const std::uint8_t> log) {
-  // A second of a run; the largest scene at its head and then some.
+  // A second of a run; more than the largest scene at its head.
   constexpr std::int64_t kWitnesses = 4096;
   constexpr std::size_t kMaxBytes = 320 << 20;
   LogScanner scanner(log);

@@ -12,7 +12,7 @@ std::string name_of(int number) {
   return number == 1 ? "run.lcmlog" : "run." + std::to_string(number) + ".lcmlog";
 }
 
-// 0: that is no part.
+// 0: not the name of a part.
 int number_of(const std::string& name) {
   if (name == name_of(1)) return 1;
   int number = 0;
@@ -68,7 +68,7 @@ void LogParts::prune(std::int64_t present_bytes) {
     return limits_.max_bytes > 0 && bytes_before() + present_bytes > limits_.max_bytes;
   };
   while (parts_.size() > 1 && (too_many() || too_large())) {
-    std::error_code ignored;  // somebody else has removed it: all the better
+    std::error_code ignored;  // another process has removed it already
     std::filesystem::remove(parts_.front().path, ignored);
     parts_.pop_front();
     ++removed_;

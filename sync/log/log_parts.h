@@ -1,5 +1,5 @@
-// The files of one recording: DIR/run.lcmlog, or the number behind those that are there, and when it is split
-// run.2.lcmlog, run.3.lcmlog, ... Each begins with a head of its own, so that it replays alone.
+// The files of one recording: DIR/run.lcmlog, or the number after the existing ones, and for a split recording run.2.lcmlog,
+// run.3.lcmlog, ... Each begins with its own head, so that it replays alone.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct LogLimits {
   std::int64_t split_bytes = 0;
   Nanoseconds split_after{0};
   int keep = 0;  // parts; the oldest are removed
-  std::int64_t max_bytes =
-      0;  // of all parts together; the oldest are removed, and of a log of one part what exceeds it is left out
+  // Of all parts together; the oldest are removed. A log of a single part leaves out the excess.
+  std::int64_t max_bytes = 0;
   bool splits() const { return split_bytes > 0 || split_after > Nanoseconds(0); }
 };
 
@@ -30,12 +30,12 @@ class LogParts {
  public:
   LogParts(std::string dir, const LogLimits& limits) : dir_(std::move(dir)), limits_(limits) {}
 
-  // A new file, which overwrites nothing. Throws as FileSink does.
+  // Opens a new file without overwriting any. Throws as FileSink does.
   std::unique_ptr<LogSink> open();
   const std::string& path() const { return parts_.back().path; }
-  // Removes the oldest parts beyond the limits, never the one that is written; the size of that one is given.
+  // Removes the oldest parts beyond the limits, but not the one being written, whose size is given.
   void prune(std::int64_t present_bytes);
-  // Bytes of the parts that are kept, less the present one.
+  // Bytes of the kept parts, without the present one.
   std::int64_t bytes_before() const;
   std::int64_t removed() const { return removed_; }
 
@@ -46,7 +46,7 @@ class LogParts {
   };
   std::string dir_;
   LogLimits limits_;
-  int next_ = 0;  // 0: not known yet
+  int next_ = 0;  // 0: not determined yet
   std::deque<Part> parts_;
   std::int64_t removed_ = 0;
 };

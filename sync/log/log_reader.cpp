@@ -51,7 +51,7 @@ std::size_t LogScanner::next_event_after(std::size_t at, std::size_t until) cons
   static constexpr std::uint8_t word[4] = {0xED, 0xA1, 0xDA, 0x01};
   LogEvent ignored;
   while (at < until) {
-    // No farther than needed: whoever asks often, as damage makes him, takes no longer than the log.
+    // The search is limited to `until`, so that repeated searches in a damaged log stay linear in its length.
     const std::size_t within = std::min(bytes_.size(), until + sizeof word - 1) - at;
     const void* found = memmem(&bytes_[at], within, word, sizeof word);
     if (found == nullptr) return until;
@@ -87,8 +87,8 @@ bool LogScanner::next(LogEvent& event) {
     }
     const std::size_t end = at_ + kLogEventHeaderBytes + event.channel.size() + event.data.size();
     if (!follows_at(end, event.number)) {
-      // Either the damage begins behind this event, or this event's length is a lie that swallows intact ones. A
-      // lie may end at the beginning of an event, too, but not of the one that is numbered next.
+      // Either the damage begins after this event, or the length of this event is corrupt and covers intact events. A corrupt
+      // length may also end at the beginning of an event, but not of the one with the next number.
       const std::size_t swallowed = next_event_after(at_ + kLogEventHeaderBytes, end);
       if (swallowed < end) {
         skip_to(swallowed);

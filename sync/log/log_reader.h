@@ -1,8 +1,8 @@
-// Reads an LCM event log and goes on after damage. Pure.
+// Reads an LCM event log and resumes after damage. Pure.
 //
-// Format (LCM, docs/content/log-file-format.md), big-endian: u32 sync word, i64 number, i64 time stamp in us, i32
-// length of the channel, i32 length of the data, channel, data. There is no checksum, so damage inside an event's
-// data is only found by decoding it.
+// Format (LCM, docs/content/log-file-format.md), big-endian: u32 sync word, i64 number, i64 time stamp in us, i32 length of
+// the channel, i32 length of the data, channel, data. There is no checksum, so damage inside an event's data is only found by
+// decoding it.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace tactus::sync {
 
 inline constexpr std::uint32_t kLogSync = 0xEDA1DA01;
 inline constexpr std::size_t kLogEventHeaderBytes = 28;
-// Where several files are read as one log (sync/log/mapped_log.h), each begins at a multiple of this. Design: the
-// largest page of memory that Linux has on our machines, so that a file can be mapped there.
+// When several files are read as one log (sync/log/mapped_log.h), each begins at a multiple of this. Design: the largest
+// Linux memory page on supported machines, so that a file can be mapped there.
 inline constexpr std::size_t kLogPartBytes = 65536;
 
-// One event; the views live as long as the bytes that it was read from.
+// One event; the views are valid as long as the bytes that it was read from.
 struct LogEvent {
   std::int64_t number = 0;
   std::int64_t timestamp_us = 0;
@@ -25,32 +25,32 @@ struct LogEvent {
   std::span<const std::uint8_t> data;
 };
 
-// Finds every intact event: whatever does not look like one is skipped up to the next that does.
+// Finds every intact event; skips damaged bytes up to the next one.
 class LogScanner {
  public:
   explicit LogScanner(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   // False at the end.
   bool next(LogEvent& event);
-  // The next to be read is the first event that begins at or behind this byte; what lies between is no damage.
+  // Continues with the first event that begins at or after this byte; skipped bytes do not count as damage.
   void start_at(std::size_t at);
-  // Where that begins, or the end.
+  // The position of the next event, or the end.
   std::size_t at() const { return at_; }
 
   std::int64_t events() const { return events_; }
-  // Runs of bytes that were skipped, and how many bytes in all. A last event that was cut off is one of them.
+  // Number of skipped byte ranges, and of skipped bytes. A truncated last event is one of them.
   std::int64_t damaged_regions() const { return damaged_regions_; }
   std::int64_t damaged_bytes() const { return damaged_bytes_; }
 
  private:
   bool sync_at(std::size_t at) const;
-  // True when the event numbered after `number` begins there.
+  // True when the event with the number after `number` begins there.
   bool follows_at(std::size_t at, std::int64_t number) const;
-  // Parses what looks like an event at `at` and lies within the bytes.
+  // Parses an event at `at` when its header is plausible and it lies within the bytes.
   bool event_at(std::size_t at, LogEvent& event) const;
   std::size_t next_event_after(std::size_t at, std::size_t until) const;
   void skip_to(std::size_t at);
-  // Over the zeros between two parts of a recording.
+  // Skips the zeros between two parts of a recording.
   void pass_border();
 
   std::span<const std::uint8_t> bytes_;

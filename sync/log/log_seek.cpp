@@ -12,12 +12,12 @@
 namespace tactus::sync {
 namespace {
 
-// Four of nine stamps may be damaged.
+// The median tolerates four damaged stamps of nine.
 constexpr std::size_t kLooks = 9;
-// What is read on instead of cut in half once more.
+// An interval of this size is read instead of bisected.
 constexpr std::size_t kNearEnough = 1 << 16;
 
-// The head of a part is stamped before what the part before it ends with.
+// The head of a part is stamped earlier than the end of the previous part.
 bool of_a_head(const LogEvent& e) {
   return e.channel == channels::kLogInfo || e.channel == kLogTypes || e.channel == channels::kSceneManifest ||
          e.channel == channels::kAssetChunk;
@@ -51,7 +51,7 @@ std::size_t seek_log(std::span<const std::uint8_t> log, std::int64_t timestamp_u
   std::size_t low = 0, high = log.size();
   while (high - low > kNearEnough) {
     const std::size_t middle = low + (high - low) / 2;
-    // Not beyond what is still in question: a hole of many GB would be read once for every probe in it.
+    // The search is limited to the interval: a gap of many GB would otherwise be read for every probe in it.
     const auto stamp = stamp_near(log.first(high), middle);
     (!stamp || *stamp >= timestamp_us ? high : low) = middle;
   }
@@ -67,7 +67,7 @@ std::optional<LogSpan> span_of_log(std::span<const std::uint8_t> log) {
     if (back >= log.size()) break;
   }
   if (tail.size() > kLooks) tail.erase(tail.begin(), tail.end() - static_cast<std::ptrdiff_t>(kLooks));
-  // The extremes of those near the median.
+  // The extremes of the stamps near the median.
   const auto extreme = [](const std::vector<std::int64_t>& stamps, bool least) {
     const std::int64_t at = median(stamps);
     std::int64_t found = at;

@@ -1,4 +1,5 @@
-// Which stamps of a log are of its run: damage makes stamps of any age, and a run has many near each other. Pure.
+// Separates the stamps of a log's run from damaged ones: damaged stamps are scattered, while a run has many stamps near each
+// other. Pure.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +10,18 @@ namespace tactus::sync {
 
 class LogTimeRanges {
  public:
-  // Design: who takes part in a run says ten times a second how it is; so few near each other are no run.
+  // Design: fewer than 32 nearby stamps cannot be a run, because every node publishes its health at 10 Hz.
   static constexpr std::int64_t kFewestOfARun = 32;
-  // Stamps that are farther apart than this, with none between, are of two ages: SummaryClock::kLargestStep.
+  // Stamps that are farther apart than this, with none between, belong to two ranges: SummaryClock::kLargestStep.
   static constexpr std::int64_t kApart_us = 60'000'000;
-  // A log whose stamps are all noise takes no more memory than this. When there are more ages the emptiest half is
-  // forgotten.
+  // Limits the memory for a log with only random stamps. With more ranges, the half with the fewest events is removed.
   static constexpr std::size_t kMax = 65'536;
 
-  // In any order; each takes the logarithm of the number of ages.
+  // In any order; each call takes the logarithm of the number of ranges.
   void note(std::int64_t stamp_us);
-  // True of a stamp in an age of as many events as a run has, or in the fullest age of all.
+  // True for a stamp in a range with as many events as a run has, or in the range with the most events.
   bool of_the_run(std::int64_t stamp_us) const;
-  // Events that of_the_run denies.
+  // Number of events for which of_the_run is false.
   std::int64_t misdated() const;
 
  private:
@@ -32,7 +32,7 @@ class LogTimeRanges {
   void forget();
   bool good(const Age& age) const { return age.events >= kFewestOfARun || age.events == fullest_; }
 
-  std::map<std::int64_t, Age> ages_;  // by their first stamp; none touches another
+  std::map<std::int64_t, Age> ages_;  // by their first stamp; ranges do not overlap
   std::int64_t fullest_ = 0;
   std::int64_t forgotten_ = 0;
 };

@@ -1,4 +1,4 @@
-// Writes an LCM event log that the stock tools read. What the disk refuses is kept up to a bound, then dropped and
+// Writes an LCM event log that the stock tools read. Data that the disk refuses is stored up to a bound, then dropped and
 // counted; the file always ends at the end of an event.
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace tactus::sync {
 
-// Where the bytes go.
+// The destination of the bytes.
 class LogSink {
  public:
   virtual ~LogSink() = default;
-  // All of the bytes or none of them. Empty when done, else why not.
+  // Writes all of the bytes or none. Returns an empty string when done, else the reason.
   virtual std::string append(std::span<const std::uint8_t> bytes) = 0;
 };
 
@@ -35,28 +35,28 @@ class FileSink : public LogSink {
 
 class LogWriter {
  public:
-  // What waits for a disk that is full or slow.
+  // Limit of the data that waits for a full or slow disk.
   static constexpr std::size_t kMaxWaitingBytes = 64 << 20;
 
   explicit LogWriter(std::unique_ptr<LogSink> sink, std::size_t max_waiting_bytes = kMaxWaitingBytes);
 
-  // Stamps never fall back: one that does is raised to the one before.
+  // Stamps never decrease: a smaller one is raised to the previous one.
   void write(std::int64_t timestamp_us, std::string_view channel, std::span<const std::uint8_t> data);
-  // Hands everything that waits to the sink.
+  // Passes all waiting data to the sink.
   void flush();
 
   std::int64_t events() const { return events_; }
   // Of all events, written or waiting.
   std::int64_t bytes() const { return bytes_; }
-  // Events that found no room.
+  // Number of dropped events.
   std::int64_t lost() const { return lost_; }
-  // Why the last flush failed; empty: it did not.
+  // Reason of the last flush's failure; empty: it succeeded.
   const std::string& trouble() const { return trouble_; }
 
  private:
   std::unique_ptr<LogSink> sink_;
   std::size_t max_waiting_bytes_;
-  // In blocks of whole events, so that a disk that is nearly full takes what it can.
+  // In blocks of whole events, so that a nearly full disk receives as much as fits.
   std::deque<std::vector<std::uint8_t>> blocks_;
   std::size_t waiting_bytes_ = 0;
   std::int64_t last_us_ = INT64_MIN;

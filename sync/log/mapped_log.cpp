@@ -22,12 +22,11 @@ namespace {
 // The newest mapping, for say_cut.
 std::atomic<const std::uint8_t*> mapped_begin{nullptr}, mapped_end{nullptr};
 
-// What is touched behind the end of a file that was cut after it had been mapped is SIGBUS, which kills without a
-// word.
+// Handles SIGBUS, which an access behind the end of a truncated file raises and which kills without a message.
 void say_cut(int, siginfo_t* info, void*) {
   const auto* at = static_cast<const std::uint8_t*>(info->si_addr);
   if (at < mapped_begin.load() || at >= mapped_end.load()) {
-    signal(SIGBUS, SIG_DFL);  // not ours: it comes again, and does what it does
+    signal(SIGBUS, SIG_DFL);  // another cause: the signal is raised again with its default action
     return;
   }
   static constexpr char text[] = "the log was cut while it was read; give a copy that nobody writes to\n";
@@ -81,7 +80,7 @@ MappedLog::MappedLog(const std::string& path) {
     if (files[i].bytes > 0) size = with_border(size) + files[i].bytes;
   }
   if (size == 0) return;
-  // The whole length first, so that there is room for each part behind the one before.
+  // Reserves the whole length first, so that each part has room behind the previous one.
   void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (start == MAP_FAILED) refuse(path);
   bytes_ = {static_cast<const std::uint8_t*>(start), size};

@@ -1,4 +1,4 @@
-// The bytes of a log: of one file, or of all parts of a recording, one behind the other.
+// The bytes of a log: of one file, or of all parts of a recording, one after the other.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace tactus::sync {
 
-// Mapped, so that a log of any length takes no memory of its own. Each part begins at a multiple of
-// kLogPartBytes (sync/log/log_reader.h), and what lies between is 0. Whoever cuts a file short meanwhile ends this
-// process, with one sentence on stderr and status 1.
+// Memory-mapped, so that a log of any length takes no memory of its own. Each part begins at a multiple of kLogPartBytes
+// (sync/log/log_reader.h); the bytes in between are 0. When another process truncates a file meanwhile, this process ends
+// with one sentence on stderr and status 1.
 class MappedLog {
  public:
   // path: a file, or a folder that a recorder wrote to. Throws std::runtime_error with one sentence.

@@ -1,4 +1,4 @@
-// The message types themselves, as text, so that a log can be read where its Tactus is not. Pure.
+// The message types as text, so that a log can be read without the Tactus version that wrote it. Pure.
 //
 // On the channel LOG_TYPES, in pages of at most one datagram, plain UTF-8 without a header or fingerprint:
 //
@@ -6,6 +6,7 @@
 //   channel WORLD_STATE world_state_t
 //   struct world_state_t 0x7697da36a53a86f6     (the 8 bytes that its messages begin with)
 //     header_t header
+//     body_state_t bodies[count]
 //     body_state_t bodies[count]
 #pragma once
 
@@ -16,7 +17,7 @@ namespace tactus::sync {
 
 inline constexpr const char* kLogTypes = "LOG_TYPES";
 
-// Lines stay whole; the pages in their order, less the first line of each, are the text.
+// Lines are not split; the pages in order, without the first line of each, are the text.
 std::vector<std::string> log_types();
 
 }  // namespace tactus::sync

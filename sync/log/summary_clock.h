@@ -1,4 +1,4 @@
-// The time of a log: that of its events, without the ones whose stamp was damaged. Pure.
+// The time of a log: the stamps of its events, without damaged ones. Pure.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@ namespace tactus::sync {
 
 class SummaryClock {
  public:
-  // A step of more than this, or back, is believed only when the next event confirms it.
+  // A larger step, or a step back, is accepted only when the next event confirms it.
   static constexpr Nanoseconds kLargestStep{60'000'000'000};
 
   HostTime observe(HostTime stamp) {

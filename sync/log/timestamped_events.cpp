@@ -15,8 +15,7 @@ HostTime TimestampedEvents::time_of(const LogEvent& event) {
   if (!credible(event)) return before_.value_or(origin_.time(event.timestamp_us));
   const HostTime stamp = origin_.time(event.timestamp_us);
   if (before_ && ahead_ && credible(*ahead_)) {
-    // Recorders stamp in order: a stamp that the next event contradicts, and the one before does not bear out, is
-    // wrong.
+    // Recorders stamp in order: a stamp that the next event contradicts, and the previous one does not support, is wrong.
     const HostTime next = origin_.time(ahead_->timestamp_us);
     if (*before_ <= next && next < stamp) return *before_;
   }

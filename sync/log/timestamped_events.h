@@ -1,6 +1,5 @@
-// The events of a log in their order, each with the time at which it is to be handed over: its own stamp, or where
-// that is damaged the time of the event before. Times never fall back but where a log itself goes on at an earlier
-// time. Pure.
+// The events of a log in order, each with the time to pass it on: its own stamp, or where that is damaged the time of the
+// previous event. Times decrease only where the log itself continues at an earlier time. Pure.
 #pragma once
 
 #include <optional>
@@ -15,11 +14,11 @@ namespace tactus::sync {
 
 class TimestampedEvents {
  public:
-  // ages: which stamps can be of this log, where that is known; null: any. Both outlive this.
+  // ages: the valid stamps of this log, if known; null: any. Both outlive this object.
   TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogTimeRanges* ages = nullptr)
       : scanner_(bytes), origin_(origin), ages_(ages) {}
 
-  // Reads on from the first event at or behind this byte, as if nothing had been read; no time is before `from`.
+  // Continues with the first event at or after this byte, as if no event had been read; no time is before `from`.
   void start_at(std::size_t at, HostTime from);
   // False at the end.
   bool next(LogEvent& event, HostTime& time);

@@ -1,6 +1,6 @@
-// Makes something in a thread of its own, because making it may take long or block for ever: PortAudio 19.6 waits
-// without limit for the first callback of a card that opens but does not start, a file may lie on a network.
-// Whoever waits for it asks; no loop is held. In a virtual time it is made at once: how long it takes is the machine's affair.
+// Runs a factory function on a background thread, because construction may take long or block forever: PortAudio 19.6 waits
+// without limit for the first callback of a card that opens but does not start; a file may lie on a network. The owner polls
+// done(); no loop blocks. In virtual time the factory runs at once: its duration depends on the machine.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace tactus::sync {
 template <class T>
 class BackgroundTask {
  public:
-  // make runs in the new thread and owns all that it uses: it may outlive this object.
+  // make runs in the new thread and owns everything that it uses: it may outlive this object.
   explicit BackgroundTask(std::function<std::unique_ptr<T>()> make) : state_(std::make_shared<State>()) {
     auto opens = [state = state_, make = std::move(make)] {
       try {
@@ -33,9 +33,9 @@ class BackgroundTask {
       std::thread(std::move(opens)).detach();
   }
 
-  // True once it has ended, in one way or the other.
+  // True once make has returned or thrown.
   bool done() const { return state_->done.load(std::memory_order_acquire); }
-  // What was made; rethrows what make threw. Only when done, once.
+  // The result; rethrows the exception of make. Call it once, only when done().
   std::unique_ptr<T> take() {
     if (state_->error) std::rethrow_exception(state_->error);
     return std::move(state_->made);

@@ -1,4 +1,5 @@
-// Which question of a study is asked now: of the messages of all who might lead one (lcmtypes/types/control/question_t.lcm). Pure.
+// The question that a study asks now, from the messages of all processes that may lead a study
+// (lcmtypes/types/control/question_t.lcm). Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +14,11 @@ class CurrentQuestion {
  public:
   static constexpr Nanoseconds kGone{2'000'000'000};  // question_t.lcm
 
-  // run_id: questions of another run are not heeded; 0: those of any are, as in a log.
+  // run_id: questions of other runs are ignored; 0: questions of any run count, as in a log.
   explicit CurrentQuestion(std::int64_t run_id) : run_id_(run_id) {}
 
-  // The newest of one leader holds: false when it is of another run, was overtaken by a newer one, or comes from
-  // somebody else while one leads.
+  // The newest question of one leader holds. Returns false when the message is of another run, is older than the newest one,
+  // or comes from a second sender while one leads.
   bool push(const question_t& m, HostTime arrival) {
     if (run_id_ != 0 && m.header.run_id != run_id_) return false;
     if (led(arrival)) {
@@ -29,7 +30,7 @@ class CurrentQuestion {
   }
   void clear() { newest_.reset(); }
 
-  // What was said last, also that NOTHING is asked; null: nobody leads a study.
+  // The newest message, also one without a question; null: no process leads a study.
   const question_t* led(HostTime now) const { return newest_ && now - arrival_ <= kGone ? &*newest_ : nullptr; }
 
  private:
@@ -38,7 +39,7 @@ class CurrentQuestion {
   HostTime arrival_{};
 };
 
-// One question apart from all others, whoever leads: ids begin anew with a leader that is started anew.
+// Identifies a question across leaders: the ids start again when a leader is restarted.
 struct QuestionKey {
   std::int64_t incarnation = 0, id = 0;
   bool operator==(const QuestionKey&) const = default;

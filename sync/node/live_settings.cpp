@@ -39,7 +39,7 @@ std::vector<std::string> LiveSettings::step(HostTime now, const SettingChanges::
     tag_request_t request = maps_.request();
     node_.bus().publish(channels::kTagRequest, request);
   }
-  // What another run tells, as a log that is replayed, drives nothing.
+  // Messages of another run, such as a replayed log, drive nothing.
   const auto push = [&](const auto& m) {
     if (m && m->header.run_id == node_.options().run_id) maps_.push(*m);
   };

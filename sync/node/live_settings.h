@@ -1,5 +1,5 @@
-// The settings of a node while it runs: what is asked of them over the bus (SETTING), and what the scene's maps
-// make of tagged variables. A renderer's main has one and calls step() each tick.
+// The settings of a running node: changes requested over the bus (SETTING), and settings that the maps of the scene drive
+// from tagged variables. The main function of a renderer owns one and calls step() each tick.
 #pragma once
 
 #include <string>
@@ -15,13 +15,13 @@ namespace tactus::sync {
 
 class LiveSettings {
  public:
-  // Before the node's first tick.
+  // Construct it before the first tick of the node.
   explicit LiveSettings(Node& node);
 
-  // The maps of a scene hold from now on.
+  // Uses the maps of this scene from now on.
   void set_scene(const scene_t& scene) { maps_.set(scene.maps); }
-  // Carries out what is asked, one request a tick, and answers it; then what the maps say. `apply` as for
-  // SettingChanges. Returns a sentence for each map that cannot drive its setting: it is said once.
+  // Carries out and answers at most one request a tick, then applies the maps. `apply` as for SettingChanges. Returns one
+  // sentence for each map that cannot drive its setting, once per map.
   std::vector<std::string> step(HostTime now, const SettingChanges::Apply& apply);
 
  private:

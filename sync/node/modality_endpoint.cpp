@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::size_t kMaxDecisions = 8192;
 constexpr std::size_t kDecisionsPerMessage = 36;     // of 34 bytes each
-constexpr Nanoseconds kDecisionPeriod{100'000'000};  // fewer than fill a message wait so long
-constexpr Nanoseconds kReportedWithin{100'000'000};  // of what is out, as PresentationMatcher::kReportsWithin
+constexpr Nanoseconds kDecisionPeriod{100'000'000};  // longest wait of decisions that do not fill a message
+constexpr Nanoseconds kReportedWithin{100'000'000};  // for presented events, as PresentationMatcher::kReportsWithin
 
-// Operators on the output that the profile asks of this sense and that it does not have.
+// Output operators of the profile that name this modality but that its node does not declare.
 std::vector<std::string> not_declared(const Profile& profile, const NodeDescriptor& d) {
   std::vector<std::string> missing;
   for (const Rule& rule : profile.rules) {
@@ -59,9 +59,9 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
   stack_.set_scene(names_);
   tool_ = tool;
-  // What was said on the command line or since then holds.
+  // A profile from the command line, or one received since then, takes precedence.
   if (!node_.options().profile.text.empty() || receiver_.generation() > 0) return;
-  // A scene that brings none takes away that of the scene before.
+  // A scene without a profile removes the profile of the previous scene.
   if (scene.profile.empty() && profile_hash_ == 0) return;
   const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
   const std::int64_t hash = fnv1a_64(text.data(), text.size());
@@ -94,7 +94,7 @@ void ModalityEndpoint::take_control(HostTime) {
   const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
-      // Also the same text once more: its times count from when it is put in force.
+      // The same text can come again: its times count from the moment that it comes into force.
       if (const auto whole = receiver_.take(m->message)) put_in_force(*whole);
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
     std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;

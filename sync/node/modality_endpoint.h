@@ -1,13 +1,13 @@
-// What a sense is on the bus: its streams, with the operators of its profile in between; when it presents; and its reports of
-// what it presented. A node that renders has one.
+// The endpoint of a modality on the bus: input streams, the operators of the degradation profile on them, playout delay, and
+// reports of presented events. Each rendering node has one.
 //
-//   sync::Sense sense(node);
+//   sync::ModalityEndpoint sense(node);
 //   auto& events = sense.events();
 //   while (node.running()) {
 //     const sync::HostTime now = node.wait();
-//     sense.step(now);                        // takes in what arrived, lets through what is due
+//     sense.step(now);                        // receives new messages, releases the due ones
 //     while (const auto m = events.pop()) ...
-//     ... render what is due at now, which happened sense.delay() ago ...
+//     ... render the state of the world at now - sense.delay() ...
 //     sense.publish(now);
 //   }
 #pragma once
@@ -38,16 +38,16 @@ namespace tactus::sync {
 template <class Message>
 struct Delivered {
   Message message;
-  HostTime arrival;  // when it really arrived
+  HostTime arrival;  // when it arrived from the bus, before any delay of the profile
 };
 
 class ModalityEndpoint {
  public:
-  // A message stream of this sense: what the renderer reads instead of the inbox.
+  // A message stream of this modality. The renderer reads it instead of the inbox.
   template <class Message>
   class Stream {
    public:
-    // The next message that is let through by now.
+    // The next message that is released by now.
     std::optional<Delivered<Message>> pop() {
       auto next = degraded_.pop(now_);
       if (!next) return std::nullopt;
@@ -64,20 +64,21 @@ class ModalityEndpoint {
     HostTime now_{};
   };
 
-  // Reads the node's --degrade. Throws std::runtime_error with one sentence when that is no profile.
+  // Reads the node's --degrade. Throws std::runtime_error with one sentence when the file is not a valid profile.
   explicit ModalityEndpoint(Node& node);
-  // The sense of another process, listened in on: its streams with what the same profile decides, when it presents, and nothing
-  // said on the bus. So a process knows what a person gets of it.
+  // Observes the modality of another process: the same streams, with the decisions of the same profile and the playout delay
+  // of that process. Publishes nothing. An observer, such as the simulated player, so receives exactly the input of that
+  // modality's renderer.
   ModalityEndpoint(Node& node, NodeDescriptor of);
   ~ModalityEndpoint();
 
-  // Make them before the first step.
+  // Create streams before the first step.
   Stream<contact_events_t>& events(std::size_t capacity = 4096) { return add<contact_events_t>(channels::kContactEvents, capacity); }
   template <class Message>
   Stream<Message>& snapshots(const char* channel, std::size_t capacity) {
     return add<Message>(channel, capacity);
   }
-  // Of a sense that has no instant of presentation to move, a servo loop: its news waits instead.
+  // For a modality without a movable instant of presentation (a servo loop): its input messages are delayed instead.
   template <class Message>
   Stream<Message>& held_snapshots(const char* channel, std::size_t capacity) {
     auto& stream = add<Message>(channel, capacity);
@@ -85,34 +86,35 @@ class ModalityEndpoint {
     return stream;
   }
 
-  // A scene has come: its names, its tool and the profile that it brings.
+  // A scene is complete: its names, its tool and its profile. tool: index in scene_t.tools; -1: none.
   void set_scene(const scene_t& scene, int tool = -1);
-  // How late this sense presents while nobody says otherwise, and how long it needs from the arrival of an event to its
-  // output at the most.
+  // The presentation delay of this modality while no PLAYOUT message sets one; and its maximum latency from the arrival of an
+  // event to its output.
   void set_own_delay(Nanoseconds delay) { playout_.set_own(delay); }
   void set_output_latency(Nanoseconds latency) { output_latency_ = latency; }
 
-  // Once a tick.
+  // Call it once a tick.
   void step(HostTime now);
 
-  // What is presented now happened so long ago: by policy and by profile. In lock-step it grows until the next turn.
+  // Presentation delay by policy and by profile: the output at now shows the world at now - delay(). In lock-step it grows
+  // until the next iteration of the loop.
   Nanoseconds delay() const { return delay_; }
-  // Of that, what the profile adds.
+  // The part of delay() that the profile adds.
   Nanoseconds profile_delay() const { return profile_delay_; }
-  // When the event that happened at that time is to be presented: so much later, or as soon as this sense can when the
-  // policy is that.
+  // The time at which to present an event that happened at `happened`: delay() later, or as soon as this modality can under
+  // the policy asap.
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
-  // What is wrong with the output itself.
+  // The degradation of the output itself.
   const OutputDef& output() const { return output_; }
-  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
+  // The name of the profile in force, whether or not it concerns this modality; empty: none is in force.
   const std::string& profile_name() const { return profile_name_; }
-  // When the newest message of any stream really arrived.
+  // The arrival of the newest message of any stream, before any delay of the profile.
   HostTime newest_arrival() const;
 
   void report(const presentation_t& report);
-  // Is told of every report, too: of a log, whose reports nobody hears on the bus.
+  // Sets a function that receives every report. Needed when a log is rendered: nothing reads the reports from the bus then.
   void tell(std::function<void(const presentation_t&)> of_report) { tell_ = std::move(of_report); }
-  // Sends reports, and the decisions of the profile.
+  // Publishes reports, and the decisions of the profile.
   void publish(HostTime now);
 
  private:
@@ -126,7 +128,7 @@ class ModalityEndpoint {
   struct StreamSlot : AnyStream {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
     void step(ModalityEndpoint& sense, HostTime now, HostTime lets) override;
-    // Events are decided on one by one.
+    // Each event has its own decision, so a new profile needs no reset here.
     void change_profile() override {
       if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
     }
@@ -143,11 +145,12 @@ class ModalityEndpoint {
     return stream;
   }
 
-  // A delay of a profile begins: it holds for events too that have come and are not out yet. That is decided, and logged, here.
+  // Logs the delay of events that have arrived and are not presented yet, when a delay of a profile begins: it applies to
+  // them, too.
   void log_in_flight_delays(HostTime now, SimTime sim_now);
   void take_control(HostTime now);
   void put_in_force(const ProfileInForce& profile);
-  // When an event really arrived first; nothing: it did not, or long ago.
+  // The first arrival of an event from the bus; nullopt: it has not arrived, or has been forgotten.
   std::optional<HostTime> arrival_of(std::int64_t event_id) const;
   void report_dropped(const std::vector<contact_event_t>& dropped);
   bool owes(const contact_event_t& event) const;
@@ -179,7 +182,7 @@ class ModalityEndpoint {
 
 template <class Message>
 void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTime now, HostTime lets) {
-  // A turn that is held up while it reads hears what came meanwhile, too, and does not keep it until the next.
+  // A tick that is held up while it reads also accepts the messages that arrive meanwhile.
   HostTime heard = now;
   while (auto m = stream.inbox_.pop()) {
     heard = std::max(heard, m->arrival);
@@ -191,7 +194,7 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTi
     }
   }
   if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
-  // In lock-step the state of the world is that of the turn; events say themselves when they are due.
+  // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.
   const bool is_state = !std::is_same_v<Message, contact_events_t>;
   stream.now_ = (is_state && lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
 }

@@ -44,7 +44,7 @@ std::string enter(const NodeDescriptor& d, const NodeOptions& o) {
   if (o.check) std::exit(0);
   if (VirtualTime::current()) return "virtual time";
   catch_signals();
-  // Timers of normal threads are rounded up by 50 us unless told otherwise.
+  // Linux rounds the timers of normal threads up by 50 us by default.
   prctl(PR_SET_TIMERSLACK, 1000);
   return set_realtime(parse_realtime(o.realtime), d.fifo_priority);
 }
@@ -57,11 +57,11 @@ NodeOptions with_profile(NodeOptions o) {
 std::int32_t saturated(std::int64_t n) { return static_cast<std::int32_t>(std::min<std::int64_t>(n, INT32_MAX)); }
 
 constexpr Nanoseconds kReportPeriod{100'000'000};
-// A loop that was demoted gets its priority back after so long below 80 %.
+// A demoted loop regains its priority after this time below 80 % load.
 constexpr Nanoseconds kForgiven{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
 constexpr std::size_t kMaxTagRequests = 64;
-// A note may quote what came over the bus; a report with it still fits a datagram.
+// A note may quote text from the bus; a report with a note of this length still fits a datagram.
 constexpr std::size_t kLongestNote = 140;
 
 }  // namespace
@@ -85,7 +85,7 @@ void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.name == "sync_node")
     app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
-  // For measurements only, hence not in --help: a renderer that eats its core.
+  // For measurements only, hence not in --help: a renderer that uses up its core.
   app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.name)->check(CLI::Range(0.0, 100.0))->group("");
   app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
 }
@@ -245,14 +245,14 @@ node_health_t Node::health_message(HostTime now) {
     in.channel = c.channel;
     const InputAge age = age_of(c, bus_.clocks(), now);
     in.age_ns = age.age.count();
-    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // ClockMaps::kMostUncertain at the most
+    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // at most ClockMaps::kMaxUncertain
     in.messages = c.sequence.messages();
     in.gaps = saturated(c.sequence.gaps() + c.dropped);
     in.bad = saturated(c.bad);
     add_input(m, in);
     forgotten += c.sequence.forgotten();
   };
-  // What it cannot do without comes first: it is listed whatever there is room for.
+  // Required inputs come first: they are listed even where room is short.
   const auto needed = [&](const InputCount& c) {
     return std::find(descriptor_.inputs.begin(), descriptor_.inputs.end(), c.channel) != descriptor_.inputs.end();
   };

@@ -1,5 +1,5 @@
-// What every process of the cluster has: options, identity, priority, the bus, a paced loop, health. A node's main
-// is then the same few lines:
+// The parts that every process of the cluster has: options, identity, priority, the bus, a paced loop, health. The main
+// function of a node is then these few lines:
 //
 //   sync::Node node(descriptor, options);
 //   while (node.running()) {
@@ -31,24 +31,24 @@ class App;
 
 namespace tactus::sync {
 
-// The options that every node has. Bind them to a CLI11 app with add_options, add the node's own, then parse.
+// The options that every node has. Bind them to a CLI11 app with add_to, add the node's own, then parse.
 struct NodeOptions {
   BusOptions bus;
   std::int64_t run_id = 1;
   std::string name;  // process name; default: the descriptor's
   std::string realtime = "try";
-  std::string out = ".";  // folder for what the node writes
+  std::string out = ".";  // folder for the files that the node writes
   std::uint64_t seed = 1;
   std::vector<std::string> set;  // name=value
   std::string degrade;           // file of a degradation profile; empty: none
-  ProfileInForce profile;        // what it holds, once read
-  double load = 0;               // for measurements: so much of its period is wasted
-  bool check = false;            // leave, with success, where the bus would be joined
+  ProfileInForce profile;        // the parsed content of that file
+  double load = 0;               // for measurements: this share of its period is spent in an idle loop
+  bool check = false;            // exit with success before joining the bus
 
   void add_to(CLI::App& app, const NodeDescriptor& descriptor);
 };
 
-// Parses; prints help or one sentence and exits when there is nothing to run. Then the process may start.
+// Parses. Prints help or one error sentence and exits where the process must not start.
 void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv);
 
 // For `int main() try { ... } catch (const std::exception& e) { return sync::fail("audio_node", e); }`: prints one
@@ -57,56 +57,56 @@ int fail(const std::string& node, const std::exception& e);
 
 class Node {
  public:
-  // Takes its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.
+  // Sets its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.
   Node(NodeDescriptor descriptor, NodeOptions options);
   ~Node();
 
   // False after SIGTERM or SIGINT.
   bool running() const;
 
-  // Ends the tick before, reports health when due, sleeps until the next tick, drains the bus. Returns the clock.
+  // Ends the previous tick, reports health when due, sleeps until the next tick, drains the bus. Returns the clock.
   HostTime wait();
-  // In the middle of a tick: drains the bus once more, without waiting. Returns the clock.
+  // Drains the bus within a tick, without waiting. Returns the clock.
   HostTime poll();
-  // Like wait() for a process that is driven by events: wakes when something arrives, after a period at the latest.
+  // Like wait(), for an event-driven process: wakes when a message arrives, after one period at the latest.
   HostTime wait_for_event();
 
-  // To everyone this process is another from here on, as if it had been started anew; its health counts from zero.
+  // Starts a new incarnation; receivers see a restart. Health counts from zero.
   void begin_incarnation();
 
   Bus& bus() { return bus_; }
-  // Variables of this process that can be recorded; the time of each phase of its tick is among them.
+  // Tagged variables of this process; the time of each phase of its tick is among them.
   Tags& tags() { return tags_; }
   const NodeOptions& options() const { return options_; }
   const NodeDescriptor& descriptor() const { return descriptor_; }
   void set_rate(double rate_Hz);
-  // For a loop whose phase is somebody else's: the next tick is then; so many before it are left out and count as missed.
+  // Re-phases the loop to an external clock: the next tick is at next_tick; the left_out ticks before it count as missed.
   void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
   // Ticks done and missed so far: their sum numbers the periods of the loop.
   const Deadlines& deadlines() const { return loop_.deadlines(); }
 
-  // Between the parts of work that takes many ticks: reports health when that is due, and nothing else.
+  // Reports health when it is due, and does nothing else. For work that takes many ticks: call it between the parts.
   void heartbeat() {
     if (const HostTime now = host_now(); now >= next_report_) report(now);
   }
 
-  // What the next health report says.
+  // State and note of the next health report.
   void set_state(std::int8_t state, std::string note = "");
   void set_tool(int tool) { health_.tool = tool; }
   void count_rendered(std::int64_t events) { health_.contacts_rendered += events; }
-  // Step of its quality ladder, 0: full, of so many.
+  // Step of the node's quality ladder (0: full quality), and the number of steps.
   void set_quality(int step, int steps) {
     health_.quality = static_cast<std::int8_t>(step);
     health_.qualities = static_cast<std::int8_t>(steps);
   }
   void set_profile(std::int64_t hash) { health_.profile = hash; }
   void set_realtime_factor(double factor) { health_.realtime_factor = factor; }
-  // For nodes that tick elsewhere (the audio callback): totals instead of the loop's own.
+  // For nodes that tick elsewhere (the audio callback): totals that replace those of the loop.
   void override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz);
 
  private:
   void tag_work();
-  // The loop's turn is over, and the next one has begun.
+  // A tick of the loop ends, and the next one begins.
   void end_tick(HostTime now);
   void begin_tick(HostTime now);
   void serve_tags(HostTime now);
@@ -131,7 +131,7 @@ class Node {
   HostTime next_report_{};
   HostTime rate_since_{};
   std::int64_t ticks_at_rate_since_ = 0;
-  std::int64_t ticks_before_ = 0, missed_before_ = 0;  // of the lives before
+  std::int64_t ticks_before_ = 0, missed_before_ = 0;  // of earlier incarnations
   std::int64_t event_ticks_ = 0;
   bool overridden_ = false;
   int reports_ = 0;

@@ -1,5 +1,5 @@
-// What a node is, as data: its name, its modality, its inputs, its rate and what a profile can degrade of its output.
-// A node folder holds one; sync/ knows no modality beside it.
+// The static description of a node: its name, its modality, its inputs, its rate, and the degradations of its output that a
+// profile can request. Each node folder holds one; sync/ contains no other list of modalities.
 #pragma once
 
 #include <string>
@@ -22,10 +22,10 @@ struct NodeDescriptor {
   // Of a modality only.
   std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
   std::string presentation_instant = {};   // the instant that PRESENTED reports
-  Late late_policy = Late::kShowNewest;    // what becomes of an event that comes too late
+  Late late_policy = Late::kShowNewest;    // treatment of an event that comes too late
   std::vector<std::string> degradable = {};  // attributes of a profile that act on its output, e.g. "frame_rate"
 
-  std::vector<Phase> phases = {};  // phases of its tick that are tagged beside decoding and the rest: "work.render"
+  std::vector<Phase> phases = {};  // tagged phases of its tick beside decoding and the rest: "work.render"
 };
 
 }  // namespace tactus::sync

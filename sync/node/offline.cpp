@@ -31,7 +31,7 @@ Offline::Offline(const OfflineOptions& options, std::vector<Written> written, do
       began_(clock),
       said_(clock) {
   if (!options.presented.empty()) written.push_back({options.presented, "--presented"});
-  // Also by another path or a link.
+  // The same file may also be named by another path or a link.
   std::error_code none;
   std::vector<std::string> parts = log_parts_in(options.log);
   parts.push_back(options.log);
@@ -52,7 +52,7 @@ void Offline::adapt(NodeOptions& options) {
   if (options.degrade == "logged") as_recorded_ = true, options.degrade.clear();
   if (as_recorded_) return;
   feed_.leave_out(channels::kDegradation);
-  // That of the scene is a profile of the run too.
+  // A profile of the scene is a profile of the run, too.
   if (options.degrade.empty()) options.profile = read_profile("<profile/>", "profile");
 }
 

@@ -1,7 +1,7 @@
-// A recorded run in place of the bus: the part of --log that all renderers share. The loop is the one that runs live
+// A recorded log as the input instead of the bus: the part of --log that all renderers share. The loop is the live one
 // (sync/node/run_renderer.h); sync/node/tick_source.h takes its ticks from here.
 //
-// All times but `clock`, that of whoever looks on, are the log's.
+// All times are times of the log, except the parameters `clock`, which are times of the machine that renders it.
 #pragma once
 
 #include <cstdint>
@@ -19,46 +19,45 @@ namespace tactus::sync {
 
 struct OfflineOptions {
   std::string log;           // empty: live
-  std::string presented;     // table of what became of each event; empty: none
-  bool as_recorded = false;  // the profiles of the run hold; else only what --degrade names
+  std::string presented;     // table of the outcome of each event; empty: none
+  bool as_recorded = false;  // true: the profiles of the run apply; false: only the profile of --degrade applies
 
-  // does: what becomes of the log, e.g. "draws this log of a run"; output: the option that names the file it goes
-  // to.
+  // does: the use of the log, e.g. "draws this log of a run". output: the option that names the output file.
   void add_to(CLI::App& app, const std::string& does, const std::string& output);
 };
 
 class Offline {
  public:
-  // A file that is written and the option that names it, e.g. {"sound.wav", "--wav"}.
+  // An output file and the option that names it, e.g. {"sound.wav", "--wav"}.
   struct Written {
     std::string path, option;
   };
 
-  // rings_on: so much longer than the log it goes on. Throws std::runtime_error with one sentence when the log
-  // holds no run, or what is written would lie where the log is.
+  // rings_on: time that is rendered after the end of the log. Throws std::runtime_error with one sentence when the log holds
+  // no run, or when an output file would overwrite the log.
   Offline(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
           Nanoseconds rings_on = Nanoseconds(0));
 
-  // What a node needs to take part in the run of the log. `--degrade logged` takes the profiles of the run.
+  // Adapts the options of a node to the run of the log. `--degrade logged` uses the profiles of the run.
   void adapt(NodeOptions& options);
   const LogFeed& feed() const { return feed_; }
   // The next tick of the log.
   HostTime next(Bus& bus);
-  // The next tick is at this time, and not one period after the last.
+  // Sets the time of the next tick, instead of one period after the last.
   void set_next_tick(HostTime at) { next_tick_ = at; }
   HostTime now() const { return now_; }
   bool over() const { return now_ >= end_; }
-  // It is over at this time already, for there is nothing more to do.
+  // Ends the rendering at this time, because there is nothing more to do.
   void end_at(HostTime end) { end_ = end; }
-  // Throws std::runtime_error with one sentence when the ticks come at another rate than the scene asks for.
+  // Throws std::runtime_error with one sentence when the rate of the ticks differs from the rate that the scene requires.
   void expect_rate(double rate_Hz) const;
-  // What became of an event, to the table of those.
+  // Adds the outcome of an event to the table of outcomes.
   void note(const std::string& modality, const presentation_t& report);
 
-  // Once a second a line for people.
+  // A progress line for the user, once a second.
   std::optional<std::string> progress(HostTime clock);
-  // All files get their names; call when the log is over. How long it took and what of the log was damaged, to be
-  // appended to what came of it. Throws std::runtime_error with one sentence when the log is not over.
+  // Renames all files to their final names; call it when the log is over. Returns the time taken and the damage of the log,
+  // to be appended to the summary of the output. Throws std::runtime_error with one sentence when the log is not over.
   std::string finish(double rendered_s, HostTime clock);
 
  private:

@@ -28,7 +28,7 @@ void QualityLadder::add(Nanoseconds used) {
   }
 }
 
-// What the step that was left took, in units of what this one takes.
+// Stores the cost of the abandoned step relative to the cost of the present step.
 void QualityLadder::learn() {
   if (step_ == 0) return;
   const auto better = static_cast<std::size_t>(step_ - 1);

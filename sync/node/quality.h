@@ -1,8 +1,8 @@
-// A quality ladder: a sense that is about to need more time than it has renders with a cheaper step instead,
-// before it misses; and with a better one again when it has long had time to spare. Pure. Realtime-safe: yes.
+// A quality ladder. A renderer whose time budget runs short switches to a cheaper step before it misses a tick, and returns
+// to a better step after it has had time to spare for long. Pure. Realtime-safe: yes.
 //
 //   QualityLadder ladder(4, budget, ticks_of_2_s);
-//   ladder.add(used);            // once a tick, what rendering with ladder.step() took
+//   ladder.add(used);            // once a tick: the time that rendering with ladder.step() took
 //   render_with(ladder.step());  // 0: full quality
 #pragma once
 
@@ -17,25 +17,24 @@ class QualityLadder {
  public:
   static constexpr int kMaxSteps = 8;
   static constexpr std::size_t kWindow = 32;  // design: half a second of pictures
-  // A clear overload, of more than every second tick, is acted on after so many ticks of a step; a beginning one,
-  // of every fourth, after a window. One outlier is neither.
+  // The ladder acts on a clear overload, of more than every second tick, after this number of ticks of a step; on a beginning
+  // overload, of every fourth tick, after a window. One outlier is neither.
   static constexpr std::size_t kLeastTicks = 8;
-  // Shares of the budget. Down: before the budget is missed; up: with room for what the better step is expected to
-  // take more.
+  // Shares of the budget. Down: before the budget is missed. Up: with room for the expected extra cost of the better step.
   static constexpr double kHigh = 0.85, kLow = 0.7;  // design
   // design: two seconds of pictures
   static constexpr int kCalmTicks = 120;
-  // A better step that is not expected to fit, by what it took when it was left, is tried after so many calm times
-  // anyway: the load may have gone while the step was changed.
+  // Number of calm periods after which a better step is tried although its measured cost does not fit: the load may have
+  // ended since.
   static constexpr int kTryAfter = 4;
-  // A better step that is left again within its trial, of so many calm times, doubles the time until the next;
-  // each trial time that it holds halves it again.
+  // Length of the trial of a better step, in calm periods. A step that is left within its trial doubles the time until the
+  // next trial; each trial that it passes halves that time.
   static constexpr int kTrial = 8;
   // 2^10 of 2 s is half an hour.
   static constexpr int kMaxDoublings = 10;
 
-  // steps: 1 .. kMostSteps, what is outside is clamped. budget: what a tick may take. calm_ticks: time to spare
-  // for so many ticks is long.
+  // steps: 1 .. kMaxSteps, clamped. budget: the time that a tick may take. calm_ticks: number of ticks in a row with time to
+  // spare after which a better step is considered.
   QualityLadder(int steps, Nanoseconds budget, int calm_ticks = kCalmTicks);
 
   // Once a tick.
@@ -45,7 +44,7 @@ class QualityLadder {
   int steps() const { return steps_; }
 
  private:
-  // That many quarters of the ticks of the window took no longer.
+  // The duration that this number of quarters of the ticks in the window did not exceed.
   Nanoseconds quartile(std::size_t quarters) const;
   bool overloaded() const;
   void learn();
@@ -56,12 +55,12 @@ class QualityLadder {
   Nanoseconds budget_;
   int calm_ticks_;
   int step_ = 0;
-  std::array<Nanoseconds, kWindow> used_{};  // of the step in use, in a ring
+  std::array<Nanoseconds, kWindow> used_{};  // of the step in use, as a ring
   std::size_t count_ = 0;
   std::array<Nanoseconds, kMaxSteps> left_at_{};  // upper quartile of a step when it was left for a cheaper one
-  std::array<double, kMaxSteps> ratio_{};  // cost of a step to that of the next cheaper one, as learnt then
-  int fits_ = 0, spare_ = 0;  // ticks in a row: the better step should fit; this one has time to spare
-  int on_trial_ = 0;          // ticks of the trial of a better step; 0: none is
+  std::array<double, kMaxSteps> ratio_{};  // measured cost of a step relative to the next cheaper one
+  int fits_ = 0, spare_ = 0;  // ticks in a row: the better step is expected to fit; the present one has time to spare
+  int on_trial_ = 0;          // ticks of the trial of a better step; 0: no trial
   int doublings_ = 0;
 };
 

@@ -16,7 +16,7 @@ std::string remedy(int priority) {
          " in /etc/security/limits.d), or start with --realtime try";
 }
 
-// Locking memory is refused to processes with a small limit; then page faults may cost a tick, which is said.
+// Memory locking is refused to processes with a small limit. A page fault may then cost a tick; the status line reports it.
 bool lock_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }
 
 bool may_lock_all() {
@@ -38,7 +38,7 @@ std::string set_realtime(Realtime choice, int priority) {
                                "): " + remedy(priority));
     return "normal scheduling (SCHED_FIFO refused: " + why + ")";
   }
-  // A limited mlockall(MCL_FUTURE) makes later allocations fail, so it is only tried where it cannot.
+  // A limited mlockall(MCL_FUTURE) makes later allocations fail, so it is only tried without a limit.
   const bool locked = may_lock_all() && lock_memory();
   return "SCHED_FIFO " + std::to_string(priority) + (locked ? ", memory locked" : ", memory not locked");
 }

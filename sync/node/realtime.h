@@ -1,4 +1,4 @@
-// Real-time scheduling of this process, as an explicit choice, and the guard that keeps it from starving the
+// Real-time scheduling of this process, as an explicit choice, and the guard that keeps a real-time loop from starving the
 // machine.
 #pragma once
 
@@ -10,21 +10,21 @@ namespace tactus::sync {
 
 enum class Realtime { kRequire, kTry, kOff };
 
-// SCHED_FIFO at this priority and locked memory, for this thread and those that it starts. Returns one line that
-// says what was obtained. Throws std::runtime_error with the remedy when it is required and refused. priority 0:
-// normal.
+// Sets SCHED_FIFO at this priority and locks memory, for this thread and the threads that it starts. Returns one line with
+// the obtained scheduling. Throws std::runtime_error with the remedy when real-time is required and refused. priority 0:
+// normal scheduling.
 std::string set_realtime(Realtime choice, int priority);
 
-// Puts this thread back to normal scheduling.
+// Returns this thread to normal scheduling.
 void leave_realtime();
 bool is_realtime();
 
-// A FIFO loop that uses more than 80 % of its time for 100 ms must give up its priority. Pure.
+// Detects a FIFO loop that uses more than 80 % of its time for 100 ms and must give up its priority. Pure.
 class OverrunGuard {
  public:
-  // One tick: when it began, when it ended, and when the next may begin. True when the loop must be demoted.
+  // One tick: its begin, its end, and the earliest begin of the next. Returns true when the loop must be demoted.
   bool tick(HostTime begin, HostTime end);
-  // How long it has kept below that without a break.
+  // Time without a break below that load.
   Nanoseconds calm() const { return calm_; }
 
  private:

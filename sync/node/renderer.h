@@ -1,5 +1,5 @@
-// What a modality implements. The renderer host (sync/node/run_renderer.h) owns the loop and calls these functions, all
-// of them from the thread of the loop.
+// The interface that a modality implements. The renderer host (sync/node/run_renderer.h) owns the loop and calls these
+// functions, all from the thread of the loop.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@
 
 namespace tactus::sync {
 
-// What NODE_HEALTH reports of a tick.
+// The status that NODE_HEALTH reports for a tick.
 struct Status {
   std::int8_t state = node_health_t::RUNNING;
   std::string note = "";
-  int quality = 0, qualities = 0;  // step of its quality ladder, 0: full, and the number of steps; 0 of 0: it has none
+  int quality = 0, qualities = 0;  // step of its quality ladder (0: full) and number of steps; 0 of 0: it has no ladder
 };
 
-// What a renderer makes of a scene.
+// The properties of a loaded scene.
 struct Loaded {
   int tool = -1;                  // index in scene_t.tools; -1: none
-  double rate_Hz = 0;             // of its ticks from now on; 0: as before
-  Nanoseconds output_latency{0};  // from the arrival of an event to its output, at the most
+  double rate_Hz = 0;             // of its ticks from now on; 0: unchanged
+  Nanoseconds output_latency{0};  // maximum time from the arrival of an event to its output
   Status status{.state = node_health_t::WAITING};
 };
 
@@ -38,23 +38,23 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  // A scene is complete. Reading that takes long runs in a thread of its own (Opening); step() polls it.
+  // A scene is complete. Slow file reads run in a thread of their own (BackgroundTask); step() polls it.
   virtual Loaded begin_scene(const SceneReceiver& scenes) = 0;
-  // Throws std::invalid_argument with one sentence; then nothing has changed.
+  // Throws std::invalid_argument with one sentence; then no setting has changed.
   virtual void change_setting(const std::string& name, const std::string& value) = 0;
-  // One tick: takes in the messages that arrived, renders, publishes, reports. Nothing: there is nothing to render yet.
+  // One tick: reads the received messages, renders, publishes, reports. nullopt: there is nothing to render yet.
   virtual std::optional<Status> step(HostTime now) = 0;
 
-  // The user has closed its window.
+  // True after the user has closed the window.
   virtual bool closed() { return false; }
-  // The log is over: its files get their names. Returns what came of it, in lines. Throws std::runtime_error with one
-  // sentence when nothing did.
+  // The log is over: renames the output files to their final names. Returns a summary of the output, in lines. Throws
+  // std::runtime_error with one sentence when there is no output.
   virtual std::string finish_log(HostTime /*clock*/) { return ""; }
   // The loop has ended.
   virtual void finish() {}
 };
 
-// The settings of a command line alone. Throws std::runtime_error with one sentence for the first that does not fit.
+// The settings of a command line alone. Throws std::runtime_error with one sentence for the first invalid one.
 template <class Settings>
 Settings settings_of(std::span<const SettingField<Settings>> fields, const std::string& node,
                      const std::vector<std::string>& set) {
@@ -64,8 +64,8 @@ Settings settings_of(std::span<const SettingField<Settings>> fields, const std::
   return settings;
 }
 
-// A renderer with a table of settings (settings.csv). It keeps the order of their sources: the defaults, then the scene,
-// then the command line, then what is asked for over the bus.
+// A renderer with a table of settings (settings.csv). It applies the sources of settings in this order: defaults, scene,
+// command line, requests over the bus.
 template <class Settings>
 class SettingsRenderer : public Renderer {
  public:
@@ -79,7 +79,7 @@ class SettingsRenderer : public Renderer {
     settings_ = own_ = std::move(settings);
     return load(scenes, settings_);
   }
-  // Limits that protect a person stay within those of scene and command line.
+  // A request over the bus cannot exceed the safety limits of scene and command line.
   void change_setting(const std::string& name, const std::string& value) final {
     Settings changed = settings_;
     change_live(changed, own_, fields_, name, value);
@@ -88,12 +88,12 @@ class SettingsRenderer : public Renderer {
   }
 
  protected:
-  // Throws std::runtime_error with one sentence when a setting of the command line does not fit.
+  // Throws std::runtime_error with one sentence when a setting of the command line is invalid.
   SettingsRenderer(RendererHost& host, Fields fields)
       : host_(host), fields_(fields), settings_(settings_of(fields, host.descriptor().name, host.options().set)),
         own_(settings_) {}
   virtual Loaded load(const SceneReceiver& scenes, const Settings& settings) = 0;
-  // The setting `name` changes. Throws std::invalid_argument with one sentence; then nothing has changed.
+  // Applies the changed setting `name`. Throws std::invalid_argument with one sentence; then no setting has changed.
   virtual void change(const Settings& /*settings*/, const std::string& /*name*/) {}
 
   RendererHost& host() const { return host_; }

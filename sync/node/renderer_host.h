@@ -1,4 +1,4 @@
-// What a renderer is given: its node, its endpoint on the bus, and whether it renders what happens or a log.
+// The services of the host for a renderer: its node, its endpoint on the bus, and its clock, live or from a log.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class RendererHost {
 
   Node& node() { return node_; }
   Bus& bus() { return node_.bus(); }
-  // Its input streams, its delay, and what a profile does to both.
+  // The input streams of the modality, its delay, and the effect of the profile on both.
   ModalityEndpoint& sense() { return sense_; }
   const NodeDescriptor& descriptor() const { return node_.descriptor(); }
   const NodeOptions& options() const { return node_.options(); }
@@ -26,12 +26,12 @@ class RendererHost {
   // The time within a tick. In a log a tick takes no time.
   HostTime clock() const { return ticks_.now(); }
 
-  // Reports what became of an event. rendered: it counts as rendered in NODE_HEALTH.
+  // Reports the outcome of an event. rendered: it counts as rendered in NODE_HEALTH.
   void report(const presentation_t& report, bool rendered = true) {
     sense_.report(report);
     if (rendered) node_.count_rendered(1);
   }
-  // A sentence for the user, behind the name of the process.
+  // Prints a sentence for the user, after the name of the process.
   void say(const std::string& sentence) const { print(options().name + ": " + sentence); }
   void print(const std::string& line) const;
 

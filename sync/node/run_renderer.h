@@ -1,4 +1,4 @@
-// The renderer host: everything that processes of all modalities have in common. It owns options, bus, scene reception,
+// The renderer host: the parts that the processes of all modalities have in common. It owns options, bus, scene reception,
 // live settings, degradation, playout, health, real-time priority, and the one loop, live and from a log.
 //
 // A node's run.cpp is a descriptor, a factory and a call:
@@ -20,21 +20,22 @@ class App;
 
 namespace tactus::sync {
 
-// Makes the renderer of a node in three steps: options, what is opened before the bus, the renderer itself.
+// Creates the renderer of a node in three steps: options, resources that are opened before the bus, the renderer itself.
 class RendererFactory {
  public:
   virtual ~RendererFactory() = default;
 
-  // Options of this node, beside those that every node has.
+  // Adds the options of this node, beside those that every node has.
   virtual void add_options(CLI::App&) {}
-  // The options are parsed, and the bus is not joined yet. Checks them; opens what can fail. Returns the log that is
-  // rendered in place of the bus, which this factory owns; null: none. Throws std::runtime_error with one sentence.
+  // Called after the options are parsed and before the bus is joined. Checks the options and opens the resources that can
+  // fail. Returns the log that is rendered instead of the bus, owned by this factory; null: live. Throws std::runtime_error
+  // with one sentence.
   virtual Offline* prepare(const NodeOptions& options) = 0;
   // Subscribes to the inputs. host: outlives the renderer.
   virtual std::unique_ptr<Renderer> make(RendererHost& host) = 0;
 };
 
-// Of a renderer without options of its own, which renders no log.
+// For a renderer without options of its own that renders no log.
 template <class Made>
 class PlainFactory : public RendererFactory {
   Offline* prepare(const NodeOptions&) override { return nullptr; }

@@ -1,5 +1,5 @@
-// What is asked of a node's settings while it runs (SETTING), each change once, and the replies. Pure: the node
-// hands messages in and sends the replies.
+// Requests to change the settings of a running node (SETTING): each is carried out once and answered. Pure: the node passes
+// messages in and publishes the replies.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,17 @@ namespace tactus::sync {
 
 class SettingChanges {
  public:
-  // Replies to so many changes are remembered, for their repetitions.
+  // Number of replies that are stored, for repeated requests.
   static constexpr std::size_t kRemembered = 64;
 
-  // node: its name, as in its health. run_id: of the cluster run; changes of others are not heeded.
+  // node: its name, as in its health. run_id: of the cluster run; requests of other runs are ignored.
   SettingChanges(std::string node, std::int64_t run_id) : node_(std::move(node)), run_id_(run_id) {}
 
-  // Changes the setting, or throws std::invalid_argument with one sentence: then it must not have changed
-  // anything.
+  // Changes the setting, or throws std::invalid_argument with one sentence; after an exception no setting may have changed.
   using Apply = std::function<void(const std::string& name, const std::string& value)>;
-  // Takes a message: of this node and run it is carried out once, and answered each time.
+  // Processes a request for this node and run: carries it out once, and answers each repetition.
   void take(const setting_change_t& change, const Apply& apply);
-  // What is to be sent now; valid until the next take. Taking them empties the list.
+  // The replies to publish now; valid until the next take. The call empties the list.
   std::vector<setting_reply_t> replies() { return std::exchange(replies_, {}); }
 
  private:

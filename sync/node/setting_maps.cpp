@@ -25,7 +25,7 @@ tag_request_t SettingMaps::request() const {
   for (const Map& map : maps_) sources.insert(map.def.tag);
   tag_request_t m{};
   m.header.sim_time_ns = -1;
-  // More than fit are asked for all together.
+  // More patterns than fit a message become one request for all variables.
   m.patterns = sources.size() > kMaxPatterns ? std::vector<std::string>{"*"}
                                               : std::vector<std::string>(sources.begin(), sources.end());
   m.pattern_count = static_cast<std::int32_t>(m.patterns.size());

@@ -1,5 +1,5 @@
-// Settings of a process that tagged variables drive (<tactus:map>): the grip that makes the picture slower, the
-// speed that makes the sound louder. Pure.
+// Settings of a process that tagged variables drive (<tactus:map>), for instance the grip force that dims the picture or the
+// speed that raises the volume. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@
 
 namespace tactus::sync {
 
-// The value of the setting for one of the variable.
+// The value of the setting for a value of the variable.
 double mapped(const map_def_t& map, double value);
 
 class SettingMaps {
  public:
-  // A setting is changed at most so often: settings are changed by name and as text.
+  // Minimum interval between changes of a setting: settings are changed by name and as text.
   static constexpr Nanoseconds kChangeEvery{10'000'000};
   static constexpr std::size_t kMax = 32;
   static constexpr std::size_t kMaxPatterns = 16;  // of a tag_request_t
 
-  // node: the process whose settings are meant.
+  // node: the process that owns the settings.
   explicit SettingMaps(std::string node) : node_(std::move(node)) {}
 
-  // Those of a scene that drive settings of this process, at most kMost.
+  // Uses the maps of a scene that drive settings of this process, at most kMax.
   void set(const std::vector<map_def_t>& maps);
   bool any() const { return !maps_.empty(); }
-  // What is to be asked for, once a second.
+  // The request to publish once a second.
   tag_request_t request() const;
   void push(const tag_list_t& m) { table_.push(m); }
   void push(const tag_values_t& m);
@@ -40,10 +40,10 @@ class SettingMaps {
   struct Change {
     std::string name, value;
   };
-  // Settings whose variable has another value than when they were handed out last. A variable that is silent
-  // leaves its setting where it is.
+  // The settings whose variable has changed since they were returned last. A variable without new values leaves its setting
+  // unchanged.
   std::vector<Change> take(HostTime now);
-  // The setting cannot be changed: its maps rest until the next scene.
+  // The setting cannot be changed: its maps are disabled until the next scene.
   void give_up(const std::string& name);
 
  private:
@@ -52,7 +52,7 @@ class SettingMaps {
     std::string setting;
     bool fresh = false;
     double value = 0;
-    std::string said;  // handed out last
+    std::string said;  // returned last
   };
   std::string node_;
   std::vector<Map> maps_;

@@ -12,7 +12,7 @@ bool matches(std::string_view pattern, std::string_view text) {
     } else if (p < pattern.size() && pattern[p] == text[t]) {
       ++p, ++t;
     } else if (star != std::string_view::npos) {
-      p = star + 1, t = ++after_star;  // the star takes one more
+      p = star + 1, t = ++after_star;  // the star matches one more character
     } else {
       return false;
     }

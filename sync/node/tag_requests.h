@@ -1,4 +1,4 @@
-// Who asks for which tagged variables (TAG_REQUEST). Pure.
+// The processes that request tagged variables, and the patterns that they request (TAG_REQUEST). Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace tactus::sync {
 
-// '*' in the pattern stands for any characters, also none; every other for itself.
+// '*' in the pattern matches any number of characters, also none; every other character matches itself.
 bool matches(std::string_view pattern, std::string_view text);
 
 class TagRequests {
  public:
   static constexpr Nanoseconds kHolds{3'000'000'000};
-  // Design: a recorder, some viewers and maps. Beyond these a new one is not heeded until one is over.
+  // Design: a recorder, some viewers and maps. Requests beyond this number are ignored until another one expires.
   static constexpr std::size_t kMax = 64;
 
-  // Requests of another run are not heeded.
+  // Requests of another run are ignored.
   explicit TagRequests(std::int64_t run_id) : run_id_(run_id) {}
 
-  // True when something else is asked for than before.
+  // Returns true when the set of requested variables may have changed.
   bool take(const tag_request_t& request, HostTime now);
-  // Ends those that were not repeated. True when something else is asked for than before.
+  // Removes the requests that were not repeated in time. Returns true when the set of requested variables may have changed.
   bool expire(HostTime now);
   bool any() const { return !requests_.empty(); }
   // name: "node.tag".

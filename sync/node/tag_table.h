@@ -1,5 +1,5 @@
-// What TAG_LIST and TAG_VALUES tell together: for who shows, records or follows tagged variables. Pure; bounded
-// whatever arrives.
+// Joins TAG_LIST and TAG_VALUES into named values, for programs that show, record or follow tagged variables. Pure; bounded
+// for any input.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace tactus::sync {
 
 class TagTable {
  public:
-  // Lists of so many processes, counting those of which there is a newer one; the oldest of all is forgotten.
+  // Maximum number of stored lists, including outdated ones; the oldest is removed first.
   static constexpr std::size_t kMaxLists = 64;
 
   struct List {
     std::string node;
-    std::vector<tag_def_t> tags;  // by number; with an empty name: not known yet
-    std::int64_t heard = 0;       // grows with each list that is heard
+    std::vector<tag_def_t> tags;  // by number; an empty name: not received yet
+    std::int64_t heard = 0;       // increases with each received list
   };
 
   void push(const tag_list_t& m);
 
-  // take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each value that is one, row by
-  // row. time_ns: CLOCK_MONOTONIC of the sender. What no list tells is counted.
+  // Calls take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each present value, row by row.
+  // time_ns: CLOCK_MONOTONIC of the sender. Values without a list are counted.
   template <class Take>
   void read(const tag_values_t& m, Take&& take) {
     const auto known = lists_.find({m.header.incarnation, m.list});
@@ -45,7 +45,7 @@ class TagTable {
 
   // By the incarnation of the process and the number of the list.
   const std::map<std::pair<std::int64_t, std::int64_t>, List>& lists() const { return lists_; }
-  // Values whose list has not been heard.
+  // Number of values whose list has not been received.
   std::int64_t untold() const { return untold_; }
 
  private:

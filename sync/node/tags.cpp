@@ -11,7 +11,7 @@
 namespace tactus::sync {
 namespace {
 
-// So that a row with its columns fits a datagram: 12 bytes a column, and 140 for the rest.
+// A row with this number of columns fits a datagram: 12 bytes a column, and 140 for the rest.
 constexpr std::size_t kMaxColumns = 100;
 constexpr std::size_t kMaxRows = 128;
 
@@ -78,7 +78,7 @@ void Tags::page_list() {
   next_page_ = pages_.size();
 }
 
-// Values that wait are lost by this; it happens when somebody comes or goes.
+// Discards pending values; it runs only when a requester appears or disappears.
 void Tags::arrange() {
   if (list_ == 0) page_list();
   blocks_.clear();
@@ -109,7 +109,7 @@ void Tags::take(const tag_request_t& request, HostTime now) {
   if (!requests_.take(request, now)) return;
   arrange();
   if (first) list_due_ = now;
-  next_page_ = 0;  // who is new must know the names
+  next_page_ = 0;  // a new requester needs the names
 }
 
 void Tags::append_row(Block& block, HostTime now) {

@@ -1,10 +1,10 @@
-// Variables of a process that can be recorded while it runs. One line tags one:
+// Tagged variables of a process, which can be recorded while it runs. One line tags one:
 //
 //   node.tags().add("depth", "m", &depth_m);                              // each tick
 //   node.tags().add("voices", "1", [&] { return double(bank.size()); }, 10);  // ten times a second
 //
-// With nobody asking (TAG_REQUEST) nothing is taken, kept or sent. Pure: the node hands messages in and sends what
-// there is.
+// Without a request (TAG_REQUEST) no value is sampled, stored or sent. Pure: the node passes messages in and publishes the
+// pending messages.
 #pragma once
 
 #include <concepts>
@@ -25,15 +25,15 @@ namespace tactus::sync {
 class Tags {
  public:
   static constexpr std::size_t kMax = 1024;
-  // What is taken is sent at the latest after so long (design: a viewer's picture at 20 Hz).
+  // Longest time from sampling to sending (design: a viewer's picture at 20 Hz).
   static constexpr Nanoseconds kSendEvery{50'000'000};
   static constexpr Nanoseconds kListEvery{1'000'000'000};
   using Getter = std::function<double()>;
 
   Tags(std::string node, std::int64_t run_id) : node_(std::move(node)), requests_(run_id) {}
 
-  // rate_Hz 0: each tick. The getter is called in the node's loop; not finite: no value now. Throws
-  // std::invalid_argument with one sentence when the name is taken or is none, or there are too many.
+  // rate_Hz 0: each tick. The getter is called in the node's loop; a result that is not finite means no value. Throws
+  // std::invalid_argument with one sentence when the name is in use or invalid, or when there are too many tags.
   void add(std::string name, std::string unit, Getter getter, double rate_Hz = 0);
   template <class Number>
   requires std::integral<Number> || std::floating_point<Number>
@@ -42,12 +42,12 @@ class Tags {
         std::move(name), std::move(unit), [variable] { return static_cast<double>(*variable); }, rate_Hz);
   }
 
-  // Somebody wants values: only then is it worth to compute what is only tagged.
+  // True while a process requests values. Variables that exist only to be tagged need to be computed only then.
   bool wanted() const { return !blocks_.empty(); }
   void take(const tag_request_t& request, HostTime now);
-  // Once a tick: takes what is due. Allocates nothing once a block has been filled.
+  // Once a tick: samples the due variables. Allocates nothing once a block has been filled.
   void step(HostTime now);
-  // What is to be sent now: null when there is no more. Valid until the next call.
+  // The next message to send now; null: none is left. Valid until the next call.
   tag_list_t* next_list();
   tag_values_t* next_values();
 
@@ -56,11 +56,11 @@ class Tags {
     tag_def_t def;
     Getter getter;
   };
-  // Tags of one rate whose rows go together.
+  // Tags of one rate whose rows are sent together.
   struct Block {
     double rate_Hz;
     HostTime next{};   // when the next row is due
-    HostTime begun{};  // when the first row was taken
+    HostTime begun{};  // when the first row was sampled
     std::size_t most_rows;
     bool full = false;
     tag_values_t message{};
@@ -71,13 +71,13 @@ class Tags {
 
   std::string node_;
   std::vector<Tag> tags_;
-  std::int64_t list_ = 0;  // 0: has to be computed
+  std::int64_t list_ = 0;  // 0: must be recomputed
   std::vector<tag_list_t> pages_;
   std::size_t next_page_ = 0;  // pages_.size(): all sent
   HostTime list_due_{};
   TagRequests requests_;
   std::vector<Block> blocks_;
-  std::size_t sent_ = 0;  // block whose message was handed out last, plus 1
+  std::size_t sent_ = 0;  // the block whose message was returned last, plus 1
 };
 
 }  // namespace tactus::sync

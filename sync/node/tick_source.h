@@ -1,4 +1,4 @@
-// When the ticks of a renderer are: on the clock of the machine, or on the clock of a log. The loop is the same.
+// The source of a renderer's ticks: the clock of the machine, or the clock of a log. The loop is the same.
 #pragma once
 
 #include "sync/node/node.h"
@@ -8,13 +8,13 @@ namespace tactus::sync {
 
 class TickSource {
  public:
-  // log: rendered in place of the bus; null: none. Both outlive this.
+  // log: rendered instead of the bus; null: live. Both outlive this object.
   TickSource(Node& node, Offline* log) : node_(node), log_(log) {}
 
   bool live() const { return log_ == nullptr; }
   // The log is over.
   bool over() const { return log_ && log_->over(); }
-  // The next tick: its messages are in the inboxes. Live: sleeps until then.
+  // The time of the next tick; its messages are then in the inboxes. Live: sleeps until that time.
   HostTime next() { return log_ ? log_->next(node_.bus()) : node_.wait(); }
   // The time within a tick. In a log a tick takes no time.
   HostTime now() const { return log_ ? log_->now() : host_now(); }

@@ -34,7 +34,7 @@ class Quantile : public Aligner {
   Nanoseconds delay() const override { return delay_; }
 
  private:
-  // The target of WebRTC's NetEq (delay_manager.h: quantile 0.95). 128 events: six of them lie above.
+  // The target of WebRTC's NetEq (delay_manager.h: quantile 0.95). Of 128 events, six lie above it.
   static constexpr double kShare = 0.95;
   static constexpr std::size_t kEvents = 128;
   std::array<Nanoseconds, kEvents> last_{};
@@ -43,9 +43,9 @@ class Quantile : public Aligner {
   Nanoseconds delay_{0};
 };
 
-// Mean and four mean deviations (Ramjee, Kurose, Towsley, Schulzrinne 1994, algorithm 1), each an exponential
-// average with the gain 1/16 of RFC 3550, section 6.4.1: contacts come ten times a second, not every 20 ms as
-// speech does.
+// Mean plus four mean deviations (Ramjee, Kurose, Towsley, Schulzrinne 1994, algorithm 1), each an exponential average with
+// the gain 1/16 of RFC 3550, section 6.4.1: contacts happen about ten times a second, unlike speech packets, which arrive
+// every 20 ms.
 class MovingAverage : public Aligner {
  public:
   void add(Nanoseconds needed) override {
@@ -64,9 +64,9 @@ class MovingAverage : public Aligner {
   bool begun_ = false;
 };
 
-// Virtual-time rendering (after Ishibashi and Tasaka 1995): the target slides later by what an event was late, at
-// most a step at a time, and earlier by a step when a whole run of events had more room than that. Steps and run
-// length are ours.
+// Virtual-time rendering (after Ishibashi and Tasaka 1995): the target moves later by the lateness of an event, at most one
+// step at a time, and earlier by one step when all events of a run had more room than that. The step sizes and the run length
+// are design.
 class VirtualTime : public Aligner {
  public:
   void add(Nanoseconds needed) override {
@@ -90,8 +90,8 @@ class VirtualTime : public Aligner {
  private:
   static constexpr Nanoseconds kMargin{2'000'000};       // design: jitter of a paced loop without priority
   static constexpr Nanoseconds kStepLater{10'000'000};   // design: followed at a slew of 5 % within 0.2 s
-  static constexpr Nanoseconds kStepEarlier{2'000'000};  // design: to fall back is not urgent
-  static constexpr int kRun = 32;                        // design: so many events in time before it falls back
+  static constexpr Nanoseconds kStepEarlier{2'000'000};  // design: returning to a smaller delay is not urgent
+  static constexpr int kRun = 32;                        // design: this number of events in time before it moves earlier
   Nanoseconds target_{0}, room_{Nanoseconds::max()};
   int run_ = 0;
   bool begun_ = false;

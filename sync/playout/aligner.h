@@ -1,6 +1,5 @@
-// How long a sense needs, from an event to the earliest instant at which it could be presented, estimated from how
-// long it needed for the events before: the delay under which (nearly) all events of that sense come in time.
-// Pure.
+// Estimates the delay that a modality needs, from an event to its earliest possible presentation, so that (nearly) all events
+// arrive in time. The estimate uses the delays that earlier events needed. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@ enum class AlignerKind : std::uint8_t { kFixed, kQuantile, kMovingAverage, kVirt
 class Aligner {
  public:
   virtual ~Aligner() = default;
-  // An event needed so long.
+  // Adds the delay that an event needed.
   virtual void add(Nanoseconds needed) = 0;
   // The delay for the next event; 0 before the first one.
   virtual Nanoseconds delay() const = 0;
@@ -25,8 +24,7 @@ class Aligner {
 // fixed: the delay of kFixed.
 std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed);
 
-// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other
-// word.
+// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other word.
 AlignerKind aligner_named(const std::string& word);
 const char* name_of(AlignerKind kind);
 

@@ -1,4 +1,5 @@
-// One trace of what events needed, through one aligner: what a common delay chosen by it would have given. Pure.
+// Compares aligners: applies one aligner to a trace of needed delays and computes the asynchronies of the common delay that
+// it chooses. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +11,20 @@
 
 namespace tactus::sync {
 
-// What each sense needed for one event.
+// The delay that each modality needed for one event.
 using TraceEvent = std::map<std::string, Nanoseconds>;
 
 struct AlignerResult {
-  std::int64_t events = 0;        // after those that it learned from
-  Nanoseconds asynchrony_p50{0};  // of the last sense to the first
+  std::int64_t events = 0;        // without the learning events
+  Nanoseconds asynchrony_p50{0};  // from the first to the last modality
   Nanoseconds asynchrony_p95{0};
-  Nanoseconds added_mean{0};  // presented later than it could have been
+  Nanoseconds added_mean{0};  // presentation minus earliest possible presentation
   Nanoseconds delay_last{0};  // in force at the end
-  double late_share = 0;      // of all presentations: needed more than the delay
+  double late_share = 0;      // share of all presentations that needed more than the delay
 };
 
-// Every sense has an aligner of its own, and all wait for the slowest. fixed: the delay of kFixed. learn: so many
-// events are not counted.
+// Every modality has its own aligner, and all wait for the slowest. fixed: the delay of kFixed. learn: number of leading
+// events that are not counted.
 AlignerResult through_aligner(const std::vector<TraceEvent>& trace, AlignerKind kind, Nanoseconds fixed,
                               std::size_t learn = 32);
 

@@ -11,7 +11,7 @@
 namespace tactus::sync {
 namespace {
 
-// The delays come from what the senses were heard to need.
+// True when the delays come from the measured needs of the modalities.
 bool estimated(const PlayoutPlan& plan) {
   return (plan.policy == Policy::kAligned || plan.policy == Policy::kLocalHapticFirst) &&
          plan.aligner != AlignerKind::kFixed;
@@ -36,7 +36,7 @@ bool PlayoutCoordinator::take(const playout_request_t& m) {
   try {
     plan.check();
   } catch (const std::invalid_argument&) {
-    return false;  // who asks has checked it: this one is forged
+    return false;  // the requesting program has checked it, so this request is forged
   }
   put_in_force(m.generation, std::move(plan));
   return true;
@@ -46,7 +46,7 @@ void PlayoutCoordinator::take(const playout_t& m, HostTime now) {
   if (m.header.clock == own_clock_) return;
   if (m.header.clock < own_clock_) heard_ = now;
   if (m.generation > generation_) put_in_force(m.generation, plan_of(m));
-  // Of several pages the one with the asynchronies may have come later.
+  // Of several pages, the one with the asynchronies may arrive later.
   if (m.generation == generation_ && m.header.clock < own_clock_ && plan_.policy == Policy::kExperiment)
     plan_.soa.merge(plan_of(m).soa);
 }
@@ -64,10 +64,10 @@ std::optional<playout_t> PlayoutCoordinator::due(HostTime now) {
   playout_t m{};
   write_plan(m, generation_, plan_);
   const auto needed = needs_.all();
-  // Before anything is known of any sense, each keeps its own delay.
+  // Before any need is known, each modality keeps its own delay.
   const bool known =
       std::any_of(needed.begin(), needed.end(), [&](const auto& n) { return needs_.needed(n.first).has_value(); });
-  // The turns of a loop whose rate changed would begin elsewhere: only a real change is followed.
+  // A new rate would shift the phase of the loop: small changes are ignored.
   const double rate_Hz = lockstep_rate_Hz(plan_, needed);
   if (rate_Hz == 0 || std::abs(rate_Hz - lockstep_Hz_) > kLockstepSlack * lockstep_Hz_) lockstep_Hz_ = rate_Hz;
   m.lockstep_Hz = lockstep_Hz_;

@@ -1,5 +1,5 @@
-// Decides when each sense presents, and says so: the heart of PLAYOUT. Of several hosts' sync_nodes the one with
-// the lowest clock speaks; the others listen and know what to say should it fall silent. Pure.
+// Chooses the presentation delay of each modality and publishes it as PLAYOUT. Of the sync_nodes on several hosts, the one
+// with the lowest clock publishes; the others store its plan, to continue should it stop publishing. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace tactus::sync {
 class PlayoutCoordinator {
  public:
   static constexpr Nanoseconds kPeriod{100'000'000};
-  // Who was not heard for so long speaks no more.
+  // A coordinator that has not published for this time counts as stopped.
   static constexpr Nanoseconds kSilent{1'000'000'000};
-  // A delay stays while what is needed falls by less: a small constant delay is better than jitter.
+  // A delay stays while the need falls by less than this: a small constant delay is better than jitter.
   static constexpr Nanoseconds kSlack{3'000'000};
 
   static constexpr double kLockstepSlack = 0.15;  // design: three times the slew of a delay
@@ -26,13 +26,13 @@ class PlayoutCoordinator {
   // own_clock: header_t.clock of this process.
   PlayoutCoordinator(std::int64_t own_clock, PlayoutPlan plan);
 
-  // Somebody asks for another plan. False: it is older than what is in force, or no plan.
+  // A request for another plan. Returns false when it is older than the plan in force, or invalid.
   bool take(const playout_request_t& m);
-  // What another sync_node says; its own is ignored.
+  // A message of another sync_node; its own messages are ignored.
   void take(const playout_t& m, HostTime now);
   LatencyDemand& needs() { return needs_; }
 
-  // What to publish now, ten times a second; nothing while another speaks.
+  // The message to publish now, ten times a second; nullopt while another coordinator publishes.
   std::optional<playout_t> due(HostTime now);
   const PlayoutPlan& plan() const { return plan_; }
 
@@ -46,7 +46,7 @@ class PlayoutCoordinator {
   LatencyDemand needs_;
   std::map<std::string, Nanoseconds> said_;
   double lockstep_Hz_ = 0;
-  std::optional<HostTime> heard_;  // of a lower clock
+  std::optional<HostTime> heard_;  // from a lower clock
   HostTime next_{};
 };
 

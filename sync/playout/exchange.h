@@ -1,5 +1,5 @@
-// A request for a policy as a message, and the last one kept in a file: a coordinator that was killed comes back
-// with what somebody asked for.
+// Sends a request for a policy as a message, and stores the last request in a file: a restarted coordinator continues with
+// it.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace tactus::sync {
 
 playout_request_t request_for(const PlayoutPlan& plan, std::int64_t generation);
 
-// A plan in a playout_request_t, or in the playout_t that answers it; asynchronies are in the entries.
+// Writes a plan into a playout_request_t, or into the playout_t that answers it; asynchronies are in the entries.
 template <class Message>
 void write_plan(Message& m, std::int64_t generation, const PlayoutPlan& plan) {
   m.header.sim_time_ns = -1;
@@ -25,14 +25,14 @@ void write_plan(Message& m, std::int64_t generation, const PlayoutPlan& plan) {
   m.base_ns = plan.base.count();
   m.budget_ns = plan.budget.count();
 }
-// A PLAYOUT in as many messages as its senses need; a sense looks for itself in each. Those with an asynchrony come first, so
-// that the first page holds the whole plan.
+// Splits a PLAYOUT message into as many pages as its modalities need; a node searches each page for its own modality. Entries
+// with an asynchrony come first, so that the first page holds the whole plan.
 std::vector<playout_t> pages_of(const playout_t& whole);
-// Puts a page to those before it; a sense that is in both is as the page says. What is of a newer generation
-// begins anew, of an older one is left out.
+// Adds a page to the previous ones; its entries replace those of the same modalities. A page of a newer generation replaces
+// all entries; a page of an older one is ignored.
 void add_page(playout_t& whole, const playout_t& page);
 
-// Both are within range by lcmtypes/valid.h.
+// Both message types are range-checked by lcmtypes/valid.h.
 template <class Message>
 PlayoutPlan plan_of(const Message& m) {
   PlayoutPlan plan;
@@ -46,7 +46,7 @@ PlayoutPlan plan_of(const Message& m) {
 }
 
 void keep_request(const std::filesystem::path& folder, const playout_request_t& request);
-// None when there is none, it is damaged, or it is of another run.
+// nullopt when there is no file, or when it is damaged or belongs to another run.
 std::optional<playout_request_t> kept_request(const std::filesystem::path& folder, std::int64_t run_id);
 
 }  // namespace tactus::sync

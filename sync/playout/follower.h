@@ -1,4 +1,4 @@
-// The presentation delay of one sense as it follows what sync_node asks for: slewed, never stepped. Pure.
+// The presentation delay of one modality, which follows the delay that sync_node publishes: slewed, never stepped. Pure.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,24 @@ namespace tactus::sync {
 
 class PlayoutFollower {
  public:
-  // A delay changes by at most so much of the time that passes. design: a rhythm is stretched by no more than 5 %
+  // Maximum change of the delay as a share of elapsed time. design: a rhythm is stretched by at most 5 %
   static constexpr double kSlew = 0.05;
 
   explicit PlayoutFollower(std::string modality) : modality_(std::move(modality)) {}
 
-  // Until somebody says otherwise.
+  // The delay to use while no PLAYOUT message sets one.
   void set_own(Nanoseconds delay) {
     own_ = delay;
     if (!told_) delay_ = delay;
   }
-  // What concerns this sense; other senses' delays are ignored.
+  // Takes the entry of this modality; other entries are ignored.
   void take(const playout_t& m);
   // Once a tick. Returns the delay in force.
   Nanoseconds step(HostTime now);
   Nanoseconds delay() const { return delay_; }
-  // The policy is ASAP: the delay is 0, and what comes too late for it is meant to.
+  // True under the policy ASAP: the delay is 0, and a later presentation is intended.
   bool as_soon_as_possible() const { return policy_ == playout_t::ASAP && told_; }
-  // Rate of a lock-step with the other senses, Hz; 0: none.
+  // Rate of the lock-step with the other modalities, Hz; 0: none.
   double lockstep_Hz() const { return lockstep_Hz_; }
 
  private:

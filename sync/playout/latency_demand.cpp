@@ -13,7 +13,7 @@ void LatencyDemand::set_plan(const PlayoutPlan& plan) {
   }
 }
 
-// In a serial loop everyone waits for everyone, however long.
+// In a serial loop every modality waits for the one before, without a limit.
 bool LatencyDemand::counts(Nanoseconds needed) const {
   return needed <= plan_.budget || plan_.policy == Policy::kItouch2005;
 }

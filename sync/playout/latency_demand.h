@@ -1,8 +1,8 @@
-// What each sense needs from an event to its earliest possible presentation, as heard so far. Pure.
+// The latency that each modality needs from an event to its earliest possible presentation, as reported so far. Pure.
 //
-// A sense is asked how late it could have been with nothing degraded and no playout delay
-// (presentation_t.ready_ns): so no degradation moves a delay. What comes after a stall is far beyond the budget
-// and says nothing of the next event; a sense that is beyond it most of the time is left out.
+// A modality reports the earliest possible presentation without degradation and playout delay (presentation_t.ready_ns), so
+// no degradation changes a delay. A need after a stall is far beyond the budget and has no relation to the next event; a
+// modality that is beyond the budget most of the time is left out.
 #pragma once
 
 #include <deque>
@@ -20,14 +20,14 @@ class LatencyDemand {
  public:
   explicit LatencyDemand(const PlayoutPlan& plan) { set_plan(plan); }
 
-  // The last events are estimated anew.
+  // Repeats the estimate over the stored events with the new plan.
   void set_plan(const PlayoutPlan& plan);
-  // A sense is there, whether it has presented anything or not. slow: no other waits for it.
+  // Registers a running modality, whether or not it has presented an event. slow: no other modality waits for it.
   void know(const std::string& modality, bool slow = false);
   void add(const std::string& modality, Nanoseconds needed);
-  // By the aligner; more than the budget when most lately were; none before the first event.
+  // The aligner's estimate; more than the budget when most recent needs exceeded it; nullopt before the first event.
   std::optional<Nanoseconds> needed(const std::string& modality) const;
-  // Of all senses that are there, for playout_delays: 0 for those that have presented nothing yet.
+  // Of all registered modalities, for playout_delays: 0 for those that have presented no event yet.
   std::map<std::string, Nanoseconds> all() const;
   const std::set<std::string>& slow() const { return slow_; }
 

@@ -1,4 +1,5 @@
-// The common loop of serial senses: turns at fixed instants of the world, the same in every process. Pure.
+// The common loop of serial modalities: iterations begin at fixed instants of simulated time, the same in every process.
+// Pure.
 #pragma once
 
 #include "sync/time/time.h"
@@ -9,9 +10,9 @@ struct Lockstep {
   TimeMap map;
   double rate_Hz = 0;  // > 0
 
-  // The turn that a host time lies in began then.
+  // Start of the iteration that contains the host time t.
   HostTime begin_of_turn(HostTime t) const { return map.to_host(turn(map.to_sim(t), false)); }
-  // The first turn that begins at a host time or after it.
+  // Start of the first iteration at or after the host time t.
   HostTime next_turn(HostTime t) const { return map.to_host(turn(map.to_sim(t), true)); }
 
  private:

@@ -1,5 +1,4 @@
-// The policy of presentation on a command line: of sync_node and of the program that changes it while the cluster
-// runs.
+// Command-line options of the playout policy: of sync_node, and of the program that changes the policy of a running cluster.
 #pragma once
 
 #include <string>
@@ -15,7 +14,7 @@ namespace tactus::sync {
 struct PlayoutOptions {
   std::string policy, aligner, base, budget, soa;  // empty: not given
 
-  // named: the policy is an option, --policy; else it is the program's first word.
+  // named: the policy is an option, --policy; otherwise it is the program's first argument.
   void add_to(CLI::App& app, bool named);
   // An asynchrony without a policy means experiment. Throws std::invalid_argument with one sentence.
   PlayoutPlan plan() const;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<const char*, 5> kNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
 constexpr double kLongest_s = 60;
-// The order of the senses in the loop of I-Touch (Pocheville 2005); what it did not have comes after them.
+// The order of the modalities in the loop of I-Touch (Pocheville 2005); modalities that I-Touch did not have follow.
 constexpr std::array<const char*, 3> kSerial{"haptic", "audio", "visual"};
 
 std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& needed) {
@@ -27,7 +27,7 @@ std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& 
   return order;
 }
 
-// What the one needs that takes longest of those that are waited for.
+// The largest need of the modalities that the others wait for.
 Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed,
                          const std::set<std::string>& slow) {
   if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
@@ -76,7 +76,7 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
     const double s = parse_quantity(part.substr(equals + 1), "s");
     if (std::abs(s) > kLongest_s)
       throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
-    // 50 is meant as milliseconds more often than as what it would be.
+    // A number without a unit is refused: 50 would be read as seconds, but usually means milliseconds.
     if (s != 0 && std::isdigit(static_cast<unsigned char>(part.back())))
       throw std::invalid_argument("the asynchrony \"" + part + "\" has no unit; write it as " + part + "ms or " + part + "s");
     soa[part.substr(0, equals)] = from_seconds(s);

@@ -1,10 +1,11 @@
-// What becomes of an event that could not be presented in time: one table, a row per sense.
+// The treatment of events that could not be presented in time: a table with one row per modality.
 //
 //   lateness            <= tolerance     <= drop_after                          beyond
-//   play with fade      as it should be  weaker, to nothing at drop_after       dropped
-//   drop                as it should be  as it should be, called late           dropped
-//   show newest         as it should be  with what is newest then, called late  dropped
-//   always apply        as it should be  applied, called late                   applied, called late; nobody waits for it
+//   play with fade      unchanged        weaker, to nothing at drop_after       dropped
+//   drop                unchanged        unchanged, reported late               dropped
+//   show newest         unchanged        with the newest state, reported late   dropped
+//   always apply        unchanged        applied, reported late                 applied, reported late; no modality waits for
+//   it
 //
 // Every outcome is reported. Pure.
 #pragma once
@@ -21,16 +22,16 @@ enum class Late : std::uint8_t { kPlayWithFade, kDrop, kShowNewest, kAlwaysApply
 
 struct LatePolicy {
   Late rule = Late::kShowNewest;
-  Nanoseconds tolerance{0};   // up to so late it is on time
-  Nanoseconds drop_after{0};  // not before tolerance; of no meaning to kAlwaysApply
+  Nanoseconds tolerance{0};   // an event with at most this lateness is on time
+  Nanoseconds drop_after{0};  // not before tolerance; ignored by kAlwaysApply
 
-  // presentation_t::PRESENTED, LATE or DROPPED_LATE.
+  // Returns presentation_t::PRESENTED, LATE or DROPPED_LATE.
   std::int8_t outcome(Nanoseconds lateness) const {
     if (lateness <= tolerance) return presentation_t::PRESENTED;
     return rule == Late::kAlwaysApply || lateness <= drop_after ? presentation_t::LATE
                                                                 : presentation_t::DROPPED_LATE;
   }
-  // Factor on the strength of what is presented so late, 0 .. 1.
+  // Factor on the strength of an output with this lateness, 0 .. 1.
   double gain(Nanoseconds lateness) const {
     if (rule != Late::kPlayWithFade || lateness <= tolerance) return 1;
     if (lateness >= drop_after) return 0;

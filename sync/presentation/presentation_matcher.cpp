@@ -14,7 +14,7 @@
 namespace tactus::sync {
 namespace {
 
-// A sense has at most three parts; with as many nodes as anyone would run, this many reports of one event.
+// A modality has at most three parts; with a realistic number of nodes, an event has fewer reports than this.
 constexpr std::size_t kMaxReportsPerEvent = 64;
 
 std::size_t place(const std::string& modality) {
@@ -27,12 +27,12 @@ bool was_presented(std::int8_t outcome) {
          outcome == presentation_t::INAUDIBLE;
 }
 
-// What a report says of its own uncertainty is bounded, so that sums do not overflow: a minute is no measurement.
+// Bounds on reported durations, so that sums do not overflow.
 constexpr Nanoseconds kMaxHeld{
-    61'000'000'000};  // a profile's delays are at most 60 s each; then it is as good as dropped
+    61'000'000'000};  // the delays of a profile are at most 60 s each; a longer one counts as dropped
 constexpr Nanoseconds kMaxUncertain{60'000'000'000};
 
-// Touch answers a hit with the transient and a begin with the constraint force, whose onset may precede the event.
+// Touch presents a hit as the transient and a begin as the constraint force, whose onset may precede the event.
 bool is_onset(std::int8_t part, std::int8_t kind) {
   return part == presentation_t::WHOLE ||
          part == (kind == contact_event_t::HIT ? presentation_t::TRANSIENT : presentation_t::CONSTRAINT);
@@ -58,7 +58,7 @@ PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, Ho
 }
 
 SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) {
-  // The one that is forgotten is learnt anew when its sender speaks again.
+  // A removed clock is learnt again when its sender publishes again.
   if (!has_room(clocks_, h.source, kMaxSenses)) clocks_.erase(clocks_.begin());
   SenderClock& clock = clocks_.try_emplace(h.source, own_).first->second;
   clock.observe(h, arrival);
@@ -81,9 +81,9 @@ void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
     event->known = true;
     event->kind = e.kind;
     event->tool = e.tool;
-    event->source = ours ? m.header.source : 0;  // a foreign simulation's health is not heeded
+    event->source = ours ? m.header.source : 0;  // the health of a simulation of another run is ignored
     event->incarnation = m.header.incarnation;
-    // Nothing is published before its time.
+    // An event cannot be published before it happened.
     event->time = std::min(map.to_host(sim_time(e.time_ns)), arrival);
     due_.emplace(std::max(event->time + kSettleAfter, arrival + kSettleAfter / 2), e.event_id);
     ++(e.kind == contact_event_t::BEGIN ? begins_ : e.kind == contact_event_t::HIT ? hits_ : ends_);
@@ -203,7 +203,7 @@ void PresentationMatcher::advance(HostTime now) {
   while (!forget_.empty() && forget_.begin()->first <= now) {
     const auto it = events_.find(forget_.begin()->second);
     forget_.erase(forget_.begin());
-    if (it->second.known && !it->second.settled) {  // some sense is late on purpose
+    if (it->second.known && !it->second.settled) {  // a modality has an intended delay
       forget_.emplace(now + kRemember, it->first);
       continue;
     }
@@ -216,7 +216,7 @@ void PresentationMatcher::finish(HostTime now) {
   advance(now);
   for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
   due_.clear();
-  // All processes end before the log of them does: that is no death.
+  // At the end of a run all processes end before the log does; that is no failure.
   for (const LastDebt& d : last_debts_) {
     --tallies_[d.modality].owed;
     --tallies_[d.modality].dead;
@@ -245,7 +245,7 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
   if (life.fate == NodeLife::Fate::kAbsent) return;
   DebtTally& tally = tallies_[r.modality];
   std::int64_t* outcome = nullptr;
-  bool late = false;  // every part of it that was presented
+  bool late = false;  // true when every presented part of it was late
   for (const Report& report : e.reports) {
     if (report.source != source) continue;
     if (was_presented(report.outcome)) {
@@ -258,7 +258,7 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
     if (by_profile || outcome == nullptr) outcome = by_profile ? &tally.dropped_by_profile : &tally.dropped_late;
   }
   if (outcome == nullptr) {
-    // The log ends before it was to be presented.
+    // The log ends before the event was due.
     if (last && later > Nanoseconds(0) && now < e.time + later + kReportsWithin) return;
     const auto simulation = renderers_.find(e.source);
     const bool source_died = simulation != renderers_.end() &&
@@ -281,7 +281,7 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
 }
 
 void PresentationMatcher::count_asynchrony(const Event& e) {
-  // Of several nodes of one sense (walls of a room) the first.
+  // Of several nodes of one modality (walls of a room) the first.
   std::map<std::string, const Report*> onset;
   for (const Report& r : e.reports) {
     if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;

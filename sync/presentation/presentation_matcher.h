@@ -1,20 +1,18 @@
-// Who owed which contact event a presentation, and what became of it. The heart of sync_node and of the summary.
-// Pure.
+// Matches contact events to presentation reports and classifies the outcome. Used by sync_node and by the summary. Pure.
 //
-// A node declares in NODE_HEALTH what it owes. An event is settled 1 s after its time (half a second after it was
-// first heard of, if that is later; so much later as a sense is to present it late on purpose): nothing waits for
-// a dead sense. Every debt has exactly one outcome:
+// A node declares in NODE_HEALTH the events that it must present. An event is settled 1 s after its time, or half a second
+// after its first arrival, if that is later. An intended delay of a modality adds to that. A dead modality holds up nothing.
+// Every expected presentation has exactly one outcome:
 //   presented           the node reported so, also late or inaudible
-//   dropped_by_profile  the node reported so: its degradation asked for it
+//   dropped_by_profile  the node reported so: its degradation required it
 //   dropped_late        the node reported so
 //   stalled             no report, and its health had a gap of more than 0.3 s within 0.1 s after the event
-//   dead                no report, and the node was gone, replaced, not running again, or without output within
-//   0.1 s
-//                       after the event; or the simulation died before it could repeat the event for its 50 ms
-//   lost                no report from a node that was there
-// While a simulation of this run is there, the events of other runs, as of a log that is played beside it, are
-// owed by nobody. A node that never ran owes nothing. A report of what is not owed is no outcome, but counts for
-// the asynchrony.
+//   dead                no report, and within 0.1 s after the event the node was gone, replaced, not running again, or
+//                       without output; or the simulation died before it could repeat the event for its 50 ms
+//   lost                no report from a running node
+// While a simulation of this run publishes, no presentation is expected of events of other runs, as of a log that is played
+// beside it. None is expected of a node that never ran. A report that was not expected is no outcome, but counts for the
+// asynchrony.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +37,7 @@
 
 namespace tactus::sync {
 
-// Debts of one modality by outcome.
+// Expected presentations of one modality by outcome.
 struct DebtTally {
   std::int64_t owed = 0;
   std::int64_t presented = 0;
@@ -51,8 +49,8 @@ struct DebtTally {
   std::int64_t dropped_late = 0;
 };
 
-// True when sense a is named before sense b: the known ones from the quickest to the slowest, then all others by
-// name.
+// Order of modalities in names of pairs: returns true when a precedes b. The known modalities come first, from the quickest
+// to the slowest; then all others by name.
 bool named_before(const std::string& a, const std::string& b);
 
 class PresentationMatcher {
@@ -63,61 +61,60 @@ class PresentationMatcher {
     Nanoseconds needed;
   };
   static constexpr Nanoseconds kSettleAfter{1'000'000'000};
-  // A node that ends or stalls within this of an event may have had no time to report it: the output is at most
-  // some 50 ms behind the event, and health comes every 100 ms.
+  // A node that ends or stalls within this time of an event may have been unable to report it: the output follows the event
+  // within about 50 ms, and health is published every 100 ms.
   static constexpr Nanoseconds kReportsWithin{100'000'000};
-  // Events are repeated for so long.
+  // Time during which the simulation repeats an event.
   static constexpr Nanoseconds kRepeated{50'000'000};
-  // The processes of a run end one after the other: an event so short before the simulation's last health belongs
-  // to the end.
+  // The processes of a run end one after the other: an event within this time before the simulation's last health belongs to
+  // the end of the run.
   static constexpr Nanoseconds kEndsWithin{300'000'000};
-  // Repetitions and late reports are recognised for so long after an event was settled.
+  // Time after the settlement of an event during which repetitions and late reports are recognised.
   static constexpr Nanoseconds kRemember{5'000'000'000};
   static constexpr std::size_t kMaxEvents = 1 << 16;
-  // Those that nobody takes are forgotten.
+  // Older needs that were not taken are discarded.
   static constexpr std::size_t kMaxNeeds = 4096;
-  // Nodes, senses, and simulations of other runs.
+  // Limit of nodes, of modalities, and of simulations of other runs.
   static constexpr std::size_t kMaxSenses = 64;
   // Each keeps a histogram of 160 kB.
   static constexpr std::size_t kMaxPairs = 256;
 
-  // All times are put on this clock. Health and reports of another run are ignored and counted. Run 0: run and
-  // clock of the first health that arrives.
+  // All times are converted to this clock. Health and reports of another run are ignored and counted. Run 0: the run and
+  // clock of the first health message.
   explicit PresentationMatcher(OwnClock own) : own_(own) {}
 
   void observe(const contact_events_t&, HostTime arrival);
   void observe(const node_health_t&, HostTime arrival);
   void observe(const presented_t&, HostTime arrival);
-  // How late a sense presents on purpose, all events or single ones: they are settled so much later.
+  // Intended delays of a modality, for all events or single ones: their settlement is later by that delay.
   void observe(const playout_t&, HostTime arrival);
   void observe(const degraded_t&, HostTime arrival);
-  // How long senses needed, from an event to its earliest possible presentation with nothing degraded, by what was
-  // observed since the last call.
+  // The needs since the last call: the time from an event to the earliest possible presentation by a modality, without
+  // degradation.
   std::vector<Need> take_needs() { return std::exchange(needs_, {}); }
-  // Settles what is due.
+  // Settles the due events.
   void advance(HostTime now);
-  // Nothing more will come: settles all that can be decided, and drops the debts that cannot: of a node that was
-  // not heard of again until now.
+  // Ends the input: settles all decidable events, and drops the expected presentations of nodes that did not publish again.
   void finish(HostTime now);
 
-  // The senses whose nodes were heard of, and whether the others wait for them.
+  // The modalities whose nodes have published, and whether the others wait for them.
   std::map<std::string, bool> senses() const;
   std::int64_t begins() const { return begins_; }
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }
   const std::map<std::string, DebtTally>& modalities() const { return tallies_; }
-  // soa(a, b) = t_present(b) - t_present(a), a named before b. What answers a begin with a push at once, whatever
-  // the policy, is apart from what answers a hit when it is due: "haptic_push" beside "haptic".
+  // soa(a, b) = t_present(b) - t_present(a), with a named before b. The push that answers a begin at once, under every
+  // policy, is separate from the vibration that answers a hit when it is due: "haptic_push" beside "haptic".
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
 
-  // Reports of a time on a clock that nobody has mapped: they count as presented, but not for the asynchrony, for
-  // nobody knows how uncertain it would be.
+  // Reports with times on a clock without a map: they count as presented, but not for the asynchrony, because their
+  // uncertainty is unknown.
   std::int64_t unmapped_reports() const { return unmapped_reports_; }
-  // Reports of events that were settled already, of events never heard of, and messages of other runs.
+  // Reports of events that were settled already, reports of unknown events, and messages of other runs.
   std::int64_t late_reports() const { return late_reports_; }
   std::int64_t unknown_reports() const { return unknown_reports_; }
   std::int64_t foreign() const { return foreign_; }
-  // Events, nodes, senses, pairs and simulations of other runs that found no room.
+  // Events, nodes, modalities, pairs and simulations of other runs beyond the limits.
   std::int64_t overflow() const { return overflow_; }
 
  private:
@@ -128,8 +125,8 @@ class PresentationMatcher {
     NodeLife life;
     std::int64_t dead_unless_it_returns = 0;
   };
-  // A debt called dead because both the node and the simulation fell silent: if neither speaks again, the run had
-  // ended.
+  // An expected presentation that counts as dead because both the node and the simulation stopped publishing: if neither
+  // publishes again, the run had ended.
   struct LastDebt {
     std::int32_t source, simulation;
     std::string modality;
@@ -139,11 +136,11 @@ class PresentationMatcher {
     std::string modality;
     std::int8_t part = 0;
     std::int8_t outcome = 0;
-    std::int64_t presented_ns = -1;  // on our clock; -1: not, or not known
+    std::int64_t presented_ns = -1;  // on our clock; -1: not presented, or unknown
     Nanoseconds uncertainty{0};      // half width
   };
   struct Event {
-    bool known = false;  // false: so far only reports of it came
+    bool known = false;  // false: only reports of it have arrived
     bool settled = false;
     std::int8_t kind = 0;
     std::int32_t tool = -1;
@@ -151,12 +148,12 @@ class PresentationMatcher {
     std::int64_t incarnation = 0;
     HostTime time{};
     std::vector<Report> reports;
-    std::map<std::string, Nanoseconds> held;  // by profiles, by modality
+    std::map<std::string, Nanoseconds> held;  // delays by profiles, by modality
   };
 
   Event* find_or_add(std::int64_t id, HostTime arrival);
   bool owes(const Renderer&, const Event&) const;
-  // So much later than at once is this sense to present the event.
+  // The intended delay of this modality for the event.
   Nanoseconds on_purpose(const Event&, const std::string& modality) const;
   Nanoseconds longest_on_purpose(const Event&) const;
   SenderClock& clock_of(const header_t&, HostTime arrival);
@@ -172,9 +169,9 @@ class PresentationMatcher {
   std::multimap<HostTime, std::int64_t> forget_;
   std::vector<LastDebt> last_debts_;
   std::vector<Need> needs_;
-  std::map<std::string, PlayoutFollower> playout_;  // by modality: each follows as its sense does
-  Nanoseconds turn_{0};                             // of a lock-step
-  // Simulations of this run that have told of events, and when one was last heard of.
+  std::map<std::string, PlayoutFollower> playout_;  // by modality: each follows as its node does
+  Nanoseconds turn_{0};                             // period of a lock-step
+  // Simulations of this run that have published events, and the newest arrival from one.
   std::set<std::int32_t> simulations_;
   std::optional<HostTime> simulation_heard_;
   std::map<std::string, DebtTally> tallies_;

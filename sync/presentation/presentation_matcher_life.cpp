@@ -30,7 +30,7 @@ bool NodeLife::observe(std::int64_t incarnation, std::int8_t state, HostTime sen
 NodeLife::Answer NodeLife::during(HostTime from, HostTime to, HostTime now) const {
   if (from < first_owes_from_) return {Fate::kAbsent, false};
   const auto after = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) { return s.begin > from; });
-  if (after == spans_.begin()) return {Fate::kDead, false};  // longer ago than is remembered
+  if (after == spans_.begin()) return {Fate::kDead, false};  // before the stored history
   for (auto span = std::prev(after);; ++span) {
     if (!span->able || from < span->owes_from) return {Fate::kDead, false};
     if (to <= span->end) return {Fate::kAlive, false};
@@ -41,7 +41,7 @@ NodeLife::Answer NodeLife::during(HostTime from, HostTime to, HostTime now) cons
     }
     if (next->incarnation != span->incarnation) return {Fate::kDead, false};
     if (next->begin - span->end > kStall) return {Fate::kStalled, false};
-    // Only its ability changed: to it there was no interruption.
+    // Only its ability changed, without an interruption.
     if (next->begin > to && next->able) return {Fate::kAlive, false};
   }
 }

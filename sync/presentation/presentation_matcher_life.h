@@ -1,4 +1,4 @@
-// When a process was there, as far as its NODE_HEALTH tells. Pure.
+// The times at which a process was running, according to its NODE_HEALTH. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,39 +11,39 @@ namespace tactus::sync {
 
 class NodeLife {
  public:
-  // A silence of more than this within an incarnation is a stall; one of more than this and not yet ended, a
+  // A silence of more than kStall within an incarnation is a stall; a silence of more than kDeath that has not ended is a
   // death.
   static constexpr Nanoseconds kStall{300'000'000};
   static constexpr Nanoseconds kDeath{500'000'000};
-  // From its first report that it runs, a node has so long until it owes anything: its subscriptions and its map
-  // between the clocks have to settle. One that was ready before the world began owes from then on.
+  // Time from a node's first report that it runs until presentations are expected of it: its subscriptions and its clock map
+  // have to settle. Of a node that was ready before the world began, they are expected from then on.
   static constexpr Nanoseconds kGrace{200'000'000};
-  // How far back questions can be asked.
+  // Length of the stored history.
   static constexpr Nanoseconds kRemember{10'000'000'000};
 
   enum class Fate {
-    kAbsent,     // it had not begun to run by then
+    kAbsent,     // it did not run yet
     kAlive,      // it reported health throughout
-    kStalled,    // it fell silent and came back
-    kDead,       // it was gone, replaced, not yet running again, or said itself that it has no output
-    kUndecided,  // it reported health last before the end of the interval, and not long enough ago to be called
-                 // dead
+    kStalled,    // it stopped publishing and resumed
+    kDead,       // it was gone, replaced, not yet running again, or reported that it has no output
+    // Its last report is before the end of the interval, but not old enough for a death.
+    kUndecided,
   };
   struct Answer {
     Fate fate = Fate::kAbsent;
-    // It is silent now: kDead becomes kStalled if the same incarnation speaks again.
+    // It is silent now: kDead becomes kStalled if the same incarnation publishes again.
     bool may_return = false;
   };
 
-  // sent: on our clock. Returns true when the same incarnation speaks again after a stall.
+  // sent: on our clock. Returns true when the same incarnation publishes again after a stall.
   bool observe(std::int64_t incarnation, std::int8_t state, HostTime sent);
 
   Answer during(HostTime from, HostTime to, HostTime now) const;
-  // True when this incarnation spoke last before `until` and never will again: another took its place, or it has
-  // been silent for too long.
+  // True when the last report of this incarnation is before `until` and none can follow: another incarnation has replaced it,
+  // or it has been silent for too long.
   bool died_before(std::int64_t incarnation, HostTime until, HostTime now) const;
 
-  // True when it spoke last before `since` and has been silent for too long.
+  // True when the last report is before `since` and the process has been silent for too long.
   bool silent_since(HostTime since, HostTime now) const {
     return !spans_.empty() && spans_.back().end < since && now - spans_.back().end > kDeath;
   }

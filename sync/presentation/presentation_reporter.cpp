@@ -41,7 +41,7 @@ void PresentationReporter::publish(Bus& bus, HostTime now) {
     if (p.sent && now - p.first_sent < kRepeatAfter) continue;
     m.reports.push_back(p.report);
     if (m.reports.size() >= kReportsPerMessage) flush();
-    // The second sending is the last: marked by a time that the clean-up below recognises.
+    // The second transmission is the last: this time marks the report for the clean-up below.
     p.first_sent = p.sent ? HostTime::min() : now;
     p.sent = true;
   }

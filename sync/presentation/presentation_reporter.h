@@ -1,5 +1,5 @@
-// Collects what a renderer did with its events and sends it on PRESENTED: each report twice, so that one lost datagram
-// loses none. Bounded: when more than kMaxPending wait, the oldest are dropped and counted.
+// Collects the outcomes of a renderer's events and publishes them on PRESENTED, each report twice, so that the loss of one
+// datagram loses no report. Bounded: when more than kMaxPending wait, the oldest are dropped and counted.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ class PresentationReporter {
 
   explicit PresentationReporter(std::string modality) : modality_(std::move(modality)) {}
 
-  // scheduled, presented: on this host's clock; presented: nothing if it was not.
+  // scheduled, presented: on this host's clock; presented: -1 when the event was not presented.
   void report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented, Nanoseconds uncertainty,
               std::int8_t outcome);
   void report(const presentation_t& report);
-  // Call once a tick: sends what is new and what is due for its repetition, paged.
+  // Call once a tick: publishes new reports and due repetitions, in pages.
   void publish(Bus& bus, HostTime now);
   std::int64_t dropped() const { return dropped_; }
 

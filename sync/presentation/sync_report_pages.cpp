@@ -9,7 +9,7 @@
 namespace tactus::sync {
 namespace {
 
-// Puts entries on pages, on the newest as long as they fit.
+// Writes entries to pages, each to the newest page while it fits.
 class PageWriter {
  public:
   explicit PageWriter(const sync_report_t& head) : head_(head), pages_{head} {}
@@ -30,7 +30,7 @@ class PageWriter {
   }
 
  private:
-  // Puts it there if it fits.
+  // Appends the entry if it fits.
   template <class List, class Count, class Entry>
   static bool fits(sync_report_t& page, List sync_report_t::* list, Count sync_report_t::* count, const Entry& entry) {
     (page.*list).push_back(entry);

@@ -54,7 +54,7 @@ std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const st
 }
 
 Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa) {
-  // A push is felt by the same sense as a vibration.
+  // The push and the vibration of touch belong to the same modality.
   const auto sense = [](const std::string& name) { return name.substr(0, name.rfind("_push")); };
   const auto after = thresholds_of(sense(a), sense(b)), before = thresholds_of(sense(b), sense(a));
   if (!after && !before) return {};

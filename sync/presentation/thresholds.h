@@ -1,6 +1,6 @@
-// Published thresholds of asynchrony between two senses: sync/presentation/thresholds.csv, a row per pair, direction and
-// source. The sources disagree, so none of them is the truth: what is measured is held against the least and the
-// largest of a direction. Pure.
+// Published thresholds of asynchrony between two modalities: sync/presentation/thresholds.csv, a row per pair, direction and
+// source. The sources disagree, so measurements are compared with both the least and the largest threshold of a direction.
+// Pure.
 #pragma once
 
 #include <optional>
@@ -23,10 +23,10 @@ const std::vector<Threshold>& published_thresholds();
 struct ThresholdRange {
   Nanoseconds least{0}, largest{0};
 };
-// Of all sources, when one sense is presented after the other; none when there is no source.
+// The range over all sources for one modality presented after the other; nullopt when there is no source.
 std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const std::string& later);
 
-// How many of the asynchronies of a pair lie beyond them, to 0.1 ms; -1: no source for either direction.
+// Number of asynchronies of a pair beyond them, to 0.1 ms; -1: no source for either direction.
 struct Beyond {
   std::int64_t least = -1, all = -1;
 };

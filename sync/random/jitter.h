@@ -11,21 +11,21 @@ namespace tactus::sync {
 
 enum class JitterShape { kUniform, kNormal, kPareto, kTrace };
 
-// What a profile asks for: "3ms normal", "10ms uniform", "2ms pareto correlation=0.5", "trace=FILE".
+// The jitter of a profile: "3ms normal", "10ms uniform", "2ms pareto correlation=0.5", "trace=FILE".
 struct JitterDef {
   JitterShape shape = JitterShape::kUniform;
-  // uniform: half width around the constant delay; normal: standard deviation; pareto: mean of what is added; s.
+  // uniform: half width around the constant delay; normal: standard deviation; pareto: mean of the added delay; s.
   double scale_s = 0;
-  // Of consecutive delays in the normal domain, 0 .. < 1: a first-order process whose marginal stays the shape's.
+  // Of consecutive delays in the normal domain, 0 .. < 1: a first-order process whose marginal distribution stays that of the
+  // shape.
   double correlation = 0;
-  // Added delays of a trace, s, taken in turn, round and round.
+  // Added delays of a trace, s, used cyclically.
   std::vector<double> trace_s{};
-  // True: what arrives in order leaves in order, as in a queue.
+  // True: messages that arrive in order leave in order, as in a queue.
   bool keep_order = true;
 };
 
-// Tail index of the Pareto shape, shifted to begin at 0 (Lomax 1954); design: a heavy tail whose variance is
-// finite.
+// Tail index of the Pareto shape, shifted to begin at 0 (Lomax 1954); design: a heavy tail with finite variance.
 inline constexpr double kParetoIndex = 2.5;
 
 class Jitter {

@@ -59,7 +59,7 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
 }
 
 double uniform(std::uint64_t seed, std::uint64_t key) {
-  const std::uint64_t bits = mixed(mixed(seed, key), key) >> 11;  // 53, as a double holds
+  const std::uint64_t bits = mixed(mixed(seed, key), key) >> 11;  // 53, the precision of a double
   return (static_cast<double>(bits) + 0.5) * 0x1p-53;
 }
 

@@ -1,5 +1,5 @@
-// Random numbers that depend on what they are drawn for, not on when: the same seed gives the same decision for
-// the same event or snapshot, whatever arrived before it, in whatever order, live or from a log. Pure.
+// Random numbers by key: they depend on the item that they are drawn for, not on the time of drawing. The same seed gives the
+// same decision for the same event or snapshot, in any order of arrival, live or from a log. Pure.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ Loss::Loss(const LossDef& def) : share_(def.share) {
 }
 
 bool Loss::lose(double u) {
-  // Begins in the long run's mixture of states, so that the share holds from the first.
+  // Starts in the stationary distribution of the states, so that the share holds from the first item.
   const double p = !begun_ ? share_ : bad_ ? stay_bad_ : to_bad_;
   begun_ = true;
   return bad_ = u < p;

@@ -12,7 +12,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::int64_t kAnew_ns = 1'000'000'000;           // a sender whose clock is back by more is another one
+constexpr std::int64_t kAnew_ns = 1'000'000'000;           // a clock that falls back by more means another sender
 constexpr std::size_t kSeqAt = 8 + 8 + 8 + 4 + 8 + 4 + 8;  // LCM's fingerprint and header_t before its last member
 
 // Big-endian, as LCM encodes.
@@ -60,7 +60,7 @@ std::unique_ptr<Decimator::Comparison> Decimator::comparison() const {
   return std::make_unique<Compared<tool_state_t>>(rule);
 }
 
-// So many a second in the mean: one that comes a little early waits for no whole period more.
+// Keeps the mean rate: a message that comes a little early need not wait for a whole period more.
 bool Decimator::due(Sender& s, const header_t& h) const {
   if (!rule_.thinning.rate || in_pages(rule_.channel)) return true;
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rule_.thinning.rate->rate_Hz));

@@ -1,8 +1,8 @@
-// Leaves out of a channel what its rule does not let pass, and numbers the rest anew, so that what was left out is
-// no loss to who hears it. Pure.
+// Thins a channel by its rule, and renumbers the remaining messages, so that receivers do not count thinned messages as
+// losses. Pure.
 //
-// Snapshots in pages are decided on as a whole, by the stack of a degradation profile (sync/degradation/): by
-// simulated time. Other states by the time of their sending, for the hand moves while the world stands still.
+// Snapshots in pages are decided on as a whole, by the operator chain of a degradation profile (sync/degradation/), in
+// simulated time. Other states are decided on by their publication time, because the hand moves while the world stands still.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +21,21 @@ namespace tactus::sync {
 class Decimator {
  public:
   using Out = std::function<void(std::span<const std::uint8_t>)>;
-  // Senders on a channel; more are of false messages, and all begin anew.
+  // Senders on a channel; more come only from corrupt messages, and reset all.
   static constexpr std::size_t kMaxSenders = 256;
 
   explicit Decimator(const PassRule& rule);
   ~Decimator();
   Decimator(Decimator&&) noexcept;
 
-  // Calls out(message) for what may pass now: this one or none, or with the last page of a snapshot all of them.
+  // Calls out(message) for the messages that pass now: this one or none, or with the last page of a snapshot all its pages.
   void take(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
   std::int64_t left_out() const { return left_out_; }
-  // Were no valid message of the channel.
+  // Number of invalid messages.
   std::int64_t bad() const { return bad_; }
 
  private:
-  // One sender's messages.
+  // The messages of one sender.
   class Comparison {
    public:
     virtual ~Comparison() = default;

@@ -14,9 +14,9 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::string_view kMagic = "TRL1";
-constexpr std::size_t kChannelAt = kMagic.size() + 1;  // behind the port
+constexpr std::size_t kChannelAt = kMagic.size() + 1;  // after the port
 constexpr int kReceiveBufferBytes = 4 << 20;           // as sync/bus/udp_port.cpp
-// What a datagram may hold on an Ethernet without being cut in pieces, and then some.
+// The limit of an unfragmented datagram on an Ethernet, plus a margin.
 static_assert(kChannelAt + kLongestChannel + 1 + channels::kMaxMessageBytes <= 2047);
 
 std::optional<double> number(std::string_view text, double least, double most) {

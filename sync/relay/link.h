@@ -1,8 +1,7 @@
-// The line between relays: datagrams of UDP from one to one, each with a channel, the port of the bus that it is
-// of, and the bytes of one message.
+// The line between two relays: unicast UDP datagrams, each with a channel, its port of the bus, and the bytes of one message.
 //
-// Only the relays that were named are heard: by their address, which who sits on the line can forge. Lines that
-// others can reach belong into a private path (docs/between_sites.md).
+// Only the named relays are accepted, by their address, which an attacker on the line can forge. Lines that others can reach
+// belong into a private network path (docs/between_sites.md).
 #pragma once
 
 #include <netinet/in.h>
@@ -18,11 +17,11 @@
 
 namespace tactus::sync {
 
-// One end of a line. bit_per_s 0: as much as comes.
+// One end of a line. bit_per_s 0: unlimited.
 struct LineEnd {
   sockaddr_in address{};
   double bit_per_s = 0;
-  std::string name;  // as it was written
+  std::string name;  // as written by the user
 };
 // "ADDRESS:PORT" or "PORT". Throws std::invalid_argument with one sentence.
 LineEnd parse_line_end(const std::string& text);
@@ -34,7 +33,7 @@ struct LineMessage {
   bool bulk = false;
 };
 std::vector<std::uint8_t> line_datagram(const ChannelBytes& message, bool bulk);
-// Nothing for what is no such datagram. Refers to `bytes`.
+// nullopt when the bytes are no such datagram. Refers to `bytes`.
 std::optional<LineMessage> parse_line_datagram(std::span<const std::uint8_t> bytes);
 
 class LineSocket {
@@ -45,10 +44,9 @@ class LineSocket {
   LineSocket(const LineSocket&) = delete;
   LineSocket& operator=(const LineSocket&) = delete;
 
-  // False: the network refused it. Never waits.
+  // Returns false when the network refused it. Never waits.
   bool send(const LineEnd& to, std::span<const std::uint8_t> datagram);
-  // Calls hear(index of the site, LineMessage) for what has arrived from these sites, at most kMost; without
-  // waiting.
+  // Calls hear(index of the site, LineMessage) for the datagrams received from these sites, at most kMax, without waiting.
   template <class Hear>
   void read(std::span<const LineEnd> sites, Hear&& hear) {
     for (int i = 0; i < kMax; ++i) {
@@ -61,14 +59,14 @@ class LineSocket {
         ++bad_;
     }
   }
-  // Datagrams from elsewhere, and such as no relay sends.
+  // Datagrams from other addresses, and malformed ones.
   std::int64_t strangers() const { return strangers_; }
   std::int64_t bad() const { return bad_; }
 
  private:
   static constexpr int kMax = 4096;
   struct Arrived {
-    int site;  // -1: of nobody that was named
+    int site;  // -1: not a named site
     std::span<const std::uint8_t> bytes;
   };
   std::optional<Arrived> receive(std::span<const LineEnd> sites);

@@ -1,5 +1,5 @@
-// What waits to go over one line, at no more bits a second than it carries. Bounded in time and in bytes: what is
-// not gone by then is given up and counted, so that a slow line is late by so much and no more. Pure.
+// The send queue of one line, limited to the bit rate of the line. Bounded in time and in bytes: datagrams that have waited
+// too long are dropped and counted, so that a slow line has a bounded delay. Pure.
 #pragma once
 
 #include <array>
@@ -13,32 +13,33 @@
 
 namespace tactus::sync {
 
-// In this order they go.
+// The order of sending.
 enum class Urgency : std::uint8_t { kFirst = 0, kState = 1, kBulk = 2 };
 
 struct OutboxCounts {
-  std::int64_t sent = 0, bytes = 0;  // of datagrams, less their headers
-  std::int64_t late = 0;             // events and states that were given up
-  std::int64_t late_bulk = 0;        // assets likewise: they are asked for again
+  std::int64_t sent = 0, bytes = 0;  // of datagrams, without their headers
+  std::int64_t late = 0;             // dropped events and states
+  std::int64_t late_bulk = 0;        // dropped assets: the receiver requests them again
   std::int64_t refused = 0;          // by the network
 };
 
 class Outbox {
  public:
-  // So long an event is repeated (sim_node), and so long it waits; assets are asked for again after 100 ms
-  // (sync/assets/scene_exchange.h), some times more.
+  // Maximum waiting time: of events, the time during which sim_node repeats them; assets are requested again after 100 ms
+  // (sync/assets/scene_exchange.h), repeatedly.
   static constexpr Nanoseconds kLatest{50'000'000}, kLatestBulk{1'000'000'000};
-  // At once: ten of the longest datagrams. Half of that is never taken by assets, so that what is said together
-  // goes together while a scene is on its way.
+  // Burst size: ten of the longest datagrams. Half of it is reserved from assets, so that messages published together are
+  // sent together while a scene is in transfer.
   static constexpr double kBurstBytes = 16'000, kNotForBulkBytes = kBurstBytes / 2;
   static constexpr std::size_t kMaxBytes = 1 << 20;  // of each urgency
   static constexpr std::size_t kHeaders = 28;         // IP and UDP (RFC 791, RFC 768), of each datagram
 
-  // bit_per_s 0: as much as comes.
+  // bit_per_s 0: unlimited.
   explicit Outbox(double bit_per_s) : bit_per_s_(bit_per_s) {}
 
   void push(Urgency urgency, std::vector<std::uint8_t> datagram, HostTime now);
-  // Calls send(datagram) for what may go by now; false from it: the network took it not, and it is gone.
+  // Calls send(datagram) for the datagrams that may be sent by now; when it returns false, the network refused the datagram,
+  // which is dropped.
   template <class Send>
   void flush(HostTime now, Send&& send) {
     refill(now);
@@ -49,7 +50,7 @@ class Outbox {
         const std::vector<std::uint8_t> datagram = take_first(queue);
         if (!send(std::span<const std::uint8_t>(datagram))) ++counts_.refused;
       }
-      if (!queue.waiting.empty()) return;  // nothing less urgent overtakes it
+      if (!queue.waiting.empty()) return;  // less urgent datagrams must not overtake it
     }
   }
   const OutboxCounts& counts() const { return counts_; }
@@ -65,7 +66,7 @@ class Outbox {
   };
   Queue& queue_of(Urgency urgency) { return queues_[static_cast<std::size_t>(urgency)]; }
   void refill(HostTime now);
-  // Those that have waited too long, or more than there is room for.
+  // Drops datagrams that have waited too long, or exceed the limit.
   void give_up(Urgency urgency, HostTime now);
   bool affords(Urgency urgency, std::size_t bytes) const {
     const double kept = urgency == Urgency::kBulk ? kNotForBulkBytes : 0;

@@ -27,7 +27,7 @@ void Relay::hear_bus(const ChannelBytes& m, bool bulk, HostTime now) {
     ++counts_.bad;
     return;
   }
-  // What we said ourselves comes back, too.
+  // The relay also receives the messages that it sent itself.
   if (!sides_.lives(*header, Sides::kHere, now)) return;
   const Urgency urgency = bulk ? Urgency::kBulk : rule->first ? Urgency::kFirst : Urgency::kState;
   thinner(*rule).take(*header, m.data, now, [&](std::span<const std::uint8_t> passing) {

@@ -1,6 +1,6 @@
-// What a relay does with what it hears: of the bus of its site, what the rules let pass, thinned, to every other
-// site, each by a line of its own; of the lines, what the rules let pass, to the bus. Pure: the program hands
-// messages in and sends what comes out.
+// The core of a relay: from the bus of its site, the messages that the rules permit, thinned, go to every other site, each by
+// its own line; from the lines, the messages that the rules permit go to the bus. Pure: the program passes messages in and
+// sends the results.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,24 @@
 namespace tactus::sync {
 
 struct RelayCounts {
-  std::int64_t in = 0;        // messages let in from other sites
+  std::int64_t in = 0;        // messages accepted from other sites
   std::int64_t out = 0;       // messages for other sites, after thinning
-  std::int64_t withheld = 0;  // that no rule names, of the lines: the other end has other rules
-  std::int64_t bad = 0;       // were none of ours, or of another run
+  std::int64_t withheld = 0;  // messages from the lines that no rule names: the other end has other rules
+  std::int64_t bad = 0;       // invalid, or of another run
 };
 
 class Relay {
  public:
-  // A site is silent when it was not heard for so long; a process says its health ten times a second.
+  // A site counts as silent after this time without a message; a process publishes its health ten times a second.
   static constexpr Nanoseconds kSilent{1'000'000'000};
 
   Relay(RelayRules rules, std::vector<LineEnd> sites, std::int64_t run_id);
 
-  // From the bus of this site.
+  // A message from the bus of this site.
   void hear_bus(const ChannelBytes& message, bool bulk, HostTime now);
-  // From the line of a site: true when the message is to be said on the bus.
+  // A message from the line of a site: returns true when it must be sent on the bus.
   bool hear_line(std::size_t site, const LineMessage& message, HostTime now);
-  // Calls send(site, datagram) -> bool for what may go by now.
+  // Calls send(site, datagram) -> bool for the datagrams that may be sent by now.
   template <class Send>
   void flush(HostTime now, Send&& send) {
     for (std::size_t i = 0; i < sites_.size(); ++i)
@@ -47,8 +47,7 @@ class Relay {
   const RelayCounts& counts() const { return counts_; }
   const OutboxCounts& line(std::size_t site) const { return outboxes_[site].counts(); }
   bool silent(std::size_t site, HostTime now) const { return now - heard_[site] > kSilent; }
-  // For the live table: what each line carries since this was asked before, what it lost, and whether its other
-  // end is heard.
+  // For the live table: the load and the losses of each line since the last call, and whether its other end is received.
   std::string note(HostTime now);
 
  private:

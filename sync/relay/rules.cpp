@@ -14,7 +14,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// All channels that nodes speak on: LOG_INFO is of logs only.
+// All channels of the bus: LOG_INFO exists in logs only.
 const Names& channels_of_the_bus() {
   using namespace channels;
   static const Names names{
@@ -26,12 +26,12 @@ const Names& channels_of_the_bus() {
   return names;
 }
 
-// Of these every message says all that there is to say: the next one makes up for one that is left out.
+// Channels with complete states: the next message replaces one that was left out.
 const Names kStates{channels::kTouchModel,   channels::kContacts,      channels::kWorldState,
                     channels::kToolState,    channels::kDeviceState,   channels::kDeviceForce,
                     channels::kThermalState, channels::kThermalDevice, channels::kNodeHealth,
                     channels::kMediaClock,   channels::kFrameShown,    channels::kGameState};
-// Of these the signals are known (sync/degradation/snapshot.h).
+// Channels with known signals (sync/degradation/snapshot.h).
 const Names kCompared{channels::kTouchModel, channels::kContacts, channels::kWorldState, channels::kToolState};
 
 bool holds(const Names& names, const std::string& name) {
@@ -85,7 +85,7 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
   return rule;
 }
 
-// Elements and comments are all that may stand in an element.
+// An element may contain only elements and comments.
 void refuse_text_in(const tinyxml2::XMLNode& within, const char* what, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment() || (n->ToDeclaration() && within.ToDocument())) continue;
@@ -105,7 +105,7 @@ const PassRule* RelayRules::find(std::string_view channel) const {
 RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
   int line = 1;
   try {
-    // XML has none; what comes after it would be lost in silence.
+    // XML allows no NUL; the parser would silently ignore all text after it.
     if (const std::size_t nul = xml.find('\0'); nul != std::string::npos) {
       line = 1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n'));
       throw std::invalid_argument("there is a NUL byte here, so this is no text");

@@ -1,4 +1,4 @@
-// What crosses the line to another site, as data. Read from XML, refused whole when it is wrong.
+// The channels that cross the line to another site, as data. Read from XML; an invalid file is refused as a whole.
 //
 //   <relay>
 //     <pass channel="CONTACT_EVENTS" first="true"/>
@@ -6,7 +6,7 @@
 //     <pass channel="TOOL_STATE" rate="60Hz"/>
 //   </relay>
 //
-// What no line names does not cross, in either direction.
+// Channels without a rule do not cross, in either direction.
 #pragma once
 
 #include <string>
@@ -20,8 +20,8 @@ namespace tactus::sync {
 // One <pass>. rate and deadband are the operators of a degradation profile (sync/degradation/README.md).
 struct PassRule {
   std::string channel;
-  bool first = false;  // goes before all others, and is given up last
-  Rule thinning;       // its rate and its deadband, where it has them
+  bool first = false;  // sent before all others, and dropped last
+  Rule thinning;       // its rate and its deadband, if given
   int line = 0;
 
   bool thins() const { return thinning.rate || thinning.deadband; }
@@ -30,7 +30,7 @@ struct PassRule {
 class RelayRules {
  public:
   explicit RelayRules(std::vector<PassRule> rules) : rules_(std::move(rules)) {}
-  // Null: it does not cross.
+  // Null: the channel does not cross.
   const PassRule* find(std::string_view channel) const;
   const std::vector<PassRule>& all() const { return rules_; }
 

@@ -1,5 +1,6 @@
-// Which side of a relay a sender lives on. What came over a line is never sent over one again, and what comes back
-// is not let in: several relays in one site, a line that is there twice, or a network that carries both sites'
+// The side of a relay on which each sender lives. Messages from a line are never sent over a line again, and returning
+// messages are rejected: several relays in one site, a duplicate line, or a network that carries both sites' multicast cause
+// no loops. Pure.
 // multicast make no circles. Pure.
 #pragma once
 
@@ -15,14 +16,14 @@ namespace tactus::sync {
 class Sides {
  public:
   static constexpr int kHere = 0;  // the bus of this site; other sites count from 1
-  // Silent for so long, a sender may turn up elsewhere.
+  // After this silence a sender may appear on another side.
   static constexpr Nanoseconds kForgotten{10'000'000'000};
-  // As sync/bus/sequence.h for one channel; more are of false messages, and those not heard for longest go.
+  // As sync/bus/sequence.h for one channel; more come only from corrupt messages, and those silent for longest are removed.
   static constexpr std::size_t kMax = 4096;
 
-  // Whether this sender lives there: it does where it was heard first.
+  // True when this sender lives on that side: it lives where it was first received.
   bool lives(const header_t& h, int side, HostTime now);
-  // Messages that came from where their sender does not live.
+  // Messages that arrived from a side where their sender does not live.
   std::int64_t echoes() const { return echoes_; }
 
  private:

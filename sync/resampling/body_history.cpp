@@ -79,14 +79,14 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
   }
 }
 
-// Pages may overtake each other: true when it found its place. Of several of one instant the first stays, but what
-// is told of now takes the place of what was foreseen.
+// Inserts a sample in order of time; pages may overtake each other. Returns true when it was inserted. Of several samples of
+// one instant the first stays, but a present sample replaces a predicted one.
 bool BodyHistory::place(Samples& samples, Stamped fresh) {
   const auto later = [&](const Stamped& s) { return s.time <= fresh.time; };
   auto at = std::find_if(samples.rbegin(), samples.rend(), later).base();
   if (fresh.ahead) {
-    // Told of now, and later than this was, for an instant before: this was taken back. What is said ahead is said
-    // in the order of its times, so nothing before a sample that holds needs to be looked at.
+    // A sample of the present that is published later and for an earlier instant revokes this prediction. Predictions are
+    // published in order of their times, so samples before a valid prediction need no check.
     for (auto s = at; s != samples.begin();) {
       if ((--s)->ahead && s->seq < fresh.seq && s->time < fresh.time) break;
       if (!s->ahead && s->seq > fresh.seq && fresh.time - s->time <= SimClockTracker::kFar) return false;
@@ -105,8 +105,8 @@ bool BodyHistory::place(Samples& samples, Stamped fresh) {
   return true;
 }
 
-// A body is told of now: what was said of it ahead, before that, holds no more. Nobody foretells more than kFar,
-// so no page, however false, takes back more.
+// A present sample of a body revokes all earlier predictions of it. No prediction is valid beyond kFar, so a corrupt page
+// cannot revoke more.
 void BodyHistory::take_back(Samples& samples, const Stamped& now) {
   const auto end =
       std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= now.time; }).base();
@@ -118,7 +118,7 @@ void BodyHistory::take_back(Samples& samples, const Stamped& now) {
   samples.erase(kept, samples.end());
 }
 
-// What was credible once need not be any more: its message may have been the first of all, and false.
+// Removes samples after `latest`: a sample may have been accepted only because its corrupt message was the first one.
 void BodyHistory::forget_after(SimTime latest) {
   newest_.reset();
   for (auto& [body, samples] : bodies_) {
@@ -137,7 +137,7 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
   if (it == bodies_.end() || it->second.empty()) return {};
   const auto& samples = it->second;
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const Stamped& s) { return s.time > t; });
-  if (after == samples.begin()) return {after->pose, SampleStatus::kHeld};  // older than all that is kept
+  if (after == samples.begin()) return {after->pose, SampleStatus::kHeld};  // older than all stored samples
   const Stamped& before = *std::prev(after);
   if (before.time == t) return {before.pose, SampleStatus::kExact};
   if (after != samples.end()) {
@@ -148,7 +148,8 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
     return {between(before.pose, after->pose, span_s, s), SampleStatus::kInterpolated};
   }
   const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
-  // At rest it is left out, and well known. One that was moving is missing: its page was lost.
+  // A body at rest is left out of snapshots, so its pose is exact. A moving body without a sample is missing: its page was
+  // lost.
   return {moved_on(before.pose, dt_s), rests(before.pose) ? status(t) : past(t - before.time)};
 }
 

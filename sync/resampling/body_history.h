@@ -1,9 +1,9 @@
-// Where the bodies are at an instant, from WORLD_STATE: interpolated between snapshots, extrapolated by a bounded
-// time. Pure.
+// The poses of the bodies at an instant, from WORLD_STATE: interpolated between snapshots, extrapolated by a bounded time.
+// Pure.
 //
-// Bodies that are computed ahead are told for an instant to come, so that the newest sample of a body is not where
-// it is now. When one is touched before that instant it is told anew, and what was said ahead of it holds no more:
-// whichever of the two pages comes first.
+// The simulation publishes bodies that it computes ahead for a future instant, so the newest sample of a body may lie in the
+// future. When such a body is touched before that instant, the simulation publishes it again, and the earlier predictions are
+// void, in whichever order the two pages arrive.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -28,32 +28,32 @@ struct BodyPose {
 
 class BodyHistory {
  public:
-  // Past the newest sample a body moves on with its velocity for so long, then it is held, then stale: three
-  // snapshots at 60 Hz may be missed before it stops.
+  // Extrapolation: after its newest sample a body continues with its velocity for this time; then its pose is held, then
+  // stale. Three snapshots at 60 Hz may be missing before the body stops.
   static constexpr Nanoseconds kExtrapolateAtMost{50'000'000};
   static constexpr Nanoseconds kStaleAfter{200'000'000};
-  // At the least, however old; and so much of the past, as far as kMaxSamples reaches, so that a sense may present
-  // that late.
+  // Minimum number of samples per body, of any age; and the length of the stored past, limited by kMaxSamples, which limits
+  // the presentation delay of a modality.
   static constexpr std::size_t kSamplesPerBody = 64;
   static constexpr Nanoseconds kSpan{1'000'000'000};
-  // More bodies cannot be told of once a second: 2,000 pages of 18.
+  // Upper limit of the bodies that one snapshot a second can carry: 2,000 pages of 18.
   static constexpr int kMaxBodies = 36'000;
-  // Of all bodies together, some 64 MB: when there are more, each keeps fewer.
+  // Of all bodies together, about 64 MB; with more bodies, each keeps fewer samples.
   static constexpr std::size_t kMaxSamples = 1 << 19;
 
   explicit BodyHistory(OwnClock own) : follower_(own) {}
 
-  // A sense asks for what is so long ago: so much more than kSpan is kept.
+  // Stores this time beyond kSpan, for a modality that presents with this delay.
   void keep(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const world_state_t& page, HostTime arrival);
-  // Hermite in position, SLERP in orientation. A body at rest that a snapshot leaves out rests where it
-  // was, and moves off no earlier than between the last two snapshots; one that moved was in a page that was lost,
-  // and moves on as past the newest sample.
+  // Hermite interpolation in position, SLERP in orientation. A body at rest that a snapshot leaves out rests at its last
+  // pose, and starts to move no earlier than between the last two snapshots. A moving body that a snapshot leaves out was in
+  // a lost page, and is extrapolated as after the newest sample.
   Sample<BodyPose> pose(int body, SimTime t) const;
-  // How the newest snapshot as a whole relates to t; it may be of an instant to come.
+  // The relation of the newest snapshot as a whole to t; its instant may lie in the future.
   SampleStatus status(SimTime t) const;
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
-  // Pages more than 1 s ahead of their simulation's own time, and bodies beyond kMaxBodies.
+  // Rejected pages more than 1 s ahead of their simulation's own time, and rejected bodies beyond kMaxBodies.
   std::int64_t refused() const { return refused_; }
 
  private:
@@ -61,9 +61,9 @@ class BodyHistory {
 
   struct Stamped {
     SimTime time;
-    std::int64_t seq = 0;  // of its page: which was said first
-    bool ahead = false;    // told for an instant to come
-    Nanoseconds period{};  // between snapshots when it was told; 0: not known
+    std::int64_t seq = 0;  // of its page: the order of publication
+    bool ahead = false;    // published for a future instant
+    Nanoseconds period{};  // between snapshots at the time of publication; 0: not known
     BodyPose pose;
   };
   using Samples = std::deque<Stamped>;  // in order of time, one per instant

@@ -1,4 +1,4 @@
-// Integrals of contact over a tick, for the slow senses.
+// Integrals of contact over a tick, for slow modalities.
 #include <algorithm>
 #include <map>
 #include <tactus/contact_t.hpp>
@@ -12,7 +12,7 @@ struct Interval {
   SimTime begin, end;
 };
 
-// Length of the union.
+// Length of the union of the intervals.
 Nanoseconds covered(std::vector<Interval> intervals) {
   std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
   Nanoseconds sum{0};
@@ -30,7 +30,7 @@ struct Sum {
   std::int32_t body = -1, material = -1;
 };
 
-// Of one body, with all its contacts.
+// The sums of one body, over all its contacts.
 struct PartSum {
   std::vector<Interval> touching;
   double force_N = 0, area_m2 = 0;
@@ -44,7 +44,8 @@ std::vector<ContactPart> finished(Parts& parts) {
   return result;
 }
 
-// The side that is not the tool. Without the tool's body id: side a, since tools are the last bodies of a scene.
+// The body and material of the side that is not the tool. Without the tool's body id: side a, since tools are the last bodies
+// of a scene.
 template <class Contact>
 std::pair<std::int32_t, std::int32_t> other_side(const Contact& c, int tool_body) {
   return c.body_a == tool_body ? std::pair{c.body_b, c.material_b} : std::pair{c.body_a, c.material_a};
@@ -83,7 +84,7 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     part.touching.push_back({begin, end});
   };
 
-  // From the last snapshot before the interval on; those after it cannot reach into it.
+  // Starts at the last snapshot before the interval; snapshots after the interval are not needed.
   const auto first = std::upper_bound(group.begin(), group.end(), t0, [](SimTime t, const auto& s) { return t < s.time; });
   for (std::size_t i = first == group.begin() ? 0 : static_cast<std::size_t>(first - group.begin()) - 1;
        i < group.size() && group[i].time < t1; ++i) {
@@ -91,7 +92,7 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     const SimTime until = last ? group[i].time + kStaleAfter : group[i + 1].time;
     for (const contact_t& c : group[i].contacts) add(c, group[i].time, until);
     if (last) break;
-    // What the next snapshot shows for the first time began in between.
+    // A contact that appears first in the next snapshot began in between.
     for (const contact_t& c : group[i + 1].contacts) {
       const auto& now = group[i].contacts;
       const bool was_there = std::any_of(now.begin(), now.end(), [&](const contact_t& x) { return x.contact_id == c.contact_id; });
@@ -100,8 +101,8 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     }
   }
 
-  // Contacts that lived and died between two snapshots: their events alone tell of them. The force follows from the
-  // momentum that a plastic impact exchanges, m v, spread over the tick; the area is not known.
+  // Contacts that began and ended between two snapshots are known from their events alone. Their force follows from the
+  // momentum that a plastic impact exchanges, m v, spread over the tick; their area is not known.
   for (const auto& [id, life] : lives_) {
     if (!life.begin || !life.end || life.begin->tool != tool || sums.contains(id)) continue;
     const SimTime begin = std::max(t0, sim_time(life.begin->time_ns)), end = std::min(t1, *life.end);

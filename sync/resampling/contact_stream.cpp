@@ -10,16 +10,16 @@
 namespace tactus::sync {
 namespace {
 
-// At the least, however old.
+// Minimum number of snapshots, of any age.
 constexpr std::size_t kSnapshots = 128;
-// Snapshots of which pages are still on their way: 50 of the tool group while a wire delays some of its pages by
-// kStaleAfter. Of large ones fewer: all their pages together are bounded as well.
+// Incomplete snapshots: 50 of the tool group while a network delays some of its pages by kStaleAfter. The limit on all their
+// pages together allows fewer large ones.
 constexpr PageLimits kPartial{
     .groups = 64, .pages = ContactStream::kMaxPages, .total = 8 * static_cast<std::size_t>(ContactStream::kMaxPages)};
 
 float mix(float a, float b, double s) { return static_cast<float>((1 - s) * a + s * b); }
 
-// The scalars of the same contact between two snapshots; points and normal stay those of the older.
+// Interpolates the scalars of one contact between two snapshots; points and normal stay those of the older.
 contact_t between(contact_t a, const contact_t& b, double s) {
   a.depth_m = mix(a.depth_m, b.depth_m, s);
   a.area_m2 = mix(a.area_m2, b.area_m2, s);
@@ -54,7 +54,7 @@ bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, Hos
   return true;
 }
 
-// What was credible once need not be any more: its message may have been the first of all, and false.
+// Removes content after `latest`: it may have been accepted only because its corrupt message was the first one.
 void ContactStream::forget_after(SimTime latest) {
   pending_.erase(pending_.upper_bound(latest), pending_.end());
   for (std::size_t group = 0; group < kGroups; ++group) {
@@ -103,7 +103,7 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
     return;
   }
   const auto& snapshots = snapshots_[group];
-  // Repeated, or older than all that is kept.
+  // Repeated, or older than all stored snapshots.
   if (!snapshots.empty() && snapshots.size() >= kSnapshots && time < snapshots.front().time) return;
   const auto at = std::lower_bound(snapshots.begin(), snapshots.end(), time, [](const Snapshot& s, SimTime t) { return s.time < t; });
   if (at != snapshots.end() && at->time == time) return;
@@ -114,12 +114,12 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
     snapshot.contacts.insert(snapshot.contacts.end(), page.contacts.begin(), page.contacts.end());
     snapshot.seqs.resize(snapshot.contacts.size(), page.seq);
   }
-  // One that was overtaken may still become whole, unless it is too old to matter.
+  // An overtaken snapshot may still be completed, unless it is too old to matter.
   partial_[group].drop_if([&](SimTime t) { return t < time - kStaleAfter; });
   insert(group, std::move(snapshot));
 }
 
-// One that was overtaken finds its place: the newest alone never decides that those after it are of no use.
+// Inserts a snapshot in order of time. An overtaken snapshot is inserted, too: later snapshots do not make it useless.
 void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   auto& snapshots = snapshots_[group];
   contacts_kept_[group] += snapshot.contacts.size();
@@ -154,7 +154,7 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
   return it->time == t ? SampleStatus::kExact : SampleStatus::kInterpolated;
 }
 
-// It is told ahead, neither the snapshot before nor its begin knows of it: maybe it never comes true.
+// True for a contact that is predicted only: neither the snapshot before nor a begin event contains it. It may never happen.
 bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
   const Life* life = lives_.find(id);
@@ -178,7 +178,8 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
     if (next != after->contacts.end()) out.back().contact = between(c, *next, s);
   }
   if (after == group.end()) return;
-  // Begun since the older snapshot: known from the newer one, and from its begin event that it was there already.
+  // Contacts that began since the older snapshot: the newer snapshot contains them, and their begin event shows that they
+  // existed at t.
   for (std::size_t i = 0; i < after->contacts.size(); ++i) {
     const contact_t& c = after->contacts[i];
     const Life* life = lives_.find(c.contact_id);
@@ -188,8 +189,8 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   }
 }
 
-// Of a contact that moved between the groups of bodies: as a snapshot of t or before has it rather than one of later,
-// and of two as the one has it that was said later.
+// Removes duplicates of a contact that moved between the groups of bodies: a snapshot at or before t takes precedence over a
+// later one, then the page that was published last.
 void ContactStream::keep_last_told(std::vector<Candidate>& list) {
   const auto better = [](const Candidate& a, const Candidate& b) { return std::pair(a.present, a.seq) > std::pair(b.present, b.seq); };
   std::map<std::int64_t, std::size_t> at;

@@ -1,4 +1,4 @@
-// Turns the contact channels into what a sense needs for its tick: the events due, the state at an instant, and
+// Converts the contact channels into the inputs of a renderer's tick: the due events, the contact state at an instant, and
 // the integrals over the tick. Pure: time and messages are arguments.
 #pragma once
 
@@ -24,74 +24,73 @@
 
 namespace tactus::sync {
 
-// Live contacts at an instant.
+// Active contacts at an instant.
 using Contacts = std::vector<contact_t>;
 
-// What a slow sense integrates: means over a tick, weighted by the time of contact.
-// What the tool had of one body in an interval.
+// The contact of the tool with one body in an interval. Slow modalities integrate: values are means over a tick, weighted by
+// the time of contact.
 struct ContactPart {
   std::int32_t body = -1, material = -1;
-  Nanoseconds contact_time{0};  // how long it touched that at all
+  Nanoseconds contact_time{0};  // duration of contact with this body
   double force_N = 0;           // means over the whole interval, as below
   double area_m2 = 0;
 };
 
 struct ContactIntegral {
-  Nanoseconds contact_time{0};  // how long the tool touched at all within the interval
+  Nanoseconds contact_time{0};  // duration of any contact of the tool within the interval
   double force_N = 0;           // mean normal force over the whole interval
   double area_m2 = 0;           // mean area over the whole interval
   std::int32_t material = -1;   // of the other body of the contact that lasted longest; -1: none
   std::int32_t body = -1;
   SampleStatus status = SampleStatus::kNone;
-  std::vector<ContactPart> parts;  // all bodies touched, by body and material; they add up to the whole but for the time
+  std::vector<ContactPart> parts;  // all touched bodies, by body and material; their sums equal the totals, except the time
 };
 
 class ContactStream {
  public:
-  // Past the newest snapshot the contact state is held, since its begin and end come as events; then it is stale.
+  // After the newest snapshot the contact state is held for this time, because begin and end arrive as events; then it is
+  // stale.
   static constexpr Nanoseconds kStaleAfter{50'000'000};
   static constexpr std::size_t kMaxPendingEvents = 4096;
-  // 2,000 contacts, three a page, are 700 pages.
+  // 2,000 contacts, three a page, need 700 pages.
   static constexpr int kMaxPages = 1024;
   // Of all snapshots of a group together: half a second of 2,000 contacts at 60 Hz.
   static constexpr std::size_t kMaxContacts = 1 << 16;
 
-  // So much of the past is kept at the least, as far as kMaxContacts reaches, so that a sense may present that late.
+  // Length of the stored past, limited by kMaxContacts; it limits the presentation delay of a modality.
   static constexpr Nanoseconds kSpan{1'000'000'000};
 
-  // own: messages of another clock are read through its map; those of another run by arrival.
+  // own: times on another clock are converted by its map; times of another run by arrival.
   explicit ContactStream(OwnClock own);
 
-  // A sense asks for what is so long ago: so much more than kSpan is kept.
+  // Stores this time beyond kSpan, for a modality that presents with this delay.
   void keep(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const contact_events_t&, HostTime arrival);
   void push(const contact_frame_t&, HostTime arrival);
 
-  // Map between simulated time and our host clock, from the newest message. Nothing before the first.
+  // Map between simulated time and this host's clock, from the newest message. nullopt before the first.
   std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
 
-  // Events whose time is before `until` and that were not taken before, in order of time; each exactly once,
-  // however often it was repeated or replayed within an incarnation. An event that arrives late is returned at the
-  // next call.
+  // Events before `until` that were not returned before, in order of time. Each event is returned once within an incarnation,
+  // regardless of repetitions and replays. A late event is returned at the next call.
   std::vector<contact_event_t> take_events(SimTime until);
 
-  // Contacts alive at `t`, of all groups: the newest complete snapshot at or before t, its forces and depths
-  // interpolated towards the next. `how` is the worst of the groups. A contact whose begin lies after t or whose end
-  // lies at or before t is not in it, whatever the snapshots say. One that moved between OTHER and AHEAD is there once,
-  // as it was told last; one that was foreseen is there once its begin has been heard or another snapshot tells of it too.
+  // Contacts that exist at `t`, of all groups: the newest complete snapshot at or before t, with forces and depths
+  // interpolated towards the next. `status` is the worst of the groups. Begin and end events take precedence: a contact that
+  // begins after t or ends at or before t is left out. A contact that moved between OTHER and AHEAD is listed once, as
+  // published last. A predicted contact is listed once its begin event has arrived or another snapshot contains it.
   Sample<Contacts> state_at(SimTime t) const;
 
-  // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact
-  // shorter than the interval between snapshots counts. tool_body: the tool's body id, to tell which side is the
-  // other body.
+  // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact shorter than the
+  // interval between snapshots counts. tool_body: the body id of the tool, which distinguishes it from the other body.
   ContactIntegral integral(SimTime t0, SimTime t1, int tool, int tool_body = -1) const;
 
-  // How many times a new incarnation or epoch of the simulation ended all contacts.
+  // Number of new incarnations or epochs of the simulation, each of which ended all contacts.
   std::int64_t restarts() const { return restarts_; }
   std::int64_t duplicates() const { return duplicates_; }
-  // Events and pages that no simulation can have meant: more than 1 s ahead of its own time, or of too many pages.
+  // Rejected events and pages: more than 1 s ahead of their simulation's own time, or with too many pages.
   std::int64_t refused() const { return refused_; }
-  // Events that found no room: of all that were pending, the latest.
+  // Dropped events: when too many are pending, the latest are dropped.
   std::int64_t overflow() const { return overflow_; }
 
  private:
@@ -99,7 +98,7 @@ class ContactStream {
   struct Snapshot {
     SimTime time;
     Contacts contacts;
-    std::vector<std::int64_t> seqs;  // of the page of each
+    std::vector<std::int64_t> seqs;  // of the page of each contact
   };
   struct Page {
     Contacts contacts;
@@ -119,7 +118,7 @@ class ContactStream {
   struct Candidate {  // for the state at an instant
     contact_t contact;
     std::int64_t seq = 0;
-    bool present = false;  // in a snapshot of that instant or before; else known from a later one alone
+    bool present = false;  // in a snapshot at or before that instant; else only in a later one
   };
   void append_state(std::size_t group, SimTime t, std::vector<Candidate>& out) const;
   bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;

@@ -16,15 +16,15 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& from, const Eigen::Vector3d&
 }  // namespace
 
 void PoseHistory::push(const tool_state_t& m, HostTime arrival) {
-  if (m.header.incarnation != incarnation_) {  // another process holds it now; what it held before is over
+  if (m.header.incarnation != incarnation_) {  // another process controls the tool now; earlier reports are void
     incarnation_ = m.header.incarnation;
     sender_ = SenderClock(own_);
     samples_.clear();
   }
   sender_.observe(m.header, arrival);
-  // Nothing was read later than it arrived.
+  // The device was read before the report arrived.
   const HostTime time = std::min(sender_.to_host(m.header.publish_time_ns, arrival), arrival);
-  // A log that is played anew begins before what was heard: that is over.
+  // A log that is replayed from its start begins before the stored reports: they are void.
   if (!samples_.empty() && time < samples_.back().time - kSpan) samples_.clear();
   if (!samples_.empty() && time <= samples_.back().time) return;
   samples_.push_back({time,

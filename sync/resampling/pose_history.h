@@ -1,5 +1,5 @@
-// Where something is that reports its pose many times a second, at an instant of the host: interpolated between
-// reports, carried on past the newest for a bounded time, then held. Pure.
+// The pose of a device that reports it many times a second, at an instant of the host clock: interpolated between reports,
+// extrapolated past the newest for a bounded time, then held. Pure.
 #pragma once
 
 #include <deque>
@@ -13,25 +13,25 @@
 
 namespace tactus::sync {
 
-// The device of one tool, from TOOL_STATE. By the times at which it was read, not by those of the world: a head
-// goes on moving when the world stands still.
+// The device of one tool, from TOOL_STATE. Samples are ordered by the time at which the device was read, not by simulated
+// time: a head moves also while the world stands still.
 class PoseHistory {
  public:
-  // design: an eye that goes on for longer than a frame overshoots visibly when the head stops.
+  // design: a longer extrapolation of the eye overshoots visibly when the head stops
   static constexpr Nanoseconds kExtrapolateAtMost{20'000'000};
-  // design: as long as for the bodies of the world.
+  // design: as for the bodies of the world
   static constexpr Nanoseconds kStaleAfter{200'000'000};
-  // So much of the past is kept, for a sense that presents late: of 4 kHz 4096 reports.
+  // Length of the stored past, for a modality with a presentation delay: 4096 reports at 4 kHz.
   static constexpr Nanoseconds kSpan{1'000'000'000};
   static constexpr std::size_t kMaxSamples = 4096;
 
-  // own: reports of another clock are read through its map; those of another run by arrival.
+  // own: times on another clock are converted by its map; times of another run by arrival.
   explicit PoseHistory(OwnClock own) : sender_(own), own_(own) {}
 
   void push(const tool_state_t& state, HostTime arrival);
-  // What was heard is of a world that is no more.
+  // Removes all reports, because they belong to an earlier world.
   void forget() { samples_.clear(); }
-  // kNone: nothing was ever heard. Past kStaleAfter it is still the last pose, and kStale.
+  // kNone: no report has arrived. After kStaleAfter it is the last pose with kStale.
   Sample<BodyPose> at(HostTime t) const;
 
  private:

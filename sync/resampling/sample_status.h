@@ -1,4 +1,4 @@
-// How a value was obtained: a result says how good it is instead of falling back in silence.
+// The status of a sampled value: exact, interpolated, extrapolated, held or stale.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@ namespace tactus::sync {
 
 enum class SampleStatus : std::int8_t {
   kNone = 0,      // nothing has arrived yet
-  kExact,         // a sample of just this instant
+  kExact,         // a sample of exactly this instant
   kInterpolated,  // between two samples
-  kExtrapolated,  // past the newest sample, by no more than the bound
+  kExtrapolated,  // past the newest sample, within the bound
   kHeld,          // the newest sample, past the bound
-  kStale,         // the newest sample, so old that it should not be relied on
+  kStale,         // the newest sample, too old to rely on
 };
 
 const char* to_string(SampleStatus);

@@ -13,7 +13,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::size_t kWaiting = 1 << 16;  // design: bytes for one call of the system
+constexpr std::size_t kWaiting = 1 << 16;  // design: bytes per system call
 
 }  // namespace
 
@@ -30,7 +30,7 @@ AtomicFile::AtomicFile(std::string path, std::string option)
     throw std::runtime_error("cannot write " + path_ + " (" + std::strerror(errno) + "); choose another " +
                              option_);
   if (part_ == path_) return;
-  // Of two that write one file the second is refused; who dies lets go.
+  // The second of two writers of one file is refused; the lock ends with the process.
   if (flock(file_, LOCK_EX | LOCK_NB) != 0 || ftruncate(file_, 0) != 0) {
     close(std::exchange(file_, -1));
     throw std::runtime_error("another program is writing " + part_ + "; choose another " + option_);

@@ -1,4 +1,4 @@
-// A text file that bears its name only when it is whole: until then it is FILE.part, which goes with this.
+// A text file that is written as FILE.part and renamed to FILE on finish(); without finish() the part is deleted.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@ namespace tactus::sync {
 
 class AtomicFile {
  public:
-  // option: which the person who reads a complaint is to choose anew, e.g. "--trace". Throws std::runtime_error
-  // with one sentence when it cannot be made, or another program is writing it.
+  // option: named in error messages as the option to change, e.g. "--trace". Throws std::runtime_error with one sentence when
+  // the file cannot be created, or another program is writing it.
   AtomicFile(std::string path, std::string option);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  // Throws std::runtime_error with one sentence when the disk does not take it.
+  // Throws std::runtime_error with one sentence when writing fails.
   void write(std::string_view text);
-  // It gets its name; nothing is written any more. Throws as write does.
+  // Renames the file; no write may follow. Throws as write does.
   void finish();
   const std::string& path() const { return path_; }
 
@@ -28,8 +28,7 @@ class AtomicFile {
   int file_ = -1;
 };
 
-// Where such a file is while it is not whole. What is there and no plain file, such as /dev/null, is written to as
-// it is.
+// The path of the unfinished file. An existing path that is no plain file, such as /dev/null, is written directly.
 std::string part_of(const std::string& path);
 
 }  // namespace tactus::sync

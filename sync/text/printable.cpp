@@ -5,7 +5,7 @@
 namespace tactus::sync {
 namespace {
 
-// Bytes of the character that begins here; 0: it is none that may be shown.
+// Bytes of the character that begins here; 0: not printable.
 std::size_t shown_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);

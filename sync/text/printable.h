@@ -1,4 +1,4 @@
-// Text that came over the bus or out of a file, made fit for a terminal. Pure.
+// Escapes text from the bus or from files for a terminal. Pure.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace tactus::sync {
 
-// Control characters, which would be orders to the terminal, and bytes that are no UTF-8 become \xNN; all else stays. A text is
-// one line: a line break is escaped too.
+// Control characters, which a terminal would execute, and invalid UTF-8 become \xNN; all else stays. The result is one line:
+// line breaks are escaped, too.
 std::string printable(std::string_view text);
 
 }  // namespace tactus::sync

@@ -15,7 +15,7 @@ struct Unit {
   std::string_view written, base;
   double factor;
 };
-// SI prefixes that people write for these quantities, and degrees.
+// Common SI prefixes of these quantities, and degrees.
 constexpr std::array kUnits{
     Unit{"ns", "s", 1e-9},   Unit{"us", "s", 1e-6},     Unit{"ms", "s", 1e-3},      Unit{"min", "s", 60},
     Unit{"kHz", "Hz", 1e3},  Unit{"mm", "m", 1e-3},     Unit{"cm", "m", 1e-2},      Unit{"um", "m", 1e-6},
@@ -32,7 +32,7 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-// As people write it: no trailing zeros, and no unit of what has none.
+// Without trailing zeros, and without a unit for dimensionless values.
 std::string number_text(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", number);

@@ -1,5 +1,5 @@
-// The options of a node: a struct with defaults (generated from its settings.csv) and the table that fills it by name,
-// from the scene or from the command line.
+// The settings of a node: a struct with defaults (generated from its settings.csv) and the table that sets its members by
+// name, from the scene or from the command line.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace tactus::sync {
 
-// A number with a unit as text, in the base unit given: ("20ms", "s") -> 0.02, ("1.5 kHz", "Hz") -> 1500.
-// A number without unit is taken in the base unit. Throws std::invalid_argument with one sentence.
+// Parses a number with a unit into the given base unit: ("20ms", "s") -> 0.02, ("1.5 kHz", "Hz") -> 1500. A number without
+// unit is taken in the base unit. Throws std::invalid_argument with one sentence.
 double parse_quantity(std::string_view text, std::string_view unit);
 
 // One row of a settings.csv.
@@ -24,8 +24,7 @@ struct SettingRow {
   double max;
   const char* meaning;
   const char* source;
-  // A limit that protects a person: "max", an upper one, or "min", a lower one. A scene may only tighten it. "":
-  // none.
+  // Safety limit for persons: "max", an upper one, or "min", a lower one. A scene may only tighten it. "": none.
   const char* safety = "";
   bool live = false;  // may be changed while the node runs
 };
@@ -33,8 +32,7 @@ struct SettingRow {
 // Checks a value against its row. Throws std::invalid_argument with one sentence that names the setting and its range.
 void check_setting(const SettingRow& row, std::string_view value);
 
-// The same for a value that a scene asks for: one that loosens a safety limit beyond its default does not fit
-// either.
+// The same for a value from a scene: a value that loosens a safety limit beyond its default is refused, too.
 void check_scene_setting(const SettingRow& row, std::string_view value);
 
 template <class Settings>
@@ -43,8 +41,8 @@ struct SettingField {
   std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*> field;
 };
 
-// Sets one option by name, if `check` lets it. Throws std::invalid_argument when there is none of that name or the
-// value does not fit.
+// Sets one setting by name, if `check` accepts it. Throws std::invalid_argument when the name is unknown or the value is
+// invalid.
 template <class Settings>
 void set(Settings& settings, std::span<const SettingField<Settings>> table, std::string_view name,
          std::string_view value, void (*check)(const SettingRow&, std::string_view) = check_setting) {
@@ -67,8 +65,8 @@ void set(Settings& settings, std::span<const SettingField<Settings>> table, std:
   throw std::invalid_argument("there is no setting \"" + std::string(name) + "\"");
 }
 
-// Changes one option of a node that runs. It is asked for over the bus, by anybody: a safety limit may not become looser
-// than its default, nor than `own`, which is what scene and command line say. Throws std::invalid_argument with one sentence;
+// Changes one setting of a running node. Any program can request it over the bus, so a safety limit may not become looser
+// than its default, nor than `own`, the value from scene and command line. Throws std::invalid_argument with one sentence;
 // then nothing has changed.
 template <class Settings>
 void change_live(Settings& settings, const Settings& own, std::span<const SettingField<Settings>> table,
@@ -93,9 +91,9 @@ void change_live(Settings& settings, const Settings& own, std::span<const Settin
                    : "setting \"" + std::string(name) + "\" cannot be changed while it runs; what can is " + live);
 }
 
-// Applies what a scene says of `node` (a list of {node, name, value}), then what the command line says
-// ("name=value"). A scene comes over the bus, from anybody: only the command line may loosen a safety limit.
-// Returns one sentence per refused entry; the others hold.
+// Applies the settings of a scene for `node` (a list of {node, name, value}), then those of the command line ("name=value").
+// Any program can send a scene, so only the command line may loosen a safety limit. Returns one sentence per refused entry;
+// the others are applied.
 template <class Settings, class SceneSettings>
 std::vector<std::string> apply_settings(Settings& settings, std::span<const SettingField<Settings>> table,
                                         std::string_view node, const SceneSettings& from_scene,

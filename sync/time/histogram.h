@@ -1,4 +1,4 @@
-// A histogram of durations in logarithmic bins: constant size, mergeable, good to 19 % (a quarter octave) a bin.
+// A histogram of durations in logarithmic bins: constant size, mergeable, accurate to 19 % (a quarter octave) a bin.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace tactus::sync {
 
-// Bin 0 holds everything below 1 us; bin i > 0 holds 2^((i-1)/4) .. 2^(i/4) us; the last one all above (0.8 s).
+// Bin 0 holds durations below 1 us; bin i > 0 holds 2^((i-1)/4) .. 2^(i/4) us; the last one all longer ones (from 0.8 s).
 class Histogram {
  public:
   static constexpr int kBins = 80;
@@ -21,7 +21,7 @@ class Histogram {
   Nanoseconds quantile(double q) const;
   Nanoseconds max() const { return max_; }
 
-  // Adds the counts of another.
+  // Adds the counts of another histogram.
   void merge(const Histogram& other);
   histogram_t to_message() const;
   static Histogram from_message(const histogram_t&);

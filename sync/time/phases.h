@@ -1,10 +1,9 @@
-// Where the time of a tick goes. Code says what it is at by a scope:
+// Measures the time of each phase of a tick. A scope marks a phase:
 //
 //   const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
 //
-// and costs one comparison while nobody wants to know. Which tick it is part of is a matter of the thread: the
-// loop of a process has its phases, threads beside it have none, and a library needs no argument for it and
-// computes the same.
+// It costs one comparison while no process requests the times. The measurement belongs to the thread: the loop of a process
+// has phases, other threads have none, and a library needs no argument for it and computes the same.
 #pragma once
 
 #include <array>
@@ -24,10 +23,10 @@ class Phases {
   using Clock = HostTime (*)();
   explicit Phases(Clock clock) : clock_(clock) {}
 
-  // A tick of this thread begins; measured: somebody wants to know. What is not measured stays as it was.
+  // Begins a tick of this thread. measured: the times are requested; otherwise the last results stay.
   void begin(bool measured);
   void end();
-  // Of the last tick that was measured, us.
+  // Of the last measured tick, us.
   double us(Phase phase) const { return told_us_[static_cast<std::size_t>(phase)]; }
   const double* told(Phase phase) const { return &told_us_[static_cast<std::size_t>(phase)]; }
 

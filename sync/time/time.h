@@ -1,4 +1,4 @@
-// The two kinds of time, as types that cannot be mixed: subtracting one from the other does not compile.
+// Host time and simulated time as two types that cannot be mixed: subtracting one from the other does not compile.
 #pragma once
 
 #include <chrono>
@@ -38,22 +38,22 @@ constexpr std::int64_t to_ns(TimePoint t) {
 constexpr Nanoseconds from_seconds(double s) { return Nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
 constexpr double to_seconds(Nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
 
-// The map between simulated time and the host clock: two members that belong together, and how fast one runs in
-// the other. rate = simulated seconds per host second; 0: paused, every host time maps to `sim`.
+// The map between simulated time and the host clock: two corresponding instants and a rate. rate = simulated seconds per host
+// second; 0: paused, every host time maps to `sim`.
 struct TimeMap {
   SimTime sim{};
   HostTime host{};
   double rate = 1;
 
   SimTime to_sim(HostTime t) const { return sim + scaled(t - host, rate); }
-  // While paused an instant of the world has no host time but the map's own.
+  // While paused, every instant of the world maps to the host time of the map.
   HostTime to_host(SimTime t) const { return rate > 0 ? host + scaled(t - sim, 1 / rate) : host; }
 
  private:
   static Nanoseconds scaled(Nanoseconds d, double factor) {
     if (factor == 1) return d;  // keeps whole nanoseconds exact
     const double ns = static_cast<double>(d.count()) * factor;
-    constexpr double kMax = 3e18;  // 95 years, so that what a message makes up does not overflow
+    constexpr double kMax = 3e18;  // 95 years: keeps values from corrupt messages from overflowing
     return Nanoseconds(static_cast<std::int64_t>(!(ns > -kMax) ? -kMax : ns < kMax ? ns : kMax));
   }
 };

@@ -33,7 +33,7 @@ std::string seconds(std::int64_t ns) {
   return text;
 }
 
-// What every row of a message begins with.
+// The leading columns of every row of a message.
 std::string begin_of(const TableContext& context, const LogEvent& event, HostTime arrival) {
   const auto header = peek_header(event.data.data(), event.data.size());
   std::string text = seconds(to_ns(arrival) - context.origin().info.live_from_ns) + ",";
@@ -134,7 +134,8 @@ std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent
   const auto m = decode<tag_values_t>(event.data.data(), event.data.size());
   std::string rows;
   if (!m) return rows;
-  // On the recorder's own clock exactly; on another's as much before the arrival as it is before the sending.
+  // Exact on the recorder's own clock; on another clock, the event precedes the arrival by as much as it precedes the
+  // publication.
   const log_info_t& info = context.origin().info;
   const std::int64_t sent_ns =
       (m->header.clock == info.header.clock ? 0 : to_ns(arrival) - m->header.publish_time_ns) - info.live_from_ns;

@@ -1,5 +1,5 @@
-// Rows of the tables that hold every message of a channel, whatever its type: long, a row for each number or text,
-// or wide, a row for each message. Pure. docs/export.md says what the columns are.
+// Table rows of every message of a channel, of any type: long, a row for each number or text, or wide, a row for each
+// message. Pure. docs/export.md describes the columns.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@
 
 namespace tactus::sync {
 
-// What the columns that all tables have are filled from, and learnt of, all messages of a log.
+// The data of the columns that all tables have, collected from all messages of a log.
 class TableContext {
  public:
   static constexpr std::size_t kMaxNames = 4096;
 
   explicit TableContext(const LogOrigin& origin) : origin_(origin) {}
-  // Once for each event of the log, before any row is made: names of senders, lists of tags.
+  // Call it once for each event of the log, before making any row: collects names of senders and lists of tags.
   void learn(const LogEvent& event);
   // Seconds since the live part of the log began.
   double log_s(HostTime arrival) const;
-  // The name of the process with that hash; in hexadecimal when it never said it.
+  // The name of the process with that hash; the hash in hexadecimal when no message contains the name.
   std::string sender(std::int32_t source) const;
   const TagTable& tags() const { return tags_; }
   const LogOrigin& origin() const { return origin_; }
@@ -36,7 +36,7 @@ class TableContext {
   TagTable tags_;
 };
 
-// One cell by RFC 4180, and a number so that it reads back to the same.
+// One cell by RFC 4180; a number is written so that it reads back unchanged.
 std::string csv_cell(std::string_view text);
 std::string csv_cell(const Leaf& value);
 
@@ -46,8 +46,8 @@ std::string long_names();
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
                       HostTime arrival);
 
-// Of a type: the fields that every message has once, each in a column named "field (unit)". What is in a list is
-// in no column.
+// The columns of a type: the fields that every message has once, each in a column named "field (unit)". Fields within lists
+// have no column.
 class WideColumns {
  public:
   explicit WideColumns(const MessageType& type);
@@ -60,7 +60,7 @@ class WideColumns {
   std::vector<std::string> paths_;
 };
 
-// log_s, node, tag, unit, value: of every value that a TAG_VALUES holds.
+// log_s, node, tag, unit, value: of every value in a TAG_VALUES.
 std::string tag_names();
 std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival);
 

@@ -1,9 +1,9 @@
-// compare_aligners: the same trace of latencies through every aligner, as a table.
+// compare_aligners: applies every aligner to the same trace of latencies, and prints a table.
 //
-//   in   LOG...   logs of runs: what each sense needed for each event, as PRESENTED says; none: a made trace
+//   in   LOG...   logs of runs: the latency that each modality needed for each event, from PRESENTED; none: a synthetic trace
 //
-// The made trace: three senses at 20, 33 and 12 ms with tails (exponential, 4 ms; Pareto of shape 2.5, 3 ms;
-// none), and a third of the way through 15 ms more for the second, as when a network is loaded.
+// The synthetic trace: three modalities at 20, 33 and 12 ms with tails (exponential, 4 ms; Pareto of shape 2.5, 3 ms; none),
+// and 15 ms more for the second one from a third of the trace on, as when a network is loaded.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// degrade: puts a degradation profile in force in a running cluster, or takes it away, and says who has taken it.
+// degrade: puts a degradation profile in force in a running cluster, or removes it, and prints which nodes have adopted it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -57,8 +57,8 @@ int main(int argc, char** argv) try {
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
   sync::SimClockTracker simulation(bus.clocks());
-  std::map<std::string, bool> senses;  // whether each has taken it
-  std::set<std::string> modalities;    // that are there
+  std::map<std::string, bool> senses;  // node -> whether it has adopted the profile
+  std::set<std::string> modalities;    // that are present
   const sync::HostTime begin = sync::host_now();
   while (sync::host_now() < begin + kListen) {
     bus.wait(kRepeat);
@@ -89,7 +89,7 @@ int main(int argc, char** argv) try {
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty())
         senses[m->message.node] = m->message.profile == profile.hash;
-    // Every sense has spoken twice by then.
+    // Every node has published its health twice by then.
     const bool all = std::all_of(senses.begin(), senses.end(), [](const auto& s) { return s.second; });
     if (!senses.empty() && all && sync::host_now() - sent > 3 * kRepeat) break;
   }

@@ -1,9 +1,9 @@
-// export_csv: makes tables of what the hand felt and of what the skin felt from the log of a run.
+// export_csv: exports the haptic and thermal output of a run from its log as CSV tables.
 //
 //   in   LOG...
 //   out  DIR/haptic.csv, DIR/thermal.csv
 //
-// A damaged log is read as far as it is intact.
+// Intact parts of a damaged log are read.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>

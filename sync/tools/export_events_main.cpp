@@ -1,9 +1,9 @@
-// export_events: makes tables of the contact events, of what was presented, and of the clocks of sound and picture.
+// export_events: exports the contact events, the presentation reports, and the clocks of sound and picture as CSV tables.
 //
 //   in   LOG...
 //   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv, DIR/clock_map.csv, DIR/frame_shown.csv
 //
-// A damaged log is read as far as it is intact. Each event and each report is listed once, however often it was sent.
+// Intact parts of a damaged log are read. Each event and each report is listed once, although it is sent repeatedly.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
@@ -42,7 +42,7 @@ int main(int argc, char** argv) try {
   clocks << sync::media_clock_csv_names();
   maps << sync::clock_map_csv_names();
   frames << sync::frame_shown_csv_names();
-  std::map<std::int32_t, std::string> names;  // of processes, by what their messages say instead
+  std::map<std::int32_t, std::string> names;  // of processes, by header.source
   std::set<std::int64_t> seen;
   std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
   for (const std::string& path : logs) {

@@ -1,9 +1,9 @@
-// export_log: makes a table of every channel of a log, for pandas, R, MATLAB, PlotJuggler.
+// export_log: exports every channel of a log as a table, for pandas, R, MATLAB, PlotJuggler.
 //
 //   in   LOG...
 //   out  DIR/CHANNEL.csv, DIR/tags.csv, DIR/schema.json
 //
-// A damaged log is read as far as it is intact; what is not is counted. docs/export.md describes the tables.
+// Intact parts of a damaged log are read; damage is counted. docs/export.md describes the tables.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t kMaxFiles = 256;  // noise has more channels than anybody reads
+constexpr std::size_t kMaxFiles = 256;  // random bytes would create more channels than a user reads
 
 struct Wishes {
   std::vector<std::string> logs;
@@ -54,7 +54,7 @@ class Table {
   std::int64_t rows_ = 0;
 };
 
-// Of a channel of that name and type.
+// A channel of one name and type.
 struct Channel {
   const MessageType* type;
   std::optional<sync::WideColumns> columns;
@@ -152,7 +152,7 @@ class Export {
 
   void add(const sync::LogEvent& event, sync::HostTime at, const sync::TableContext& context, sync::TagTable& tags) {
     const std::string name(event.channel);
-    // What a log says of its own types, and what LCM says to itself, is text of no type.
+    // The type descriptions of a log and LCM's self test are plain text without a type.
     if (name == sync::kLogTypes || name == "LCM_SELF_TEST") return;
     const MessageType* type = type_of(event.data);
     if (!type) {

@@ -1,5 +1,5 @@
-// message_types: says which messages this build speaks: its version, the channels, the fields and fingerprint of every type.
-// Builds that print the same understand each other.
+// message_types: prints the messages of this build: its version, the channels, and the fields and fingerprint of every type.
+// Builds with the same output can communicate.
 #include <CLI/CLI.hpp>
 #include <iostream>
 

@@ -20,7 +20,7 @@ std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
   Partial& p = partials_[m.header.source];
   p.heard = ++messages_;
   const bool another_life = p.incarnation != m.header.incarnation;
-  if (!another_life && m.picture < p.picture) return std::nullopt;  // overtaken by the next
+  if (!another_life && m.picture < p.picture) return std::nullopt;  // overtaken by the next picture
   if (another_life || m.picture > p.picture) {
     skipped_ += static_cast<std::int64_t>(p.chunks.size());
     p.chunks.clear();

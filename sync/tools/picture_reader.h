@@ -1,5 +1,5 @@
-// Puts the pictures of a stream together again from their pieces (PICTURE_CHUNK). Pure. Bounded: of each source
-// only the newest picture is on its way; one with a piece missing is skipped when the next begins.
+// Reassembles the pictures of a stream from their pieces (PICTURE_CHUNK). Pure. Bounded: only the newest picture of each
+// source is assembled; an incomplete one is skipped when the next begins.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace tactus::sync {
 
 struct StreamedPicture {
-  std::int32_t source = 0;  // header.source: which wall
+  std::int32_t source = 0;  // header.source: identifies the wall
   std::int64_t picture = 0;
   std::int64_t sim_time_ns = -1;
   std::int64_t presented_ns = -1;  // by the clock of its source
@@ -24,13 +24,13 @@ struct StreamedPicture {
 
 class PictureReader {
  public:
-  // 4 MiB a picture; and so many walls. Of more, the one that was heard of least lately is forgotten.
+  // 4 MiB a picture, and this number of walls. With more, the wall that has been silent for longest is removed.
   static constexpr int kMaxChunks = 4096;
   static constexpr std::size_t kMaxSources = 8;
 
-  // The picture that this piece completes.
+  // Returns the picture that this piece completes.
   std::optional<StreamedPicture> take(const picture_chunk_t& m);
-  // Pictures that began and were never whole.
+  // Number of pictures that began and were never completed.
   std::int64_t skipped() const { return skipped_; }
 
  private:

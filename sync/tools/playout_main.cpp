@@ -1,5 +1,5 @@
-// playout: asks the running cluster for another policy of presentation, and says when each sense presents from now
-// on.
+// playout: requests another playout policy from the running cluster, and prints the presentation delay of each modality under
+// it.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -27,7 +27,7 @@ namespace {
 constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 100 ms
 constexpr sync::Nanoseconds kListen{500'000'000};     // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
-constexpr sync::Nanoseconds kPages{300'000'000};       // many senses come in several messages, three times in this
+constexpr sync::Nanoseconds kPages{300'000'000};       // a plan of many modalities comes in several messages, three times within this
 
 std::int64_t realtime_ns() {
   return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())

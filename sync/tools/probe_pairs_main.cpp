@@ -1,8 +1,9 @@
-// probe_pairs: one of several, one on each host, started at about the same time: each says what it hears of the others.
+// probe_pairs: measures the network between hosts. One runs on each host, started at about the same time; each reports the
+// datagrams that it receives from the others.
 //
 //   in, out  datagrams of its own (sync/clock_sync/pair_probe.h) to the group, on a port beside the bus
 //
-// Behind tactus cluster doctor. Prints one JSON object and ends, whatever the others do.
+// Used by tactus cluster doctor. Prints one JSON object and ends, also when other hosts do not answer.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -25,12 +26,12 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPeriod{20'000'000};  // of questions, short and long in turn
-constexpr std::uint64_t kBurst = 100;             // datagrams as fast as they go; thrice
+constexpr sync::Nanoseconds kPeriod{20'000'000};  // of requests, short and long alternately
+constexpr std::uint64_t kBurst = 100;             // datagrams of a burst, as fast as possible
 constexpr int kBursts = 3;
-constexpr int kReceiveBufferBytes = 4 << 20;  // as sync/bus/udp_port.cpp asks for
+constexpr int kReceiveBufferBytes = 4 << 20;  // as in sync/bus/udp_port.cpp
 constexpr int kEnds = 5;
-constexpr sync::Nanoseconds kLead{500'000'000};  // the others start at about the same time, no better
+constexpr sync::Nanoseconds kLead{500'000'000};  // the other hosts start at about the same time, no better
 
 class Socket {
  public:
@@ -62,7 +63,7 @@ class Socket {
     return sendto(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&to_), sizeof to_) ==
            static_cast<ssize_t>(bytes.size());
   }
-  // Calls take(datagram, ttl, at) for all that arrive until then.
+  // Calls take(datagram, ttl, at) for all datagrams that arrive until then.
   template <class Take>
   void listen(sync::HostTime until, Take&& take) {
     for (sync::HostTime now = sync::host_now(); now < until; now = sync::host_now()) {
@@ -91,7 +92,7 @@ class Socket {
     int given = 0;
     socklen_t size = sizeof given;
     getsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &given, &size);
-    return given / 2;  // the kernel doubles what is asked
+    return given / 2;  // the kernel doubles the requested size
   }
 
  private:
@@ -130,7 +131,7 @@ int main(int argc, char** argv) try {
       return;
     }
     const auto other = others.find(m.from);
-    if (other == others.end()) return;  // ourselves
+    if (other == others.end()) return;  // this host
     if (m.kind == sync::PairDatagram::kAnswer) {
       if (m.to == host) other->second.hear_answer(m, at);
       return;

@@ -1,10 +1,10 @@
-// relay: carries what other sites need of the bus of this one to them, and what they say to this one. One in each site.
+// relay: carries the bus between sites: messages that other sites need go to them, and theirs to this site. One in each site.
 //
-//   in   what its rules name, on both ports; the same from other relays, by UDP from one to one
+//   in   the channels that its rules name, on both ports; the same from other relays, by unicast UDP
 //   out  likewise
 //
-// Each line has a queue of its own, which drops what would come too late: a slow site, or one that is gone, is nothing to
-// the others. Without it this site goes on alone; what it heard of others is held, and said to be old.
+// Each line has its own queue, which drops messages that would arrive too late: a slow site, or an unreachable one, does not
+// affect the others. Without a relay, this site continues alone; the last state of other sites is held and reported as old.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
@@ -47,7 +47,7 @@ sync::BusOptions bulk_of(sync::BusOptions bus) {
 int main(int argc, char** argv) try {
   const sync::NodeDescriptor descriptor{.name = "relay",
                                         .modality = "",
-                                        .rate_Hz = 500,  // so it adds a millisecond in the mean
+                                        .rate_Hz = 500,  // so it adds a millisecond on average
                                         .fifo_priority = 40,
                                         .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
   CLI::App app;

@@ -1,9 +1,9 @@
-// replay: plays a log to the senses of a running cluster, in place of its simulation.
+// replay: plays a log to the renderers of a running cluster, in place of its simulation.
 //
-//   in   a log; orders from --control; ASSET_REQUEST
-//   out  the messages of the log, as if they were said now; the scene of the log to whoever asks
+//   in   a log; commands from --control; ASSET_REQUEST
+//   out  the messages of the log, as if they were sent now; the scene of the log on request
 //
-// It needs no other process and waits for none. Damage of the log is passed over and counted.
+// It needs no other process and waits for none. Damaged parts of the log are skipped and counted.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ using namespace tactus;
 
 namespace {
 
-// What the nodes that run say the kernel has dropped at their sockets since they were heard of first.
+// Datagrams that the kernel dropped at the sockets of the running nodes, since their first health.
 class Drops {
  public:
   explicit Drops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
@@ -61,7 +61,7 @@ std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Ass
   return std::find_if(assets.begin(), assets.end(), [](const sync::Asset& a) { return a.kind == asset_ref_t::SCENE; });
 }
 
-// What tactus replay must know of a log before it starts anything.
+// Prints the properties of a log that tactus replay needs before it starts any process.
 void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& assets, double length_s) {
   nlohmann::json j;
   j["scene"] = sync::printable(origin.info.scene);
@@ -139,7 +139,7 @@ int main(int argc, char** argv) try {
   if (!assets.empty()) scene.emplace(node.bus(), assets);
   sync::ReplayPort port(options.bus);
   sync::ReplayStamps stamps(origin, node.bus().identity());
-  // A pipe that nobody writes to yet, or any more, is no end of it.
+  // A pipe without a writer, before or after one, is not at its end.
   const int orders = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (!control.empty() && orders < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
   if (orders == STDIN_FILENO) fcntl(orders, F_SETFL, fcntl(orders, F_GETFL) | O_NONBLOCK);

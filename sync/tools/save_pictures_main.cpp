@@ -1,4 +1,4 @@
-// save_pictures: writes the pictures that a visual_node streams into JPEG files, to look at.
+// save_pictures: writes the pictures that a visual_node streams into JPEG files.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>

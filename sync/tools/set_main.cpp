@@ -1,4 +1,4 @@
-// set: changes settings of a node of the running cluster while it runs, and says what became of it.
+// set: changes settings of a node of the running cluster, and prints the results.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
@@ -14,7 +14,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{3'000'000'000};  // every node looks once a tick
+constexpr sync::Nanoseconds kPatience{3'000'000'000};  // every node handles requests once a tick
 
 setting_change_t change_of(const std::string& node, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -45,7 +45,7 @@ int main(int argc, char** argv) try {
   app.add_option("NODE", node, "as its health calls it: haptic_node, or what --name gave it")->required();
   app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md says which may change")->required();
   sync::parse_or_exit(app, "set", argc, argv);
-  std::vector<setting_change_t> changes;  // all are read before the first is sent
+  std::vector<setting_change_t> changes;  // all are parsed before the first is sent
   for (const std::string& word : words) changes.push_back(change_of(node, word));
 
   sync::Bus bus(sync::Identity::fresh("set", run_id), bus_options);

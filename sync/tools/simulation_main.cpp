@@ -1,4 +1,4 @@
-// simulation: asks the simulation of the running cluster for one thing, and says what became of it.
+// simulation: sends one request to the simulation of the running cluster, and prints the result.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
@@ -18,7 +18,7 @@ constexpr sync::Nanoseconds kPatience{
     3'000'000'000};                                // an answer comes with the next step; a file may take a while
 constexpr std::size_t kMaxValues = 6;
 
-// "steel_ball.mass": of what, and what of it.
+// "steel_ball.mass": object and property.
 void split(const std::string& text, sim_command_t& c) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == text.size())

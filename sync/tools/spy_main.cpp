@@ -1,9 +1,9 @@
-// spy: shows everything that crosses the bus, channel by channel, in a terminal.
+// spy: shows all messages on the bus, by channel, in a terminal.
 //
-//   in   everything, on both ports
+//   in   every message, on both ports
 //   out  the terminal; TAG_REQUEST while variables are shown
 //
-// It only listens: nobody notices whether it runs, but for the variables that it asks for.
+// It is passive, except for the requests for variables.
 #include <poll.h>
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -34,7 +34,7 @@ constexpr sync::Nanoseconds kDrawEvery{250'000'000};
 constexpr sync::Nanoseconds kAskEvery{1'000'000'000};
 std::atomic<bool> stop{false};
 
-// The terminal as it was before, whatever ends the program but SIGKILL.
+// Restores the terminal on any exit except SIGKILL.
 class Terminal {
  public:
   Terminal() {
@@ -43,7 +43,7 @@ class Terminal {
     raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG);
     raw.c_cc[VMIN] = 0, raw.c_cc[VTIME] = 0;
     tcsetattr(STDIN_FILENO, TCSANOW, &raw);
-    std::cout << "\033[?1049h\033[?25l" << std::flush;  // the other screen, no cursor
+    std::cout << "\033[?1049h\033[?25l" << std::flush;  // the alternate screen, no cursor
   }
   ~Terminal() {
     std::cout << "\033[?25h\033[?1049l" << std::flush;
@@ -52,7 +52,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // What was typed, within so long.
+  // The typed bytes; waits at most this time.
   static std::string typed(sync::Nanoseconds at_most) {
     pollfd fd{STDIN_FILENO, POLLIN, 0};
     char bytes[256];

@@ -1,9 +1,9 @@
-// summarise: says from the log of a run what it was like, and whether every owed contact event was accounted for.
+// summarise: summarises a run from its log, and checks that every expected event has an outcome.
 //
 //   in   LOG...
 //   out  the summary on stdout, and as JSON in a file
 //
-// A damaged log is read as far as it is intact.
+// Intact parts of a damaged log are read.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>

@@ -1,18 +1,19 @@
-// sync_node: agrees on time with the other hosts, and matches contact events with what each sense reports of them. One per
-// host. It coordinates; nobody needs it to run.
+// sync_node: synchronises clocks with the other hosts, and matches contact events with the presentation reports of each
+// modality. One per host. It coordinates; all other nodes run without it.
 //
 //   in   CLOCK_PROBE                              requests and replies, in a thread of its own
 //        CONTACT_EVENTS, NODE_HEALTH, PRESENTED   all of them
-//        DEGRADATION, PLAYOUT_REQUEST             the profile and the policy that somebody puts in force
-//        PLAYOUT                                  of another host's sync_node: one speaks, the others listen
-//   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to each request
+//        DEGRADATION, PLAYOUT_REQUEST             the requested profile and policy
+//        PLAYOUT                                  of another host's sync_node: only one publishes
+//   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to
+//   each request
 //        CLOCK_MAP                                twice a second, likewise; one per clock of another host
 //        SYNC_REPORT                              once a second
-//        DEGRADATION                              again once a second, for who comes late
-//        PLAYOUT                                  ten times a second: when each sense presents an event
+//        DEGRADATION                              again once a second, for late joiners
+//        PLAYOUT                                  ten times a second: the presentation delay of each modality
 //
-// Losing the probes' replies, its maps grow less certain and say so. Losing CONTACT_EVENTS or PRESENTED only leaves it less to
-// report; a sense that falls silent is named in the report.
+// Without replies to its probes, the published uncertainty of its maps grows. Without CONTACT_EVENTS or PRESENTED it only has
+// less to report; a modality that falls silent is named in the report.
 #include "sync/tools/sync_node.h"
 
 #include <CLI/CLI.hpp>
@@ -46,12 +47,13 @@ using namespace tactus;
 
 namespace {
 
-// One second of each at the most that they are sent.
+// One second of each at their highest rate.
 constexpr std::size_t kEventsQueue = 4096;
 constexpr std::size_t kReportsQueue = 4096;
 constexpr std::size_t kHealthQueue = 1024;
 constexpr sync::Nanoseconds kReportPeriod{1'000'000'000};
-// A process that has just started has the maps after so long (design: with the probes' first wave, less than a second in all).
+// A process that has just started has the maps after this time (design: with the probes' first wave, less than a second in
+// all).
 constexpr sync::Nanoseconds kMapPeriod{500'000'000};
 
 template <class Message>
@@ -59,7 +61,7 @@ void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
   while (const auto received = queue.pop()) matcher.observe(received->message, received->arrival);
 }
 
-// For the live table: how many clocks are known, and how well at the worst.
+// For the live table: the number of mapped clocks, and the largest uncertainty.
 std::string clocks_note(const std::vector<clock_map_t>& maps) {
   if (maps.empty()) return "";
   std::int64_t worst_ns = 0;
@@ -73,7 +75,7 @@ std::string clocks_note(const std::vector<clock_map_t>& maps) {
 int tactus::sync::run_sync_node(int argc, char** argv) try {
   const sync::NodeDescriptor descriptor{.name = "sync_node",
                                         .modality = "",
-                                        .rate_Hz = 50,  // at the least: it wakes when something arrives
+                                        .rate_Hz = 50,  // at least: it wakes on messages
                                         .fifo_priority = 40,
                                         .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
   CLI::App app;
@@ -87,7 +89,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   sync::PlayoutOptions playout_options;
   playout_options.add_to(app, true);
   sync::PlayoutPlan plan;
-  app.callback([&] { plan = playout_options.plan(); });  // also where only the arguments are checked
+  app.callback([&] { plan = playout_options.plan(); });  // also when only the arguments are checked
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   sync::Node node(descriptor, options);
@@ -98,7 +100,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   const sync::EmulatedClock clock{drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
                                   jump_ms != 0 ? start + sync::from_seconds(jump_after_s) : sync::HostTime::max()};
   std::cerr << options.name << ": clock " << node.bus().identity().clock << " at " << sync::to_ns(start) << " ns" << std::endl;
-  // In a virtual time there is one clock, and nobody to ask.
+  // In virtual time there is one clock, and no host to probe.
   std::optional<sync::ProbeThread> probes;
   if (!sync::VirtualTime::current()) probes.emplace(options.bus, node.bus().identity(), clock);
   sync::ClockAgreement agreement(node.bus().identity().clock);
@@ -129,7 +131,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
     while (const auto wave = probes ? probes->pop() : std::nullopt) agreement.add(*wave);
     if (now >= next_maps) {
       std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
-      // As the probes: with many hosts each map comes less often.
+      // As for the probes: with many hosts, each map is published less often.
       const auto share = std::max<std::int64_t>(1, static_cast<std::int64_t>(maps.size() / sync::ClockProber::kFewClocks));
       next_maps = std::max(next_maps + kMapPeriod * share, now);
       for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);

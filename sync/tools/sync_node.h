@@ -1,4 +1,4 @@
-// What the program sync_node does. A function, so that a virtual time can run it beside others in one process.
+// The program sync_node, as a function, so that virtual time can run it beside other programs in one process.
 #pragma once
 
 namespace tactus::sync {

@@ -1,4 +1,4 @@
-// watch: shows once a second how every node of the running cluster fares.
+// watch: shows the state of every node of the running cluster, once a second.
 //
 //   in   NODE_HEALTH, SYNC_REPORT
 //   out  a table on stdout, redrawn in place on a terminal; or one line of JSON
@@ -32,7 +32,7 @@ std::size_t terminal_width() {
 void show(const sync::WatchTable& table, sync::HostTime now, bool json, bool in_place) {
   if (json)
     std::cout << table.to_json(now) << std::flush;
-  else  // to the corner, the table, and clear what is below
+  else  // moves to the corner, prints the table, and clears the rest
     std::cout << (in_place ? "\033[H\033[2J" : "") << table.to_text(now, terminal_width()) << (in_place ? "" : "\n")
               << std::flush;
 }

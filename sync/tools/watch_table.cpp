@@ -15,7 +15,7 @@
 namespace tactus::sync {
 namespace {
 
-// What comes only when something happens may be old without harm.
+// False for channels with sporadic messages, which may be old without harm.
 bool flows(const std::string& channel) {
   static constexpr std::array<const char*, 10> sporadic = {
       channels::kContactEvents, channels::kPresented,  channels::kSceneManifest, channels::kAssetRequest,
@@ -51,7 +51,7 @@ std::string uncertainty(Nanoseconds t) {
   return text;
 }
 
-// One line for the terminal, without what others would have it do.
+// One line for the terminal, without control characters.
 std::string cut(const std::string& raw, std::size_t width) {
   std::string text = printable(raw);
   if (text.size() > width) text.resize(width);
@@ -59,7 +59,7 @@ std::string cut(const std::string& raw, std::size_t width) {
   return text + "\n";
 }
 
-// A sense that renders cheaper than it could.
+// Note for a modality that renders at reduced quality.
 std::string quality_note(const node_health_t& h) {
   return h.quality > 0 ? "quality step " + std::to_string(h.quality) + " of " + std::to_string(h.qualities - 1) + "; " : "";
 }

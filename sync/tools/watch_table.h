@@ -1,4 +1,4 @@
-// What is shown once a second while the cluster runs: how every node fares. Pure.
+// The table of watch: the state of every node of a running cluster. Pure.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ class WatchTable {
   static constexpr Nanoseconds kLostAfter{500'000'000};
 
   void observe(const node_health_t&, HostTime arrival);
-  // A page; the report is shown when all its pages have come.
+  // A page of a report; the report is shown when all its pages have arrived.
   void observe(const sync_report_t& page) {
     if (auto whole = pages_.take(page)) report_ = std::move(whole);
   }
@@ -28,7 +28,7 @@ class WatchTable {
     std::string state;  // "running", ..., "LOST" when it fell silent
     double rate_Hz = 0;
     std::int64_t missed_ticks = 0;
-    Nanoseconds input_age{-1};  // of the oldest input that should flow; -1: it has none
+    Nanoseconds input_age{-1};  // of the oldest input with regular messages; -1: it has none
     std::string oldest_input;
     std::int64_t rendered = 0;
     std::string note;

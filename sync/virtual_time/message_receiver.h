@@ -10,7 +10,7 @@ namespace tactus::sync {
 class MessageReceiver {
  public:
   virtual ~MessageReceiver() = default;
-  // Takes one encoded message. Never throws: it is called through the C code of LCM.
+  // Processes one encoded message. Never throws: it is called through the C code of LCM.
   virtual void accept(const void* data, std::size_t size, HostTime arrival) noexcept = 0;
 };
 

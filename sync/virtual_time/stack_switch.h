@@ -1,4 +1,4 @@
-// A stack of its own for a function that is left and resumed, with what the sanitizers must be told of that. Not thread-safe.
+// A coroutine with its own stack, with the annotations that the sanitizers need. Not thread-safe.
 #pragma once
 
 #include <boost/context/fiber.hpp>
@@ -19,7 +19,7 @@ namespace tactus::sync {
 
 class StackSwitch {
  public:
-  // body runs from the first resume() on; it throws nothing.
+  // body starts at the first resume(); it must not throw.
   StackSwitch(std::size_t bytes, std::function<void()> body) : body_(std::move(body)) {
     boost::context::protected_fixedsize_stack allocator(bytes);
     const boost::context::stack_context stack = allocator.allocate();
@@ -37,7 +37,7 @@ class StackSwitch {
     tsan_ = __tsan_create_fiber(0);
 #endif
   }
-  // Only when body has returned, or never began.
+  // Only when body has returned, or never started.
   ~StackSwitch() {
 #if defined(__SANITIZE_THREAD__)
     __tsan_destroy_fiber(tsan_);
@@ -46,7 +46,7 @@ class StackSwitch {
   StackSwitch(const StackSwitch&) = delete;
   StackSwitch& operator=(const StackSwitch&) = delete;
 
-  // Goes on in body, until it yields or returns.
+  // Continues body until it yields or returns.
   void resume() {
 #if defined(__SANITIZE_ADDRESS__)
     void* kept = nullptr;
@@ -61,7 +61,7 @@ class StackSwitch {
     __sanitizer_finish_switch_fiber(kept, nullptr, nullptr);
 #endif
   }
-  // In body: goes on where resume() was called.
+  // Called in body: continues the caller of resume().
   void yield() {
     void* kept = nullptr;
     leaves(&kept);
@@ -70,7 +70,7 @@ class StackSwitch {
   }
 
  private:
-  // What the other side's stack is, is known once one has come from there.
+  // Stores the stack of the other side, which is known only after a switch from there.
   void arrived([[maybe_unused]] void* kept) {
 #if defined(__SANITIZE_ADDRESS__)
     __sanitizer_finish_switch_fiber(kept, &other_bottom_, &other_size_);

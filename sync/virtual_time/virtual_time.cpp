@@ -11,10 +11,10 @@
 namespace tactus::sync {
 namespace {
 
-// Mains hold tables of a few hundred kB; pages that are not touched cost nothing.
+// The mains hold tables of a few hundred kB on the stack; untouched pages cost nothing.
 constexpr std::size_t kStack = 8 << 20;
 constexpr Nanoseconds kPhases{1'000'000};
-// Streams of random numbers of one seed.
+// Random streams of one seed.
 constexpr std::uint64_t kOfWire = 1, kOfPrograms = 2;
 
 }  // namespace
@@ -31,7 +31,8 @@ struct VirtualTime::Program {
 
 namespace {
 
-// Thrown where a program waits that shall wait no more. No exception of the standard library, so that nobody takes it for his.
+// Thrown at a waiting point of a program that must end. Not a std::exception, so that no program catches it as one of its
+// own.
 struct Killed {};
 
 }  // namespace
@@ -76,7 +77,7 @@ HostTime VirtualTime::wakes(const Program& program) const {
 void VirtualTime::run_until(HostTime until) {
   while (!programs_.empty()) {
     Program* next = nullptr;
-    for (const auto& program : programs_)  // of those that wake together, who was added first
+    for (const auto& program : programs_)  // of those that wake together, the one that was added first
       if (!next || wakes(*program) < wakes(*next)) next = program.get();
     if (wakes(*next) > until) break;
     now_ = std::max(now_, wakes(*next));
@@ -113,7 +114,7 @@ void VirtualTime::wait(VirtualEnd& end, Nanoseconds at_most) {
   yield();
 }
 
-// A main that catches all waits again, and is told again.
+// A main that catches all exceptions waits again, and gets the exception again.
 void VirtualTime::unwind(Program& program) {
   program.killed = true;
   while (program.begun && !program.over) resume(program);

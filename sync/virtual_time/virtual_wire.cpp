@@ -8,7 +8,7 @@
 namespace tactus::sync {
 
 VirtualWire::VirtualWire(WirePlan plan, std::uint64_t seed) : plan_(std::move(plan)), seed_(seed) {
-  Loss{plan_.loss};  // throws here what every path would throw later
+  Loss{plan_.loss};  // throws here instead of later in each path
 }
 
 std::unique_ptr<VirtualEnd> VirtualWire::join() {
@@ -35,7 +35,7 @@ void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_vie
   for (VirtualEnd* end : ends_) {
     const auto to = end->subscribers_[side].find(channel);
     if (to == end->subscribers_[side].end()) continue;
-    // What a host sends itself crosses no wire.
+    // Messages from an end to itself have no latency and no loss.
     VirtualEnd::Path& path = end->paths_.try_emplace(&from, plan_).first->second;
     const std::uint64_t number = path.sent++;
     const bool own = end == &from;

@@ -1,5 +1,6 @@
-// The bus between the programs of a VirtualTime: who has subscribed hears what is sent, after a latency that trembles, unless it
-// is lost on the way to him. As on a switched network, what one sends another comes in the order in which it was sent. Pure.
+// The bus between the programs of a VirtualTime: delivers sent messages to the subscribers after a latency with jitter,
+// unless they are lost on the way to that subscriber. As on a switched network, the messages from one end to another arrive
+// in the order of sending. Pure.
 #pragma once
 
 #include <array>
@@ -21,13 +22,13 @@ namespace tactus::sync {
 
 struct WirePlan {
   Nanoseconds latency{0};
-  JitterDef jitter{};  // on top; what would arrive before it was sent arrives at once
+  JitterDef jitter{};  // on top; a message that would arrive before it was sent arrives at once
   LossDef loss{};      // of each datagram on its way to each receiver
 };
 
 class VirtualWire;
 
-// Where one program hears. Realtime-safe: no.
+// The end of the wire at one program. Realtime-safe: no.
 class VirtualEnd {
  public:
   ~VirtualEnd();
@@ -36,9 +37,9 @@ class VirtualEnd {
 
   // side: 0 the first port, 1 the next.
   void subscribe(std::size_t side, const std::string& channel, MessageReceiver* inbox) { subscribers_[side][channel].push_back(inbox); }
-  // Hands over what has arrived by then, oldest first, at most so many.
+  // Delivers the messages that have arrived by now, oldest first, at most at_most.
   void drain(HostTime now, int at_most);
-  // When the next message arrives; HostTime::max(): none is under way.
+  // Arrival of the next message; HostTime::max(): none is in flight.
   HostTime next_arrival() const { return under_way_.empty() ? HostTime::max() : under_way_.front().at; }
 
  private:
@@ -46,12 +47,12 @@ class VirtualEnd {
   using Inboxes = std::vector<MessageReceiver*>;
   struct Datagram {
     HostTime at;
-    std::uint64_t number;  // of those that this end is sent
+    std::uint64_t number;  // of the datagrams that are sent to this end
     const Inboxes* to;
     std::shared_ptr<const std::vector<std::uint8_t>> bytes;
   };
   static bool later(const Datagram& a, const Datagram& b) { return a.at != b.at ? a.at > b.at : a.number > b.number; }
-  // Of what one sender's datagrams meet on their way here.
+  // Jitter and loss of one sender's datagrams on their way to this end.
   struct Path {
     explicit Path(const WirePlan& plan) : jitter(plan.jitter), loss(plan.loss) {}
     Jitter jitter;
@@ -71,12 +72,12 @@ class VirtualEnd {
 
 class VirtualWire {
  public:
-  // Throws std::invalid_argument with one sentence when there is no such loss.
+  // Throws std::invalid_argument with one sentence when the loss is invalid.
   VirtualWire(WirePlan plan, std::uint64_t seed);
 
   std::unique_ptr<VirtualEnd> join();
   void send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data, HostTime now);
-  // Is told of all that is sent, when it is: a recorder that loses nothing. The number ends it.
+  // Calls of_message for every sent message, at its sending: for a recorder without losses. The returned number ends it.
   using Tell = std::function<void(HostTime, std::string_view channel, std::span<const std::uint8_t> data)>;
   int tell(Tell of_message);
   void tell_no_more(int number) { tell_.erase(number); }

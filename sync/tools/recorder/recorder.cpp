@@ -26,7 +26,7 @@ void Recorder::write(HostTime time, std::string_view channel, std::span<const st
 void Recorder::write_live(HostTime time, std::string_view channel, std::span<const std::uint8_t> data) {
   write(time, channel, data);
   if (limits_.split_bytes == 0 || writer_.bytes() < limits_.split_bytes) return;
-  // Also what comes at once, as from a flood, fills no part beyond its size.
+  // A burst of messages must not fill a part beyond its size.
   if (!failing()) writer_.flush();
   if (due_to_split(time)) split(time);
 }
@@ -87,7 +87,7 @@ void Recorder::split(HostTime now) {
     writer_ = LogWriter(std::move(sink));
     ++parts_;
   } catch (const std::exception& e) {
-    split_trouble_ = e.what();  // the present part goes on
+    split_trouble_ = e.what();  // the present part continues
     next_flush_ = now + kRetryAfter;
   }
   part_began_ = now;

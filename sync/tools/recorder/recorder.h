@@ -1,5 +1,5 @@
-// What the recorder does with what it hears: holds it back until the scene is there, then writes it, and counts.
-// Pure but for the sink that it is given.
+// The core of the recorder: holds received messages back until the scene has arrived, then writes them, and counts losses.
+// Pure, apart from the given sink.
 #pragma once
 
 #include <cstdint>
@@ -20,40 +20,39 @@ namespace tactus::sync {
 
 class Recorder {
  public:
-  // Without a scene after so long, or with so much waiting for it, the log begins without.
+  // The log begins without a scene after this time, or when this amount of data waits.
   static constexpr Nanoseconds kWaitForScene{5'000'000'000};
   static constexpr std::size_t kMaxHeldBytes = 32 << 20;
-  // Gaps are counted in so many channels; what is on others is written all the same.
+  // Number of channels in which gaps are counted; other channels are recorded all the same.
   static constexpr std::size_t kMaxChannels = 256;
-  // A disk that refused is tried again after so long.
+  // Interval between attempts after a write error.
   static constexpr Nanoseconds kRetryAfter{1'000'000'000};
 
   // info: all but header and live_from_ns.
   Recorder(Identity identity, log_info_t info, LogWriter writer, HostTime start);
-  // Splits and bounds the log: next opens the file of the next part (it may throw), prune is told the bytes of the
-  // present one and removes what is too much; it returns the bytes of the parts before it that are kept.
+  // Splits and bounds the log. next opens the file of the next part (it may throw). prune receives the size of the present
+  // part in bytes and removes the oldest parts beyond the limits; it returns the bytes of the kept parts before it.
   using Next = std::function<std::unique_ptr<LogSink>()>;
   using Prune = std::function<std::int64_t(std::int64_t)>;
   void limit(const LogLimits& limits, Next next, Prune prune);
 
   void push(const MessageBatch& batch);
-  // The scene is complete: it goes to the head of the log, if that is not written yet, and to those of later
-  // parts.
+  // The scene is complete: it is written to the head of the log, if that is not written yet, and to the heads of later parts.
   void begin(const std::vector<HeadAsset>& assets, HostTime now);
-  // Call every 100 ms or more often: begins when it has waited long enough, and hands what there is to the disk.
+  // Call it every 100 ms or more often: begins the log when the wait for the scene is over, and writes pending data to disk.
   void poll(HostTime now);
-  // Begins if nothing made it before, and writes all.
+  // Begins the log if it has not begun, and writes all data.
   void finish(HostTime now);
 
   bool begun() const { return begun_; }
   bool failing() const { return !writer_.trouble().empty() || !split_trouble_.empty(); }
   std::int64_t lost() const { return lost_before_ + writer_.lost(); }
-  // Messages beyond the largest size that the log may have.
+  // Messages beyond the maximum size of the log.
   std::int64_t beyond() const { return beyond_; }
   int parts() const { return parts_; }
   // Messages missing in the numbering of their sender, over all channels.
   std::int64_t gaps() const;
-  // One line: what was written, what is missing and where.
+  // One line: written data, and missing messages by channel.
   std::string note(std::int64_t tap_overflow, std::int64_t tap_oversized) const;
 
  private:
@@ -80,7 +79,7 @@ class Recorder {
   LogLimits limits_;
   Next next_;
   Prune prune_;
-  // The scene of the head, kept where there may be another head.
+  // The scene of the head, kept where later heads are possible.
   std::vector<asset_ref_t> scene_refs_;
   std::vector<Bytes> scene_bytes_;
   HostTime part_began_{};

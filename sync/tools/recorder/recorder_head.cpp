@@ -12,7 +12,7 @@
 namespace tactus::sync {
 namespace {
 
-// Any header has the same length on the wire.
+// The header has the same length on the wire in every type.
 void stamp(header_t& h, const Identity& id, std::int64_t seq, HostTime time) {
   h = {-1, to_ns(time), id.clock, id.run_id, id.source, id.incarnation, seq};
 }

@@ -1,4 +1,4 @@
-// The head of a log: which run it is and the scene with all its assets, so that a log is complete in itself. Pure.
+// The head of a log: its run, and the scene with all its assets, so that a log is complete in itself. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tactus::sync {
 
-// A replay must not burst: at this distance the head is 2 MB a second.
+// Spacing of the head's messages, which keeps a replay from bursting: 2 MB a second.
 inline constexpr Nanoseconds kHeadSpacing{500'000};
 
 struct HeadEvent {
@@ -27,8 +27,8 @@ struct HeadAsset {
   const Bytes* bytes;
 };
 
-// LOG_INFO, then the message types (sync/log/recorder_types.h), the manifest in pages, then every chunk of every
-// asset; the last kHeadSpacing before live_from. info.live_from_ns is filled in.
+// LOG_INFO, then the message types (sync/log/recorder_types.h), the manifest in pages, then every chunk of every asset; the
+// last one kHeadSpacing before live_from. Sets info.live_from_ns.
 std::vector<HeadEvent> log_head(const Identity& recorder, log_info_t info, const std::vector<HeadAsset>& assets,
                                 HostTime live_from);
 

@@ -1,11 +1,12 @@
-// recorder: writes everything that crosses the bus to OUT/run.lcmlog, which the stock lcm-logplayer replays.
+// recorder: writes every message on the bus to OUT/run.lcmlog, which the stock lcm-logplayer replays.
 //
-//   in   everything, on both ports; the scene and its assets for the head of the log
-//   out  a file; its health says what was lost; TAG_REQUEST, so that tagged variables are in the log
+//   in   every message, on both ports; the scene and its assets for the head of the log
+//   out  a file; its health reports losses; TAG_REQUEST, so that tagged variables are in the log
 //
-// When nothing arrives it writes nothing; when the scene does not come in 5 s the log begins without it; when the
-// disk is full it says so, keeps what it can, and goes on. What was heard is with the kernel within 20 ms: SIGKILL loses no
-// more. A machine that loses power keeps what its kernel had written, which by Linux' defaults lacks up to the last 30 s.
+// Without messages it writes nothing. When the scene does not arrive within 5 s, the log begins without it. When the disk is
+// full, it reports that, stores as much as fits in memory, and continues. Received messages are passed to the kernel within
+// 20 ms: SIGKILL loses no more. After a power failure the data that the kernel had not written is missing, by Linux' defaults
+// up to the last 30 s.
 #include "sync/tools/recorder/recorder_node.h"
 
 #include <time.h>
@@ -28,7 +29,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};  // it holds for three (lcmtypes/types/control/tag_request_t.lcm)
+constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};  // a request holds for three (lcmtypes/types/control/tag_request_t.lcm)
 
 // Throws std::runtime_error with one sentence.
 tag_request_t request_for(std::vector<std::string> patterns) {
@@ -43,7 +44,7 @@ tag_request_t request_for(std::vector<std::string> patterns) {
 }
 
 std::int64_t realtime_minus_monotonic_ns() {
-  if (sync::VirtualTime::current()) return 0;  // it has no date
+  if (sync::VirtualTime::current()) return 0;  // virtual time has no date
   timespec t{};
   clock_gettime(CLOCK_REALTIME, &t);
   return t.tv_sec * 1'000'000'000 + t.tv_nsec - sync::to_ns(sync::host_now());
@@ -61,7 +62,7 @@ std::vector<sync::HeadAsset> assets_of(const sync::SceneReceiver& scene) {
 int tactus::sync::run_recorder(int argc, char** argv) try {
   const sync::NodeDescriptor descriptor{.name = "recorder",
                                         .modality = "",
-                                        .rate_Hz = 50,  // of writing to disk; a thread of its own stamps on arrival
+                                        .rate_Hz = 50,  // of writing to disk; a separate thread stamps messages on arrival
                                         .fifo_priority = 40,
                                         .about = "Writes everything that crosses the bus to OUT/run.lcmlog."};
   CLI::App app;

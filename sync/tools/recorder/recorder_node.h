@@ -1,4 +1,4 @@
-// What the program recorder does. A function, so that a virtual time can run it beside others in one process.
+// The program recorder, as a function, so that virtual time can run it beside other programs in one process.
 #pragma once
 
 namespace tactus::sync {

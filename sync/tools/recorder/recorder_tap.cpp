@@ -8,9 +8,9 @@
 namespace tactus::sync {
 namespace {
 
-// How soon the thread notices that it shall end.
+// Maximum time until the thread detects its stop, ms.
 constexpr int kPollMs = 50;
-// Messages taken from one port before the other has its turn.
+// Messages read from one port before the other is read.
 constexpr int kTurn = 64;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Hears everything that crosses both ports of the bus, as bytes, and stamps it on arrival in a thread of its own,
-// so that neither decoding nor a slow disk makes a stamp late or a queue full. In a virtual time what is sent is heard at once.
+// Receives all messages on both ports of the bus, as bytes, and stamps them on arrival in its own thread, so that neither
+// decoding nor a slow disk delays a stamp or fills a queue. In virtual time messages are received when they are sent.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@ class RecorderTap {
   // Ten seconds of a busy bus.
   static constexpr std::size_t kMaxBatchBytes = 64 << 20;
 
-  // The thread inherits the caller's scheduling. Throws std::system_error; join the bus before, which says more.
+  // The thread inherits the caller's scheduling. Throws std::system_error; joining the bus before gives clearer errors.
   explicit RecorderTap(const BusOptions& options);
   ~RecorderTap();
   RecorderTap(const RecorderTap&) = delete;
   RecorderTap& operator=(const RecorderTap&) = delete;
 
-  // Exchanges an empty batch for what has arrived. Thread-safe.
+  // Exchanges an empty batch for the received messages. Thread-safe.
   void take(MessageBatch& batch);
-  // Hears what has arrived until now and ends the thread; what is left can still be taken.
+  // Receives pending messages and ends the thread; remaining messages can still be taken.
   void stop();
-  // Messages that found no room because nobody took them.
+  // Number of messages dropped because the batch was full.
   std::int64_t overflow() const { return overflow_; }
-  // Messages that are left out because they are larger than any of the bus: of nobody that we know, and they would
-  // fill the disk.
+  // Number of messages left out because they are larger than any message of the bus: they come from a foreign program and
+  // would fill the disk.
   std::int64_t oversized() const { return oversized_; }
 
  private:
@@ -44,8 +44,8 @@ class RecorderTap {
     explicit Ports(const BusOptions& options);
     std::array<UdpPort, 2> both;
   };
-  std::optional<Ports> ports_;  // none in a virtual time, whose wire tells
-  int told_ = 0;                // number of what its wire calls
+  std::optional<Ports> ports_;  // none in virtual time, where the wire delivers the messages
+  int told_ = 0;                // number of the wire's callback
   std::mutex mutex_;
   MessageBatch arrived_;
   std::atomic<std::int64_t> overflow_ = 0;

@@ -10,7 +10,7 @@ namespace {
 Nanoseconds scaled(Nanoseconds d, double factor) {
   return Nanoseconds(std::llround(static_cast<double>(d.count()) * factor));
 }
-// Times of people, within what a log can be long.
+// Times given by the user, limited to possible lengths of a log.
 Nanoseconds bounded(double seconds) {
   return from_seconds(std::clamp(std::isfinite(seconds) ? seconds : 0.0, -1e8, 1e8));
 }
@@ -44,14 +44,14 @@ Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const
 
 void Replay::jump(HostTime to, HostTime now) {
   position_ = position_polled_ = std::clamp(to, begin_, end_);
-  // Stamps are cut to whole microseconds.
+  // Stamps are truncated to whole microseconds.
   const std::int64_t stamp_us = (to_ns(position_) + origin_.info.realtime_offset_ns) / 1000;
   events_.start_at(seek_log(log_, stamp_us), position_);
   pending_.reset();
   over_ = false;
   ++pass_;
   anchor(now);
-  // What lies before the first event that is not too early is passed over, unsent.
+  // Skips earlier events without sending them.
   while (read() && origin_.time(pending_->timestamp_us) < position_ - Nanoseconds(1000)) pending_.reset();
 }
 
@@ -104,7 +104,7 @@ void Replay::poll(HostTime now, const Take& take) {
     ++sent_;
     budget_ -= 1;
   }
-  // More is due than may be sent, or looked at.
+  // More events are due than may be sent or read in one poll.
   if (speed_ == 0) return;
   const Nanoseconds behind = now - anchor_live_ - scaled(position_ - anchor_recorded_, 1 / speed_);
   if (behind <= kMaxBehind) return;

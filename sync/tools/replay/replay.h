@@ -1,4 +1,4 @@
-// Plays a log: which of its events are due, as time goes on, is halted, hurried or turned back. Pure.
+// Plays a log: selects the events that are due, with pause, speed, seek and loop. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,41 @@
 namespace tactus::sync {
 
 struct ReplayOptions {
-  double speed = 1;    // recorded seconds per second; 0: as fast as most_per_s lets it
+  double speed = 1;    // recorded seconds per second; 0: as fast as most_per_s permits
   double start_s = 0;  // since the log's live part began
-  double end_s = -1;   // likewise; negative: at its end
+  double end_s = -1;   // likewise; negative: at the end of the log
   bool loop = false;
   bool paused = false;
   double most_per_s =
-      16'000;  // messages; design: 20,000 a second reach lcm-logger whole, whose receive buffer is LCM's default
-  bool from_head = false;  // time counts from the first event, and the head is played too
+      16'000;  // messages; design: lcm-logger, whose receive buffer has LCM's default size, receives 20,000 a second without loss
+  bool from_head = false;  // time counts from the first event, and the head is played, too
 };
 
 class Replay {
  public:
   static constexpr double kSlowest = 0.01, kFastest = 100;
-  // No more in one poll: LCM's own queue takes 30 messages, and its default receive buffer 90.
+  // Maximum of one poll: LCM's own queue holds 30 messages, and its default receive buffer 90.
   static constexpr int kBurst = 20;
-  // Events of the log looked at in one poll, sent or not.
+  // Events of the log read in one poll, sent or not.
   static constexpr int kMaxLooked = 20'000;
-  // A replay that is so far behind its time does not catch up: it goes on from where it is, later by this, and
-  // counts it.
+  // A replay that is this far behind its time does not catch up: it continues from its position, later by this, and counts
+  // the delay.
   static constexpr Nanoseconds kMaxBehind{100'000'000};
 
-  // `log` outlives this. Throws std::runtime_error with one sentence when it holds no event, or not what the
-  // options ask for.
+  // `log` outlives this object. Throws std::runtime_error with one sentence when it holds no event, or lacks the part that
+  // the options select.
   Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const ReplayOptions& options, HostTime now);
 
-  // Hands over what is due. take: true when it was sent, so that it counts.
+  // Passes on the due events. take: returns true when the event was sent, so that it counts.
   using Take = std::function<bool(const LogEvent&, const ReplayMoment&)>;
   void poll(HostTime now, const Take& take);
 
   void pause(HostTime now);
   void resume(HostTime now);
-  // Plays so many recorded seconds, then pauses.
+  // Plays this number of recorded seconds, then pauses.
   void step(double seconds, HostTime now);
   void seek(double seconds, HostTime now);
-  // As in the options. False: that is no speed.
+  // As in the options. Returns false for an invalid speed.
   bool set_speed(double speed, HostTime now);
   void set_loop(bool loop) { loop_ = loop; }
 
@@ -57,11 +57,11 @@ class Replay {
   double speed() const { return speed_; }
   bool paused() const { return paused_; }
   bool loop() const { return loop_; }
-  // At the end, with no loop.
+  // At the end, without a loop.
   bool over() const { return over_; }
   std::int64_t sent() const { return sent_; }
   std::int64_t passes() const { return pass_; }
-  // How much later than its speed asks for it is, in all.
+  // Total delay behind the selected speed.
   double behind_s() const { return seconds(behind_); }
   const LogScanner& scanner() const { return events_.scanner(); }
 

@@ -19,7 +19,7 @@ constexpr std::array kWithheld{
     kSettingReply, kDeviceForce,    kThermalState, kThermalDevice, kSceneManifest, kAssetRequest, kAssetChunk,
     kPictureChunk, kLogInfo,        kLogTypes,     kTagRequest,    kQuestion,
     kAnswer,       "LCM_SELF_TEST"};
-// A log of noise has more channels than anybody remembers.
+// A log of random bytes has too many channels to remember.
 constexpr std::size_t kMaxDecided = 4096;
 
 std::optional<std::regex> expression(const char* option, const std::string& text) {

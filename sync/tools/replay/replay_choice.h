@@ -1,12 +1,12 @@
-// Which recorded messages a replay sends, and on which channel. Pure.
+// Selects the recorded messages that a replay sends, and their channels. Pure.
 //
-// A replay stands in for what is not there: the simulation, and senses that are not live. So what the world said
-// goes out, and what senses said of themselves, unless they are live. What does not go out, whoever said it, is
-// what would be mistaken for the live run: measurements (NODE_HEALTH, PRESENTED, SYNC_REPORT, DEGRADED,
-// TAG_VALUES, MEDIA_CLOCK, FRAME_SHOWN), clocks (CLOCK_PROBE, CLOCK_MAP: of clocks that read otherwise today),
-// orders and decisions (PLAYOUT, DEGRADATION, SETTING, SIM_COMMAND and their like: the live run has its own),
-// forces and temperatures for devices (DEVICE_FORCE, THERMAL_STATE, THERMAL_DEVICE: they were safe for another
-// hand), and what the replay serves itself (the scene).
+// A replay replaces the missing nodes: the simulation, and modalities that are not live. It therefore sends the state of the
+// world, and the messages of modalities about themselves, unless they are live. It never sends messages that receivers would
+// mistake for the live run's: measurements (NODE_HEALTH, PRESENTED, SYNC_REPORT, DEGRADED, TAG_VALUES, MEDIA_CLOCK,
+// FRAME_SHOWN), clocks (CLOCK_PROBE, CLOCK_MAP: those clocks read differently today), commands and decisions (PLAYOUT,
+// DEGRADATION, SETTING, SIM_COMMAND and the like: the live run has its own), forces and temperatures for devices
+// (DEVICE_FORCE, THERMAL_STATE, THERMAL_DEVICE: they were safe for another hand), and the scene, which the replay serves
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -24,20 +24,20 @@
 namespace tactus::sync {
 
 struct ReplayWishes {
-  bool verbatim = false;                 // everything goes out, as it is
-  bool as_recorded = false;              // the profiles that were in force too
-  std::string channels = {};             // regular expression that the whole name matches; empty: all
+  bool verbatim = false;                 // every message is sent, unchanged
+  bool as_recorded = false;              // the profiles that were in force are sent, too
+  std::string channels = {};             // regular expression that must match the whole name; empty: all
   std::string leave_out = {};            // likewise; empty: none
-  std::string also = {};                 // likewise: goes out although it would not
+  std::string also = {};                 // likewise: sent although the default leaves it out
   std::vector<std::string> rename = {};  // "FROM=TO"
-  std::vector<std::string> live = {};    // processes that run: what they said then does not go out
+  std::vector<std::string> live = {};    // running processes: their recorded messages are not sent
 };
 
 class ReplayChoice {
  public:
   // Throws std::runtime_error with one sentence.
   explicit ReplayChoice(const ReplayWishes& wishes);
-  // The channel to send it on; nothing: it stays in the log.
+  // The channel to send it on; nullopt: it is not sent.
   std::optional<std::string_view> channel_of(const LogEvent& event);
   bool verbatim() const { return verbatim_; }
 

@@ -1,4 +1,4 @@
-// What a person or a script says to a running replay, a line each. Pure.
+// The commands of a user or a script to a running replay, one a line. Pure.
 //
 //   pause | resume | toggle | step [SECONDS] | seek [+|-]SECONDS | speed FACTOR|max | loop on|off | quit
 #pragma once
@@ -11,17 +11,16 @@
 
 namespace tactus::sync {
 
-// A picture at 60 Hz: what a step is that nobody gives a length.
+// Default length of a step: a picture at 60 Hz.
 inline constexpr double kStep_s = 1.0 / 60;
 
-// Obeys one line. Returns what is wrong with it, in one sentence; empty: nothing. quit is set when it says so.
+// Carries out one line. Returns an error sentence; empty: no error. Sets quit on that command.
 std::string obey(Replay& replay, std::string_view line, HostTime now, bool& quit);
 
-// "1.5" or "max", which is 0. Negative: neither.
+// "1.5" or "max", which is 0. Negative: invalid.
 double speed_of(std::string_view word);
 
-// Lines out of pieces of bytes as they come from a pipe. A line longer than this is nobody's order: it is left
-// out.
+// Splits the bytes from a pipe into lines. A longer line than this is no command and is ignored.
 class Lines {
  public:
   static constexpr std::size_t kLongest = 200;

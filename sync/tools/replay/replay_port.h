@@ -1,5 +1,5 @@
-// Sends bytes on a channel of the bus, as they are. In a file of its own: Bus sends only messages that it has
-// stamped itself.
+// Sends bytes on a channel of the bus unchanged. It is separate from Bus, which sends only messages that it has stamped
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace tactus::sync {
 
 class ReplayPort {
  public:
-  // The real-time port: a log does not say which port a message came by, and receivers of bulk data listen on
-  // both. Throws std::runtime_error with one sentence.
+  // Uses the real-time port: a log does not state the port of a message, and receivers of bulk data listen on both. Throws
+  // std::runtime_error with one sentence.
   explicit ReplayPort(const BusOptions& options);
   ~ReplayPort();
-  // False: the network refused it.
+  // Returns false when the network refused it.
   bool send(std::string_view channel, std::span<const std::uint8_t> message);
   std::int64_t refused() const { return refused_; }
 

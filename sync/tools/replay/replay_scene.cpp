@@ -11,7 +11,7 @@ std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& 
   Bus bus(Identity{"replay", 1, 1, std::max<std::int64_t>(1, origin.info.header.run_id), options.clock}, options);
   SceneReceiver receiver(bus);
   LogScanner scanner(log);
-  // One tick of a receiver after each message; time is made up, so that none of its patience ends.
+  // One tick of a receiver after each message; the time is synthetic, so that no timeout occurs.
   HostTime now = host_time(1'000'000'000);
   const auto assets = [&] {
     std::vector<Asset> out;

@@ -1,5 +1,5 @@
-// The scene that a log holds, so that a replay can serve it as the simulation did: a sense that joins late, or
-// again, asks for it. Pure.
+// Extracts the scene of a log, so that a replay can serve it as the simulation did: a node that joins late, or again,
+// requests it. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace tactus::sync {
 
-// Empty: the log has no whole scene within its first kMostSceneBytes.
+// Empty: the log has no whole scene within its first kMaxSceneBytes.
 std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin);
 
-// A scene of the largest size that any node takes, and what crossed the bus meanwhile.
+// Enough for a scene of the largest size that any node accepts, and the other messages recorded meanwhile.
 inline constexpr std::size_t kMaxSceneBytes = 512 << 20;
 
 }  // namespace tactus::sync

@@ -19,7 +19,7 @@
 namespace tactus::sync {
 namespace {
 
-// LCM encodes big-endian, without gaps: the fingerprint, then header_t, then what follows it.
+// LCM encodes big-endian, without gaps: the fingerprint, then header_t, then the other members.
 constexpr std::size_t kPublish = 16, kClock = 24, kRun = 28, kIncarnation = 40, kSimHost = 64, kSimRate = 72,
                       kSimEnd = 80;
 
@@ -45,7 +45,7 @@ Nanoseconds slowed(Nanoseconds d, double speed) {
   return Nanoseconds(std::llround(std::clamp(static_cast<double>(d.count()) / speed, -4e18, 4e18)));
 }
 
-// The times of tagged values, of the sender's clock as its header.
+// The times of tagged values, on the same clock as the header's.
 void restamp_values(std::span<std::uint8_t> message, std::int64_t sent_ns, HostTime publish, double speed) {
   auto values = decode<tag_values_t>(message.data(), message.size());
   if (!values) return;
@@ -75,7 +75,7 @@ bool ReplayStamps::restamp(std::span<std::uint8_t> message, const ReplayMoment& 
   const OwnClock recorder(origin_.info.header.run_id, origin_.info.header.clock, &maps_);
   SenderClock& sender = senders_.try_emplace({header->source, header->incarnation}, recorder).first->second;
   sender.observe(*header, moment.recorded);
-  // Nothing arrives before it was sent, whatever damage says.
+  // No message arrives before it was sent; a damaged stamp may claim so.
   const HostTime sent = std::clamp(sender.to_host(header->publish_time_ns, moment.recorded),
                                    moment.recorded - Nanoseconds(60'000'000'000), moment.recorded);
   const HostTime publish = std::min(now, moment.live - slowed(moment.recorded - sent, moment.speed));
@@ -95,7 +95,7 @@ bool ReplayStamps::restamp(std::span<std::uint8_t> message, const ReplayMoment& 
   if (!has_sim_clock(message)) return true;
   const auto host_ns = static_cast<std::int64_t>(get(message, kSimHost));
   const auto rate = std::bit_cast<double>(get(message, kSimRate));
-  // A clock pair that no valid message has is left as it is, and refused by who receives it.
+  // An invalid clock pair is left unchanged; its receivers refuse it.
   const std::int64_t since =
       header->publish_time_ns - std::clamp(host_ns, std::int64_t{0}, header->publish_time_ns);
   if (host_ns < 0 || host_ns > header->publish_time_ns + 60'000'000'000 || !std::isfinite(rate)) return true;

@@ -1,10 +1,10 @@
-// Makes recorded messages messages of the live run: stamped when they would have been sent, had the world happened
-// now and at this speed. Pure.
+// Converts recorded messages to messages of the live run: stamped with the time at which they would have been sent, if the
+// world happened now and at this speed. Pure.
 //
-// Written into the bytes are run, clock, publish time and incarnation of the header, and the simulation's map
-// between its time and its host's (sim_clock_t, behind the header of those types that have one). So receivers read
-// all times as those of a neighbour, exactly, at any speed and without a CLOCK_MAP for a clock that does not
-// exist. Numbers (seq) stay: a message that the log lacks is a gap in the replay, too.
+// It overwrites run, clock, publish time and incarnation in the encoded header, and the simulation's map between its time and
+// its host's (sim_clock_t, after the header of those types that have one). So receivers read all times as those of a sender
+// on this host, exactly, at any speed and without a CLOCK_MAP for a clock that does not exist. Sequence numbers (seq) stay: a
+// message that the log lacks is a gap in the replay, too.
 #pragma once
 
 #include <cstdint>
@@ -20,25 +20,26 @@
 
 namespace tactus::sync {
 
-// When a recorded event is played.
+// The time at which a recorded event is played.
 struct ReplayMoment {
   HostTime recorded;      // arrival at the recorder, its clock
   HostTime live;          // the same instant on our clock
   double speed = 1;       // recorded seconds per live second
-  std::int64_t pass = 0;  // changes with each jump: senders are born anew, so that nobody takes old for repeated
+  std::int64_t pass = 0;  // changes with each jump: senders get new incarnations, so that receivers do not take old messages
+                          // for repetitions
 };
 
 class ReplayStamps {
  public:
-  // Senders of a log; noise makes up more.
+  // Senders of a log; random bytes create more.
   static constexpr std::size_t kMaxSenders = 256;
-  // As fast as any receiver believes a simulation to run (lcmtypes/valid.cpp).
+  // The highest simulation rate that a receiver accepts (lcmtypes/valid.cpp).
   static constexpr double kMaxRate = 100;
 
   ReplayStamps(const LogOrigin& origin, Identity live);
-  // Every event of the log, in order, before it is restamped or left out.
+  // Call it for every event of the log, in order, before it is restamped or left out.
   void hear(const LogEvent& event, const ReplayMoment& moment);
-  // False, and nothing is changed: this is no message of ours.
+  // Returns false, without a change, when the bytes are no message of this system.
   bool restamp(std::span<std::uint8_t> message, const ReplayMoment& moment, HostTime now);
 
  private:

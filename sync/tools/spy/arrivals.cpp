@@ -24,13 +24,13 @@ std::size_t Arrivals::first(HostTime now) const {
   return static_cast<std::size_t>(it - kept_.begin());
 }
 
-// From message to message, so that a slow sender has the rate that it has, and one that went silent fades.
+// From message to message, so that a slow sender has its true rate, and the rate of a silent one fades.
 double Arrivals::rate_Hz(HostTime now) const {
   const std::size_t from = first(now);
   if (kept_.size() < from + 2) return 0;
   const Nanoseconds between = kept_.back().arrival - kept_[from].arrival;
   const auto n = static_cast<double>(kept_.size() - from - 1);
-  // The next is overdue: what has passed since the newest counts, too.
+  // The next message is overdue: the time since the newest counts, too.
   const double since = to_seconds(now - kept_.back().arrival), period = to_seconds(between) / n;
   return n / (to_seconds(between) + std::max(0.0, since - period) + 1e-12);
 }

@@ -1,4 +1,4 @@
-// How regularly the messages of one sender on one channel come. Pure; bounded.
+// Rate and jitter of the messages of one sender on one channel. Pure; bounded.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@ namespace tactus::sync::spy {
 
 class Arrivals {
  public:
-  // What is looked at: the last two seconds, of which so many messages (1 kHz).
+  // The evaluated messages: the last two seconds, at most this number (1 kHz).
   static constexpr Nanoseconds kSpan{2'000'000'000};
   static constexpr std::size_t kMax = 2048;
 
   void add(HostTime arrival, std::size_t bytes);
 
-  // 1/s and bytes/s over the span; of more messages than are kept, over those. 0: fewer than two.
+  // 1/s and bytes/s over the span, or over the stored messages where they cover less. 0: fewer than two.
   double rate_Hz(HostTime now) const;
   double bytes_per_s(HostTime now) const;
-  // Deviation of the time between two messages from the middle one of these times, ms: the middle one of the
-  // deviations, and the one that 99 of 100 do not exceed. 0: fewer than three messages.
+  // Deviation of the time between two messages from the median of these times, ms: its median and its 99 % quantile. 0: fewer
+  // than three messages.
   struct Jitter {
     double p50_ms = 0, p99_ms = 0;
   };
@@ -33,7 +33,7 @@ class Arrivals {
     HostTime arrival;
     std::uint32_t bytes;
   };
-  // The first that is within the span.
+  // The first message within the span.
   std::size_t first(HostTime now) const;
   std::deque<Kept> kept_;
 };

@@ -1,5 +1,5 @@
-// Everything that is heard on a bus, channel by channel: how much, how regularly, what is missing, how old, and
-// the newest message. Pure; bounded however many channels and senders come.
+// Statistics of all messages on a bus, by channel: volume, regularity, losses, age, and the newest message. Pure; bounded for
+// any number of channels and senders.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ namespace tactus::sync::spy {
 
 struct ChannelFigures {
   std::string name;
-  std::string type;  // of the newest message; empty: of a type that is not ours
+  std::string type;  // of the newest message; empty: not a type of this system
   std::int64_t messages = 0, gaps = 0;
-  std::int64_t torn = 0;  // of which pieces were missing, or that are no whole message of their type
+  std::int64_t torn = 0;  // fragments, or no whole message of their type
   double rate_Hz = 0, bytes_per_s = 0;
-  Arrivals::Jitter jitter;  // of the sender that is worst
+  Arrivals::Jitter jitter;  // of the sender with the largest
   int senders = 0;
-  // From sending to arrival, of the newest message, ms, and its uncertainty; negative: not known. Of a clock that
-  // nobody has mapped: beyond the smallest that was seen.
+  // From publication to arrival, of the newest message, ms, and its uncertainty; negative: unknown. On a clock without a map:
+  // beyond the smallest observed.
   double age_ms = -1, age_uncertainty_ms = -1;
-  double silent_s = 0;  // since the newest arrived
+  double silent_s = 0;  // since the newest message
 };
 
 class Channels {
@@ -42,7 +42,7 @@ class Channels {
   std::vector<ChannelFigures> figures(HostTime now) const;
   // The bytes of the newest message on a channel; empty: there is none.
   std::span<const std::uint8_t> newest(std::string_view channel) const;
-  // Messages on channels beyond kMost.
+  // Messages on channels beyond kMax.
   std::int64_t beyond() const { return beyond_; }
   std::int64_t messages() const { return messages_; }
 
@@ -53,7 +53,7 @@ class Channels {
     SenderClock clock;
   };
   struct Channel {
-    std::map<std::int32_t, Sender> senders;  // by source; 0: whoever has no header of ours
+    std::map<std::int32_t, Sender> senders;  // by source; 0: messages without a header of this system
     SequenceTracker sequence;
     std::int64_t messages = 0, torn = 0;
     const MessageType* type = nullptr;

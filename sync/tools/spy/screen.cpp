@@ -29,7 +29,7 @@ std::string padded(std::string text, std::size_t columns) {
   return text;
 }
 
-// What of ASCII fits.
+// Truncates ASCII text to the width.
 std::string cut(const std::string& text, std::size_t columns) { return text.substr(0, columns); }
 
 std::string age_text(const ChannelFigures& f) {
@@ -89,7 +89,7 @@ std::vector<Key> take_keys(std::string& bytes) {
     ++at;
   }
   bytes.erase(0, at);
-  if (bytes.size() > 16) bytes.clear();  // no terminal sends that
+  if (bytes.size() > 16) bytes.clear();  // longer than any key sequence of a terminal
   return keys;
 }
 
@@ -208,7 +208,7 @@ void Screen::move(const std::vector<Row>& rows, std::size_t visible) {
   const auto last = static_cast<std::int64_t>(rows.size()) - 1;
   cursor_ = static_cast<std::size_t>(
       std::clamp<std::int64_t>(static_cast<std::int64_t>(cursor_) + wish_, 0, std::max<std::int64_t>(0, last)));
-  // The course under a field is no line to stand on.
+  // The cursor skips the graph below a field.
   if (wish_ > 0 && cursor_ < rows.size() && rows[cursor_].name.ends_with(' ') && cursor_ + 1 < rows.size())
     ++cursor_;
   wish_ = 0;

@@ -1,5 +1,5 @@
-// What a terminal shows of a bus: a table of its channels, the fields of one, or the variables that are tagged;
-// and what keys do. Pure: the program hands in what was heard and what was typed, and prints the lines.
+// The terminal display of a bus: a table of its channels, the fields of one, or the tagged variables; and the key commands.
+// Pure: the program passes in received messages and typed bytes, and prints the lines.
 #pragma once
 
 #include <map>
@@ -16,22 +16,22 @@ namespace tactus::sync::spy {
 
 enum class Key { kNone, kUp, kDown, kPageUp, kPageDown, kEnter, kBack, kTags, kPause, kQuit };
 
-// Of bytes as a terminal sends them, all keys in order; an escape sequence that is not whole yet stays in `bytes`.
+// Parses the bytes from a terminal into keys, in order; an incomplete escape sequence stays in `bytes`.
 std::vector<Key> take_keys(std::string& bytes);
 
 class Screen {
  public:
-  // A course has a column each quarter of a second.
+  // A graph has one column each quarter of a second.
   static constexpr Nanoseconds kColumn{250'000'000};
   static constexpr std::size_t kMaxTags = 4096;
 
   void press(Key key);
   bool over() const { return over_; }
   bool paused() const { return paused_; }
-  // Variables are on the screen: only then they are worth to be asked for.
+  // Variables are on the screen: only then the program needs to request them.
   bool shows_tags() const { return page_ == Page::kTags; }
 
-  // The value of the marked field is followed from one look to the next.
+  // Samples the value of the marked field for its graph.
   void look(const Channels& channels, HostTime now);
   void push(const tag_list_t& m) { table_.push(m); }
   void push(const tag_values_t& m, HostTime arrival);
@@ -43,7 +43,7 @@ class Screen {
  private:
   enum class Page { kChannels, kFields, kTags };
   struct Row {
-    std::string name;  // what the cursor stays on while others come and go
+    std::string name;  // identifies the row of the cursor while others appear and disappear
     std::string text;
   };
   struct Variable {
@@ -58,7 +58,7 @@ class Screen {
 
   Page page_ = Page::kChannels;
   bool over_ = false, paused_ = false;
-  int wish_ = 0;  // lines that the cursor shall move
+  int wish_ = 0;  // pending movement of the cursor, lines
   std::string marked_name_, channel_, channel_before_;
   std::size_t cursor_ = 0, top_ = 0, marked_row_ = 0;
   std::string followed_;  // path of the marked field

@@ -1,4 +1,4 @@
-// The course of a number in a line of text. Pure; bounded.
+// A graph of a number's history in a line of text. Pure; bounded.
 #pragma once
 
 #include <deque>
@@ -10,14 +10,14 @@ namespace tactus::sync::spy {
 
 class Spark {
  public:
-  static constexpr std::size_t kMax = 240;  // columns of the widest terminal that is drawn for
+  static constexpr std::size_t kMax = 240;  // columns of the widest supported terminal
 
-  // each: so much time is one column. The last value of a column is shown.
+  // each: the time of one column, which shows its last value.
   explicit Spark(Nanoseconds each) : each_(each) {}
 
   void add(double value, HostTime at);
-  // The newest columns until now, at most so many, from the lowest to the highest value in them: " ▁▂▃▄▅▆▇█"; a
-  // blank where nothing came. UTF-8.
+  // The newest columns until now, at most the given number, scaled from their lowest to their highest value: " ▁▂▃▄▅▆▇█";
+  // blank for a column without a value. UTF-8.
   struct Drawn {
     std::string text;
     double lowest = 0, highest = 0;

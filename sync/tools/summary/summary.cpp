@@ -18,8 +18,8 @@
 namespace tactus::sync {
 
 void RunSummary::observe(const log_info_t& m) {
-  // The first of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run
-  // the first says what was meant.
+  // The first LOG_INFO of a log is its own; others crossed the bus while another log was replayed. Of several logs of a run,
+  // the first contains the intended parameters.
   if (time_known_) return;
   time_known_ = true;
   realtime_offset_ns_ = m.realtime_offset_ns;
@@ -33,8 +33,7 @@ void RunSummary::observe(const log_info_t& m) {
 void RunSummary::observe(const node_health_t& m, HostTime now) {
   auto [it, first] = lives_[m.node].try_emplace(m.header.incarnation);
   Life& life = it->second;
-  // A node waits at another rate than it runs at: its rate is counted from when it began to run as it does at the
-  // end.
+  // A node waits at another rate than it runs at: its rate is counted from the beginning of its present state.
   const bool began_to_run = m.state == node_health_t::RUNNING && (life.first.state == node_health_t::WAITING ||
                                                                   life.first.state == node_health_t::READY);
   if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
@@ -81,12 +80,12 @@ void RunSummary::add(const LogEvent& e) {
     if (const auto m = decode<log_info_t>(e.data.data(), e.data.size())) observe(*m);
   }
   const auto header = peek_header(e.data.data(), e.data.size());
-  if (!time_known_ && header) {  // a log of the stock lcm-logger: what came first came at once
+  if (!time_known_ && header) {  // a log of the stock lcm-logger: the first message is assumed to have no latency
     time_known_ = true;
     realtime_offset_ns_ = bounded_us(e.timestamp_us) * 1000 - header->publish_time_ns;
   }
   const HostTime now = clock_.observe(time_of_stamp(e.timestamp_us, realtime_offset_ns_));
-  // What the recorder put at the head did not cross the bus. The log counts in microseconds.
+  // Messages at the head were written by the recorder and did not cross the bus. The log counts in microseconds.
   if (to_ns(now) / 1000 < live_from_ns_ / 1000) return;
   observe_silence(now);
   now_ = now;
@@ -124,7 +123,7 @@ void RunSummary::add(const LogEvent& e) {
   });
   feed.template operator()<degraded_t>(channels::kDegraded, match);
   feed.template operator()<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
-    if (m.group == world_state_t::NOW) observe_course(m.header);  // of what is told ahead the times lie ahead
+    if (m.group == world_state_t::NOW) observe_course(m.header);  // predicted states have future times
   });
   matcher_.advance(now);
 }

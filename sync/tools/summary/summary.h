@@ -1,5 +1,5 @@
-// What a run was like, from its log alone: rates, losses, who presented what and when. Pure: fed with the events
-// of one log after the other.
+// The summary of a run, from its log alone: rates, losses, presentations and their times. Pure: it receives the events of one
+// log after the other.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@
 
 namespace tactus::sync {
 
-// What the caller knows better than the log.
+// Values of the caller that take precedence over those of the log.
 struct SummaryOptions {
   std::optional<std::string> scene, git;
   std::optional<double> seconds;
   std::optional<std::int64_t> seed;
-  std::vector<std::string> nodes;                // that must have been there to the end
-  std::map<std::string, std::int64_t> restarts;  // as the supervisor counted them
-  std::vector<std::string> warnings;             // what was missing where it ran, a sentence each
+  std::vector<std::string> nodes;                // that must be alive at the end
+  std::map<std::string, std::int64_t> restarts;  // as counted by the supervisor
+  std::vector<std::string> warnings;             // resources missing on the host of the run, a sentence each
 };
 
 struct NodeSummary {
@@ -39,9 +39,9 @@ struct NodeSummary {
   std::int64_t stale_ticks = 0;
   Histogram tick, wake;
   std::map<std::string, Histogram> input_age;  // by channel, ten times a second
-  std::vector<std::int64_t> quality;  // health reports at each step of its ladder, 0: full; empty: it has none
+  std::vector<std::int64_t> quality;  // health reports at each step of its quality ladder, 0: full; empty: it has no ladder
   std::int64_t restarts = 0;
-  // What the node said last of its priority and its troubles, while there was a simulation: a run ends without one.
+  // The node's last note on its priority and its troubles while a simulation was present: a run ends without one.
   std::string scheduling;
   bool alive_at_end = false;
 };
@@ -55,48 +55,49 @@ struct ChannelSummary {
 
 class RunSummary {
  public:
-  // A node is alive at the end when it reported health within so long of it.
+  // A node counts as alive at the end when it reported health within this time of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
-  // The senses of today.
+  // The modalities of this repository.
   static constexpr std::array kSenses{"haptic", "audio", "visual", "thermal"};
 
-  // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
+  // A gap in the log of this length, after which the numbering of a sender continues farther up, means that the recorder was
+  // stopped.
   static constexpr Nanoseconds kHole{1'000'000'000};
-  // What the kernel kept for it meanwhile comes first.
+  // Time for the messages that the kernel had buffered meanwhile, which come first.
   static constexpr Nanoseconds kHoleShowsWithin{2'000'000'000};
 
   explicit RunSummary(SummaryOptions options) : options_(std::move(options)) {}
 
   void add(const LogEvent& event);
-  // After each log: what its end leaves open is settled.
+  // Call it after each log: settles the outcomes that its end leaves open.
   void end_of_log(std::int64_t damaged_regions);
 
   std::string scene() const { return options_.scene.value_or(info_ ? info_->scene : ""); }
   std::string git() const { return options_.git.value_or(info_ ? info_->git : ""); }
   std::int64_t seed() const { return options_.seed.value_or(info_ ? info_->seed : 0); }
-  // As asked for; else as long as was recorded.
+  // The requested duration; by default the recorded one.
   double seconds() const;
   double recorded_seconds() const;
-  // Simulated seconds per second of the host while there was a simulation; 0: there was none.
+  // Simulated seconds per second of the host while a simulation was present; 0: there was none.
   double realtime_factor() const;
   std::map<std::string, NodeSummary> nodes() const;
-  // Senses that no node ever reported for.
+  // Modalities without a report by any node.
   std::vector<std::string> absent() const;
   const std::vector<std::string>& warnings() const { return options_.warnings; }
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;
   std::int64_t damaged_regions() const { return damaged_regions_; }
-  // How the game of the scene stood last; nothing: it has none.
+  // The last state of the scene's game; nullopt: it has none.
   const std::optional<game_state_t>& game() const { return game_; }
-  // For so long in all nothing was recorded, though something was sent: nobody knows who was dead or stalled then.
+  // Total time without a record although messages were sent; dead and stalled nodes cannot be detected within it.
   double holes_seconds() const { return to_seconds(holes_); }
 
-  // Why the run was not a success, in one sentence; empty: it was.
+  // The reason why the run was not a success, in one sentence; empty: it was.
   std::string failure() const;
 
  private:
-  // One incarnation of a node: its first health at its present rate, and its last; its last note that the simulation
-  // outlived.
+  // One incarnation of a node: its first health at its present rate, its last health, and its last note while a simulation
+  // was present.
   struct Life {
     node_health_t first, last;
     std::string note;
@@ -124,7 +125,7 @@ class RunSummary {
   std::int64_t realtime_offset_ns_ = 0;
   std::int64_t live_from_ns_ = 0;
   SummaryClock clock_;
-  // Run 0: that of the first that speaks.
+  // Run 0: the run of the first message.
   std::unique_ptr<ClockMaps> maps_ = std::make_unique<ClockMaps>(0);
   PresentationMatcher matcher_{OwnClock(0, 0, maps_.get())};
   std::map<std::string, std::map<std::int64_t, Life>> lives_;  // by node, by incarnation
@@ -136,7 +137,7 @@ class RunSummary {
   std::optional<HostTime> begin_;
   HostTime now_{};
   Nanoseconds recorded_{0};
-  Nanoseconds silence_{0};  // the last one that may be a hole
+  Nanoseconds silence_{0};  // the last gap, which may be a hole
   HostTime silence_end_{};
   Nanoseconds holes_{0};
   std::int64_t damaged_regions_ = 0;
@@ -144,7 +145,7 @@ class RunSummary {
 
 // summary.json.
 std::string to_json(const RunSummary&);
-// The same for people.
+// The same as text.
 std::string to_text(const RunSummary&);
 
 }  // namespace tactus::sync

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Figures with the digits that they deserve.
+// Rounds figures to their significant digits.
 double rounded(double x, double per_unit) { return std::round(x * per_unit) / per_unit; }
 double us(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-3, 10); }
 double ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6, 100); }
@@ -54,7 +54,7 @@ Json nodes(const RunSummary& s) {
   return out;
 }
 
-// The four senses of today are always there, so that a reader of the file need not ask.
+// The four modalities of this repository are always present, so that a reader of the file needs no check.
 std::vector<std::string> senses(const PresentationMatcher& m) {
   std::set<std::string> names(RunSummary::kSenses.begin(), RunSummary::kSenses.end());
   for (const auto& [name, tally] : m.modalities()) names.insert(name);

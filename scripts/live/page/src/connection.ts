@@ -1,4 +1,4 @@
-// The WebSocket: opens again by itself when it is lost.
+// The WebSocket connection, with automatic reconnection.
 import { Said } from "./messages";
 
 export class Connection {

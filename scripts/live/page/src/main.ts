@@ -1,4 +1,4 @@
-// The live page: what a cluster does, or what a log holds, and what one may do to it.
+// The live page: shows a cluster or a log, and offers its controls.
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { Connection } from "./connection";
@@ -93,7 +93,7 @@ const seek = element<HTMLInputElement>("seek");
 seek.addEventListener("input", () => { seeking = true; });
 seek.addEventListener("change", () => { seeking = false; send({ t: "seek", to_s: Number(seek.value) }); });
 
-// Between two frames time goes on, so that curves glide; a world that stands still, and a log, do not.
+// Extrapolates the time between two frames, so that curves move smoothly; not for a paused world or a log.
 function draw(): void {
   const ahead = live ? Math.min(0.2, (performance.now() - at_ms) / 1000) : 0;
   variables.draw(now_s + ahead);

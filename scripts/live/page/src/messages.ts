@@ -1,4 +1,4 @@
-// What the server says: scripts/live/README.md.
+// The messages of the server: scripts/live/README.md.
 export interface Named { name: string; unit: string; about: string }
 export interface Threshold { earlier: string; later: string; ms: number; what: string; source: string }
 export interface NodeHealth {
@@ -9,13 +9,13 @@ export interface Sense { modality: string; owed: number; presented: number; lost
 export interface Pair { a: string; b: string; n: number; p05_ms: number; p50_ms: number; p95_ms: number; beyond_least: number }
 export type Event = [time_s: number, kind: number, body_a: number, body_b: number, speed_m_s: number];
 export type Presentation = [time_s: number, modality: string, part: number, outcome: number, latency_ms: number | null];
-// source: who sent it (header.source); 0: whoever has the tag.
+// source: header.source of the sender; 0: the process with that tag.
 export type Value = [variable: number, time_s: number, value: number, source: number];
 export interface Common { now: number; health?: NodeHealth[]; report?: { senses: Sense[]; pairs: Pair[] }; tags?: Named[] }
 export interface Slid { delay_ms: number; rate_Hz: number; loss: number }
-// The profile in force; more: that it says of a sense what no slider shows.
+// The profile in force; more: it contains operators of a modality that no slider shows.
 export interface Degradation { name: string; senses: Record<string, Slid & { more: boolean }> }
-// question: its name; kind "nothing": a trial is under way. leader: the node that leads; "": none that tells of itself.
+// question: its name; kind "nothing": a trial is in progress. leader: the leading node; "": it publishes no health.
 export interface Study {
   question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;
   trial: number; condition: string; progress: string; answered: boolean; leader: string;

@@ -1,7 +1,7 @@
-// The rendered picture; and the mouse in it as the hand, as long as its box is ticked.
+// The rendered picture, and the mouse in it as the hand while its box is ticked.
 import { element } from "./messages";
 
-const REPEAT_MS = 50;  // the server lets go of the device when it has heard nothing for 350 ms
+const REPEAT_MS = 50;  // the server releases the device after 350 ms without a message
 
 export class Picture {
   private url = "";

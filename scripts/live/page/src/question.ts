@@ -1,9 +1,9 @@
-// What a participant does to a question, whatever he does it with, and the answer that comes of it. Knows no document.
+// Interprets a participant's input to a question, from any input device, and creates the answer. Independent of the document.
 import { Study } from "./messages";
 
-// One press may mean several things; the question that is asked says which of them counts.
+// One press can have several meanings; the present question decides which one counts.
 export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; goesOn?: boolean }
-// As live_server reads it.
+// As parsed by live_server.
 export interface Answer { t: "answer"; question: string; choice: number; number: number; after_ns: number }
 
 // key: KeyboardEvent.key.
@@ -20,9 +20,9 @@ export function pressOfKey(key: string): Press | undefined {
   }
 }
 
-// The mark of a number: it begins in the middle; both ends can be answered, though the last step be a shorter one.
+// The mark on a number scale: it begins in the middle; both ends can be reached, though the last step may be shorter.
 export class Mark {
-  static readonly MOST_STEPS = 10000;  // design: a mark is not moved finer than that
+  static readonly MOST_STEPS = 10000;  // design: the finest resolution of a mark
   readonly steps: number;
   private readonly step: number;
   private at: number;
@@ -43,15 +43,15 @@ export class Mark {
   }
 }
 
-// Which question is on, since when it is seen, and whether its answer is on its way. Times: performance.now(), ms.
+// The present question, the time of its display, and whether its answer is in transfer. Times: performance.now(), ms.
 export class Desk {
-  static readonly LOST_MS = 1500;  // design: an answer that the server has not taken by then may be given again
+  static readonly LOST_MS = 1500;  // design: an answer that the server has not accepted within this time may be given again
   private asked: Study | undefined;
   private seen_ms: number | undefined;
   private sent_ms: number | undefined;
   mark: Mark | undefined;
 
-  // True when another question is on than before, or none any more.
+  // Returns true when the present question has changed or ended.
   take(study: Study | null): boolean {
     const asked = study && study.kind !== "nothing" && !study.answered ? study : undefined;
     const other = asked?.question !== this.asked?.question;
@@ -64,11 +64,11 @@ export class Desk {
   }
   get on(): Study | undefined { return this.asked; }
   seen(question: string, at_ms: number): void { if (this.asked?.question === question && this.seen_ms === undefined) this.seen_ms = at_ms; }
-  // Nothing answers before the question was seen, nor while an answer is on its way.
+  // No answer is accepted before the question was seen, or while an answer is in transfer.
   waits(at_ms: number): boolean {
     return this.asked !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + Desk.LOST_MS);
   }
-  // used: it means something to the question that is on.
+  // used: the press has a meaning for the present question.
   press(p: Press, at_ms: number): { used: boolean; answer?: Answer } {
     const m = this.asked;
     if (!m) return { used: false };
@@ -84,18 +84,18 @@ export class Desk {
   }
 }
 
-// Presses of a gamepad of the W3C's standard mapping: A, B, X and Y choose, sticks and pad move the mark.
+// Presses of a gamepad with the W3C's standard mapping: A, B, X and Y choose, sticks and pad move the mark.
 export class Pad {
   private before: boolean[] | undefined;
   private static readonly presses: Press[] = [
     { choice: 0, confirms: true, goesOn: true }, { choice: 1 }, { choice: 2 }, { choice: 3 }, { fine: -1 }, { fine: 1 }, { coarse: 1 }, { coarse: -1 }];
-  // What was pressed anew; what is held at the first look counts as pressed before.
+  // The new presses; buttons held at the first call count as pressed before.
   pressed(buttons: readonly boolean[], axes: readonly number[]): Press[] {
     const held = [0, 1, 2, 3, 14, 15, 12, 13].map((i) => buttons[i] ?? false);
     for (const stick of [0, 2]) {
       const x = axes[stick] ?? 0, y = axes[stick + 1] ?? 0, sideways = Math.abs(x) >= Math.abs(y), far = sideways ? x : y;
       const way = (sideways ? 4 : 6) + (far < 0 ? 0 : 1);
-      // Design: past the half is meant, and what rests within a third has been let go.
+      // Design: a stick counts as pushed beyond 0.6, and as released within 0.35.
       held[way] = held[way]! || Math.abs(far) > (this.before?.[way] ? 0.35 : 0.6);
     }
     const fresh = this.before ? held.flatMap((h, i) => (h && !this.before![i] ? [Pad.presses[i]!] : [])) : [];

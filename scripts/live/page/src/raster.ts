@@ -1,4 +1,4 @@
-// Events over the last seconds, a lane for the world and one for each sense.
+// Events over the last seconds, with a lane for the world and one for each modality.
 import { Event, Presentation, colourOf, element, make } from "./messages";
 
 const SPAN_S = 10;

@@ -1,4 +1,4 @@
-// Rate, latency and asynchrony of the senses, with the published thresholds; and the nodes behind them.
+// Rate, latency and asynchrony of the modalities, with the published thresholds; and their nodes.
 import { NodeHealth, Pair, Presentation, Sense, Threshold, colourOf, element, make } from "./messages";
 
 const STATES = ["waiting", "running", "stale", "input lost", "output lost", "ready"];
@@ -53,7 +53,7 @@ export class Senses {
     div.title = `${p.n} events: 5 % ${p.p05_ms.toFixed(1)} ms, 50 % ${p.p50_ms.toFixed(1)} ms, 95 % ${p.p95_ms.toFixed(1)} ms; ${p.beyond_least < 0 ? "no threshold is published" : p.beyond_least + " beyond the least threshold"}${this.sources(p)}`;
     return div;
   }
-  // What is published of a pair, in both directions: the studies disagree, so none of them is the truth.
+  // The published thresholds of a pair, in both directions: the studies disagree, so all are listed.
   private sources(p: Pair): string {
     const of = (earlier: string, later: string) => this.thresholds.filter((t) => t.earlier === earlier && t.later === later)
       .map((t) => `\n${later} after ${earlier}, ${t.ms} ms: ${t.what} (${t.source})`);

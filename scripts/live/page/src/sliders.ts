@@ -1,10 +1,10 @@
-// Delay, rate and loss of each sense. They begin where the profile in force has them; the server changes in it what a slider
-// changes, and keeps the rest.
+// Delay, rate and loss of each modality. The sliders start at the values of the profile in force; the server changes only the
+// moved sliders' values in the profile, and keeps the rest.
 import { Degradation, Slid, colourOf, element, make } from "./messages";
 
-// Rates on a scale that a slider can show; the last: as it comes.
+// Rates on a scale that a slider can show; the last: unlimited.
 const RATES = [1, 2, 5, 10, 15, 20, 30, 60, 120, 250, 500, 0];
-// What is told of the profile in force may be older than what has just been sent.
+// A received profile may be older than the values that were just sent.
 const SETTLE_MS = 1500;
 const nearest = (rate_Hz: number): number => {
   if (rate_Hz === 0) return RATES.length - 1;
@@ -19,7 +19,7 @@ const words = {
 
 export class Sliders {
   private settings = new Map<string, Slid>();
-  private more = new Set<string>();  // senses of which the profile says what no slider shows
+  private more = new Set<string>();  // modalities with operators that no slider shows
   private timer = 0;
   private touched_ms = -Infinity;
   private told = "";
@@ -37,7 +37,7 @@ export class Sliders {
     const fresh = names.filter((n) => !this.settings.has(n));
     if (!fresh.length) return;
     for (const n of fresh) this.settings.set(n, { delay_ms: 0, rate_Hz: 0, loss: 0 });
-    this.told = "";  // what is in force is shown of them too, once it is told again
+    this.told = "";  // shows the profile in force for them, too, once it is received again
     this.build();
   }
   inForce(d: Degradation): void {

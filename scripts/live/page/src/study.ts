@@ -1,4 +1,5 @@
-// The panel of a study: with ?participant in the address the question and what answers it, else who leads and what is asked.
+// The panel of a study: with ?participant in the address, the question and its answer controls; otherwise the leader and the
+// question.
 import { Study, element, make } from "./messages";
 import { Desk, Pad, Press, pressOfKey } from "./question";
 
@@ -55,7 +56,7 @@ export class StudyPanel {
     if (m.kind === "read") answers.append(this.button("go on", "Enter", { goesOn: true }));
     this.box.append(answers, make("p", "quiet", m.progress));
     this.showMark();
-    // Once it is painted: a message that is sent just before a frame is drawn comes just after it.
+    // After painting: a message that is posted just before a frame is drawn arrives just after it.
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
       channel.port1.onmessage = () => { this.desk.seen(m.question, performance.now()); this.box.classList.toggle("sent", !this.desk.waits(performance.now())); };
@@ -84,7 +85,7 @@ export class StudyPanel {
     this.slider.value = String(mark.place);
     output.textContent = mark.text();
   }
-  // For who leads: nothing of it can be answered.
+  // For observers: without answer controls.
   private watch(study: Study | null): void {
     const text = JSON.stringify(study);
     if (text === this.shown) return;

@@ -1,14 +1,14 @@
-// Cards of variables: a graph over time, a bar or text, as one chooses.
+// Cards of variables: a graph over time, a bar or text, as selected by the user.
 import uPlot from "uplot";
 import { Named, NodeHealth, Value, element, figure, make } from "./messages";
 
 const SPAN_S = 20;
 const MOST = 24;
 type Kind = "graph" | "bar" | "text";
-// What one sender says of a variable: two hands both send TOOL_STATE.
+// The values of a variable from one sender: two hands both send TOOL_STATE.
 interface Series { source: number; times: number[]; values: number[] }
 interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; least: number; most: number; plot?: uPlot }
-const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // as many as the server tells apart
+const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // one for each sender that the server distinguishes
 
 export class Variables {
   private cards: Card[] = [];
@@ -120,7 +120,7 @@ export class Variables {
       else if (c.kind === "bar" && lasts.length) this.bar(c, lasts[0]!);
     }
   }
-  // The newest values as text, each with the colour of its curve when several send it.
+  // The newest values as text, each in the colour of its curve when several processes send it.
   private show(c: Card, lasts: number[], unit: string): void {
     const box = (c.kind === "text" ? c.body.firstElementChild : c.value) as HTMLElement;
     if (c.kind === "text") c.value.textContent = "";
