@@ -102,8 +102,8 @@ class ModalityEndpoint {
   // When the event that happened at that time is to be presented: so much later, or as soon as this sense can when the
   // policy is that.
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
-  // What is wrong with the output itself.
-  const OutputDef& output() const { return output_; }
+  // Output operators in force.
+  const OutputValues& output() const { return output_; }
   // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
   const std::string& profile_name() const { return profile_name_; }
   // When the newest message of any stream really arrived.
@@ -171,7 +171,7 @@ class ModalityEndpoint {
   PlayoutFollower playout_;
   std::optional<Lockstep> lockstep_;
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
-  OutputDef output_;
+  OutputValues output_;
   PresentationReporter reporter_;
   std::function<void(const presentation_t&)> tell_;
   const DegradedEvents* events_ = nullptr;  // of the first stream of events; null: there is none

@@ -2,7 +2,6 @@
 // of one log after the other.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -57,9 +56,6 @@ class RunSummary {
  public:
   // A node is alive at the end when it reported health within so long of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
-  // The senses of today.
-  static constexpr std::array kSenses{"haptic", "audio", "visual", "thermal"};
-
   // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
   static constexpr Nanoseconds kHole{1'000'000'000};
   // What the kernel kept for it meanwhile comes first.
